@@ -1,0 +1,27 @@
+# Every library that Pliant links, from the Debian packages of packages.txt. Licences: LICENSES.md.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(tl-expected REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(doctest REQUIRED)
+find_package(PNG REQUIRED)
+find_package(embree 3 REQUIRED)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
+pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
+
+# A library that ships neither a CMake package nor a pkg-config file.
+function(pliant_find_plain target header library)
+  find_path(${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse REQUIRED)
+  find_library(${target}_LIBRARY ${library} REQUIRED)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE ${${target}_INCLUDE})
+  target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
+endfunction()
+
+pliant_find_plain(cholmod cholmod.h cholmod)
+pliant_find_plain(gmsh gmsh.h gmsh)

@@ -1,0 +1,100 @@
+// The job: everything the printer needs, in one zip file. docs/reference/job.md describes the format.
+//
+//   manifest.json     what is in the archive (this Manifest)
+//   layers/00012_soft.png   8-bit grey image of layer 12 of material "soft"; blank images are not stored
+//   printer.toml      the printer file that the job was made for
+//   plan.json, job.gcode    written by the planner
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace pliant::job {
+
+/// 8-bit grey, row by row from the top; 0 is dark, 255 full light.
+struct Image {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<std::uint8_t> pixels;  ///< (height_px, width_px)
+};
+
+struct Material {
+    std::string name;               ///< as in the robot file; unique
+    std::string resin;              ///< what a printer's vat is filled with
+    double model_volume_mm3 = 0;    ///< of the bodies as drawn, for the comparison after the print
+    double model_area_mm2 = 0;      ///< of their surface: one pixel layer around it is the error a raster may make
+    double exposure_s = 0;          ///< of a normal layer
+    double bottom_exposure_s = 0;   ///< of the first `bottom_layers`
+};
+
+/// One image that is not blank.
+struct LayerImage {
+    int material = 0;         ///< index into Manifest::materials
+    std::string file;         ///< name inside the archive
+    double area_mm2 = 0;      ///< sum of pixel values / 255 times the pixel's area
+};
+
+struct Layer {
+    int z_um = 0;             ///< height of the layer's top above the platform
+    int thickness_um = 0;
+    std::vector<LayerImage> images;  ///< ordered by material; empty where nothing is printed
+};
+
+struct Manifest {
+    std::string name;
+    std::string pliant_version;
+    int width_px = 0, height_px = 0;
+    double pixel_um = 0;      ///< edge length of a (square) pixel on the platform
+    int bottom_layers = 0;
+    std::vector<Material> materials;
+    std::vector<Layer> layers;
+    std::vector<std::string> warnings;  ///< what the slicer repaired or noticed
+};
+
+/// Writes a job aside and puts it in place with finish(); without it nothing is left behind.
+class Writer {
+public:
+    [[nodiscard]] static Result<Writer> create(const std::filesystem::path& path);
+    Writer(Writer&&) noexcept;
+    Writer& operator=(Writer&&) noexcept;
+    ~Writer();
+
+    /// Encodes and adds an image; `file` as in LayerImage.
+    [[nodiscard]] Status add_image(const std::string& file, const Image& image);
+    [[nodiscard]] Status add_file(const std::string& file, std::string_view bytes);
+    [[nodiscard]] Status finish(const Manifest& manifest);
+
+private:
+    struct State;
+    explicit Writer(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+/// A job that has been opened and validated: every image that the manifest lists exists, indices and sizes agree.
+/// Archives from anywhere are safe to open: sizes are checked before memory is taken.
+class Archive {
+public:
+    [[nodiscard]] static Result<Archive> open(const std::filesystem::path& path);
+    Archive(Archive&&) noexcept;
+    Archive& operator=(Archive&&) noexcept;
+    ~Archive();
+
+    [[nodiscard]] const Manifest& manifest() const;
+    [[nodiscard]] bool has_file(const std::string& file) const;
+    [[nodiscard]] Result<std::string> file(const std::string& file) const;
+    /// Decodes an image; its size is that of the manifest.
+    [[nodiscard]] Result<Image> image(const std::string& file) const;
+
+private:
+    struct State;
+    explicit Archive(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant::job

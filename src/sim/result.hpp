@@ -1,0 +1,61 @@
+// What a simulation gives back, step by step. Everything in SI; positions of all nodes of the mesh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/vec3.hpp"
+
+namespace pliant::sim {
+
+struct CableState {
+    std::string name;
+    double length_ratio = 1;  ///< current length over rest length
+    double length_m = 0;
+    double tension_N = 0;     ///< never negative: a cable only pulls
+};
+
+struct ChamberState {
+    std::string name;
+    double volume_ratio = 1;  ///< current volume over rest volume
+    double volume_m3 = 0;
+    double pressure_Pa = 0;
+};
+
+struct SupportState {
+    std::string name;
+    Vec3 force_N;  ///< sum of the forces that the support exerts on the robot
+};
+
+struct MarkerState {
+    std::string name;
+    Vec3 position_m;
+};
+
+/// One step of the program at equilibrium. Step 0 is the rest state.
+struct Step {
+    int index = 0;
+    double time = 0;        ///< 0 at rest, 1 at the end of the program
+    bool converged = true;
+    int iterations = 0;
+    int substeps = 1;       ///< more than one where the step had to be halved
+    double residual = 0;    ///< norm of the out-of-balance force over the norm of the forces that balance
+    double wall_s = 0;
+    double min_J = 1;       ///< smallest det F over all integration points
+    std::vector<CableState> cables;
+    std::vector<ChamberState> chambers;
+    std::vector<SupportState> supports;
+    std::vector<MarkerState> markers;
+    std::vector<Vec3> positions;  ///< (n, 3)
+};
+
+struct Result {
+    std::vector<Step> steps;     ///< rest state first; only converged ones
+    bool converged = true;       ///< the whole program was run
+    std::string message;         ///< where and why it stopped, if it did
+    std::string solver;          ///< the solver that ran: "newton", "quasi-newton", "local-global"
+    double setup_s = 0;
+    double solve_s = 0;
+};
+
+}  // namespace pliant::sim
