@@ -1,0 +1,159 @@
+#include "mesh/tet_mesh.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+
+namespace pliant::mesh {
+namespace {
+
+std::array<int, 3> sorted(std::array<int, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+/// The mid-edge slot (0 to 5) between two corner slots.
+int edge_slot(int a, int b) {
+    for (int e = 0; e < 6; ++e) {
+        const auto& [p, q] = edge_corners[static_cast<std::size_t>(e)];
+        if ((p == a && q == b) || (p == b && q == a)) return e;
+    }
+    return -1;
+}
+
+Face face_of(const TetMesh& mesh, std::size_t t, int f) {
+    const auto tet = mesh.tet(t);
+    const auto& corners = face_corners[static_cast<std::size_t>(f)];
+    Face face{{-1, -1, -1, -1, -1, -1}, static_cast<int>(t)};
+    for (int i = 0; i < 3; ++i) {
+        face.nodes[i] = tet[corners[i]];
+        if (mesh.order == 2) face.nodes[3 + i] = tet[4 + edge_slot(corners[i], corners[(i + 1) % 3])];
+    }
+    return face;
+}
+
+/// Faces that one tet has alone among the tets for which `member` holds.
+template <class Member>
+std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
+    struct Key {
+        std::array<int, 3> corners;
+        std::size_t tet;
+        int face;
+    };
+    std::vector<Key> keys;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (!member(t)) continue;
+        for (int f = 0; f < 4; ++f) {
+            const auto& c = face_corners[static_cast<std::size_t>(f)];
+            const auto tet = mesh.tet(t);
+            keys.push_back({sorted({tet[c[0]], tet[c[1]], tet[c[2]]}), t, f});
+        }
+    }
+    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+        return std::tie(a.corners, a.tet, a.face) < std::tie(b.corners, b.tet, b.face);
+    });
+    std::vector<std::pair<std::size_t, int>> single;
+    for (std::size_t i = 0; i < keys.size();) {
+        std::size_t j = i + 1;
+        while (j < keys.size() && keys[j].corners == keys[i].corners) ++j;
+        if (j == i + 1) single.emplace_back(keys[i].tet, keys[i].face);
+        i = j;
+    }
+    std::sort(single.begin(), single.end());
+    std::vector<Face> faces;
+    faces.reserve(single.size());
+    for (const auto& [t, f] : single) faces.push_back(face_of(mesh, t, f));
+    return faces;
+}
+
+template <class Member>
+double volume_where(const TetMesh& mesh, const Member& member) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (!member(t)) continue;
+        const auto n = mesh.tet(t);
+        sum += signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+double signed_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return dot(b - a, cross(c - a, d - a)) / 6;
+}
+
+double volume(const TetMesh& mesh) {
+    return volume_where(mesh, [](std::size_t) { return true; });
+}
+
+double volume(const TetMesh& mesh, int region) {
+    return volume_where(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
+}
+
+std::vector<Face> boundary_faces(const TetMesh& mesh) {
+    return single_faces(mesh, [](std::size_t) { return true; });
+}
+
+TriMesh region_surface(const TetMesh& mesh, int region) {
+    const auto faces = single_faces(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
+    TriMesh surface;
+    std::vector<int> index(mesh.points.size(), -1);
+    const auto point = [&](int node) {
+        if (index[node] < 0) {
+            index[node] = static_cast<int>(surface.points.size());
+            surface.points.push_back(mesh.points[node]);
+        }
+        return index[node];
+    };
+    for (const Face& face : faces) {
+        std::array<int, 6> n{};
+        for (std::size_t i = 0; i < (mesh.order == 2 ? 6u : 3u); ++i) n[i] = point(face.nodes[i]);
+        if (mesh.order == 2) {
+            surface.triangles.insert(surface.triangles.end(),
+                                     {{n[0], n[3], n[5]}, {n[3], n[1], n[4]}, {n[5], n[4], n[2]}, {n[3], n[4], n[5]}});
+        } else {
+            surface.triangles.push_back({n[0], n[1], n[2]});
+        }
+    }
+    return surface;
+}
+
+TetMesh to_quadratic(const TetMesh& mesh) {
+    if (mesh.order == 2) return mesh;
+    TetMesh quadratic;
+    quadratic.order = 2;
+    quadratic.points = mesh.points;
+    quadratic.region = mesh.region;
+    quadratic.region_names = mesh.region_names;
+    quadratic.nodes.reserve(mesh.tet_count() * 10);
+    std::unordered_map<std::uint64_t, int> middle;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto tet = mesh.tet(t);
+        quadratic.nodes.insert(quadratic.nodes.end(), tet.begin(), tet.end());
+        for (const auto& [p, q] : edge_corners) {
+            const auto a = static_cast<std::uint32_t>(std::min(tet[p], tet[q]));
+            const auto b = static_cast<std::uint32_t>(std::max(tet[p], tet[q]));
+            const auto [entry, fresh] =
+                middle.try_emplace((std::uint64_t{a} << 32) | b, static_cast<int>(quadratic.points.size()));
+            if (fresh) quadratic.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+            quadratic.nodes.push_back(entry->second);
+        }
+    }
+    return quadratic;
+}
+
+TetMesh scaled(TetMesh mesh, double factor) {
+    for (Vec3& p : mesh.points) p *= factor;
+    return mesh;
+}
+
+std::vector<double> shape_functions(int order, const std::array<double, 4>& b) {
+    if (order == 1) return {b[0], b[1], b[2], b[3]};
+    std::vector<double> weights(10);
+    for (std::size_t i = 0; i < 4; ++i) weights[i] = b[i] * (2 * b[i] - 1);
+    for (std::size_t e = 0; e < 6; ++e) weights[4 + e] = 4 * b[edge_corners[e][0]] * b[edge_corners[e][1]];
+    return weights;
+}
+
+}  // namespace pliant::mesh
