@@ -151,8 +151,8 @@ private:
 
 }  // namespace
 
-Result run(const Model& model, const Program& program, Progress& progress) {
-    Result result;
+Trajectory run(const Model& model, const Program& program, Progress& progress) {
+    Trajectory result;
     const auto start = std::chrono::steady_clock::now();
     Run walk(model, program);
     result.solver = walk.solver_name();

@@ -49,7 +49,7 @@ struct Step {
     std::vector<Vec3> positions;  ///< (n, 3)
 };
 
-struct Result {
+struct Trajectory {
     std::vector<Step> steps;  ///< rest state first; only converged ones
     bool converged = true;    ///< the whole program was run
     std::string message;      ///< where and why it stopped, if it did
