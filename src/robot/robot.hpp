@@ -86,6 +86,7 @@ struct CableSpec {
     std::string name;
     std::vector<Vec3> points;
     Anchor anchor = Anchor::none;
+    bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
     double eyelet_radius = 0;  ///< length units
     sim::CableTarget target;
     int line = 0;

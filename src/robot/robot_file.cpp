@@ -263,6 +263,7 @@ void read_cables(Reader& root, Context& context) {
         const std::string anchor = reader.choice("anchor", {"none", "first", "last"}, "none");
         cable.anchor = anchor == "first" ? CableSpec::Anchor::first
                                          : (anchor == "last" ? CableSpec::Anchor::last : CableSpec::Anchor::none);
+        cable.guides_at_crossings = reader.choice("guides", {"points", "crossings"}, "points") == "crossings";
         (void)reader.choice("model", {"length"}, "length");
         cable.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
         if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");

@@ -43,7 +43,9 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     }
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
-    force_floor_ = 1e-12 * stiffest * std::pow(std::max(mesh::volume(d.mesh), 0.0), 2.0 / 3);
+    const double volume = mesh::volume(d.mesh);
+    force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
+    energy_rounding_ = 1e-16 * stiffest * volume;
 }
 
 Controls Equilibrium::controls(double time) const {
