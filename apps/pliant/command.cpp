@@ -38,8 +38,8 @@ public:
         last_ = now;
         shown_ = true;
         const int filled = static_cast<int>(30 * std::clamp(fraction, 0.0, 1.0));
-        fmt::print(stderr, "\r\033[K{:>9} [{:<30}] {:3.0f} %", stage, std::string(static_cast<std::size_t>(filled), '='),
-                   100 * fraction);
+        fmt::print(stderr, "\r\033[K{:>9} [{:<30}] {:3.0f} %", stage,
+                   std::string(static_cast<std::size_t>(filled), '='), 100 * fraction);
         std::fflush(stderr);
     }
     [[nodiscard]] bool cancelled() const override { return interrupted != 0; }

@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
     CLI::App app("Pliant takes a multi-material soft robot from a drawing to a moving part.", "pliant");
     app.set_version_flag("--version", std::string(PLIANT_VERSION));
     app.require_subcommand(1);
-    app.footer("Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
+    app.footer(
+        "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
     int status = exit_done;
     for (const AddCommand add : {add_simulate, add_mesh, add_slice, add_plan, add_print, add_check}) add(app, status);
     try {

@@ -21,7 +21,9 @@ struct Options {
     Output output;
 };
 
-bool is_robot_file(const std::string& file) { return std::filesystem::path(file).extension() == ".toml"; }
+bool is_robot_file(const std::string& file) {
+    return std::filesystem::path(file).extension() == ".toml";
+}
 
 Status build(const Options& options) {
     const auto progress = terminal_progress(options.output);
@@ -43,8 +45,8 @@ Status describe(const std::string& file) {
     } else if (const auto surface = mesh::read_surface(file); surface) {
         const Box3 box = mesh::bounds(surface->mesh);
         fmt::print("{}: surface, {} points, {} triangles, volume {:.6g}, {:.6g} x {:.6g} x {:.6g}\n", file,
-                   surface->mesh.points.size(), surface->mesh.triangles.size(), mesh::signed_volume(surface->mesh), box.size().x,
-                   box.size().y, box.size().z);
+                   surface->mesh.points.size(), surface->mesh.triangles.size(), mesh::signed_volume(surface->mesh),
+                   box.size().x, box.size().y, box.size().z);
         for (const std::string& warning : surface->warnings) fmt::print("{}: {}\n", file, warning);
         return {};
     } else {
@@ -73,7 +75,8 @@ void add_mesh(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("mesh", "build the tet mesh of a robot file, or report on mesh files");
     command->add_option("files", options->files, "a robot file with -o, or mesh files (.vtk, .stl, ...)")->required();
     command->add_option("-o,--output", options->output_file, "mesh file to write: .vtk or .vtu, in the robot's unit");
-    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")->type_name("KEY=VALUE");
+    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
+        ->type_name("KEY=VALUE");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant mesh examples/cable_gripper/gripper.toml -o gripper.vtk");
     command->callback([options, &status] {

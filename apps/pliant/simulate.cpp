@@ -1,4 +1,6 @@
 // pliant simulate: runs the actuation program of a robot file and writes the result folder.
+#include "sim/simulate.hpp"
+
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -11,7 +13,6 @@
 #include "report/report.hpp"
 #include "robot/build.hpp"
 #include "sim/fields.hpp"
-#include "sim/simulate.hpp"
 
 namespace pliant::app {
 namespace {
@@ -37,7 +38,8 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
         simulation.regions.push_back({body.name, material.name, material.colour});
     }
     simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
-    for (const sim::Step& step : trajectory.steps) simulation.cable_points.push_back(sim::cable_points(model, step.positions));
+    for (const sim::Step& step : trajectory.steps)
+        simulation.cable_points.push_back(sim::cable_points(model, step.positions));
     simulation.tolerance = robot.program.tolerance;
     simulation.peak_memory_MB = peak_memory_MB();
     return simulation;
@@ -50,8 +52,8 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
     fmt::print("{} steps in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", trajectory.steps.size() - 1,
                trajectory.solve_s, last.residual, last.min_J);
     for (const auto& c : last.cables) {
-        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio, 1e3 * c.length_m,
-                   c.tension_N);
+        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
+                   1e3 * c.length_m, c.tension_N);
     }
     for (const auto& s : last.supports) {
         fmt::print("support {}: force ({:.4f}, {:.4f}, {:.4f}) N\n", s.name, s.force_N.x, s.force_N.y, s.force_N.z);
@@ -80,8 +82,10 @@ Result<int> simulate(const Options& options) {
         });
         if (!written) return tl::unexpected(written.error());
     }
-    if (options.output.json) fmt::print("{}\n", report::summary_json(simulation));
-    else if (!options.output.quiet) print_summary(*model, trajectory);
+    if (options.output.json)
+        fmt::print("{}\n", report::summary_json(simulation));
+    else if (!options.output.quiet)
+        print_summary(*model, trajectory);
     if (!options.folder.empty() && !options.output.quiet && !options.output.json) {
         fmt::print("results: {}, open report.html there\n", options.folder);
     }
@@ -97,8 +101,11 @@ void add_simulate(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("simulate", "run the actuation program of a robot file");
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
-    command->add_option("--steps", options->steps, "number of steps, instead of the file's")->check(CLI::PositiveNumber);
-    command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")
+    command->add_option("--steps", options->steps, "number of steps, instead of the file's")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--set", options->assignments,
+                     "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")
         ->type_name("KEY=VALUE");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant simulate examples/cable_gripper/gripper.toml -o out --set mesh.order=1");

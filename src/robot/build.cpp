@@ -17,7 +17,9 @@ std::string place(const Robot& robot, int line, std::string_view kind, std::stri
     return name.empty() ? fmt::format("{}: {}: ", where, kind) : fmt::format("{}: {} \"{}\": ", where, kind, name);
 }
 
-Error at(const std::string& place, const Error& error) { return {error.cause, place + error.message}; }
+Error at(const std::string& place, const Error& error) {
+    return {error.cause, place + error.message};
+}
 
 Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file) {
     Result<mesh::SurfaceFile> surface = mesh::read_surface(file.path);
@@ -70,14 +72,15 @@ Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
             if (wanted != "all" && wanted != mesh->region_names[r]) continue;
             found = true;
             if (body_of_region[r] >= 0) {
-                return input_error("{}region \"{}\" already belongs to body \"{}\"", place(robot, body.line, "body", body.name),
-                                   mesh->region_names[r], robot.bodies[body_of_region[r]].name);
+                return input_error("{}region \"{}\" already belongs to body \"{}\"",
+                                   place(robot, body.line, "body", body.name), mesh->region_names[r],
+                                   robot.bodies[body_of_region[r]].name);
             }
             body_of_region[r] = static_cast<int>(b);
         }
         if (!found) {
-            return input_error("{}the mesh has no region \"{}\"; it has {}", place(robot, body.line, "body", body.name), wanted,
-                               join_names(mesh->region_names));
+            return input_error("{}the mesh has no region \"{}\"; it has {}", place(robot, body.line, "body", body.name),
+                               wanted, join_names(mesh->region_names));
         }
     }
     for (std::size_t t = 0; t < mesh->tet_count(); ++t) {

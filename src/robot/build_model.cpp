@@ -53,7 +53,8 @@ public:
         for (const MarkerSpec& marker : robot_.markers) add_marker(marker);
         if (!problems_.empty()) return tl::unexpected(Error{Cause::input, problems_});
         Result<sim::Model> model = sim::Model::create(std::move(description_));
-        if (!model) return tl::unexpected(Error{model.error().cause, robot_.file.string() + ": " + model.error().message});
+        if (!model)
+            return tl::unexpected(Error{model.error().cause, robot_.file.string() + ": " + model.error().message});
         return model;
     }
 
@@ -68,10 +69,13 @@ private:
         const Vec3 p = p_m / robot_.unit_m;
         return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
     }
-    std::string show_bounds() const { return fmt::format("the robot reaches from {} to {}", show(box_.low), show(box_.high)); }
+    std::string show_bounds() const {
+        return fmt::format("the robot reaches from {} to {}", show(box_.low), show(box_.high));
+    }
 
     void add_materials() {
-        for (const MaterialSpec& m : robot_.materials) description_.materials.push_back({m.name, m.law, m.density_kg_m3});
+        for (const MaterialSpec& m : robot_.materials)
+            description_.materials.push_back({m.name, m.law, m.density_kg_m3});
         for (const BodySpec& body : robot_.bodies) description_.material_of_region.push_back(body.material);
     }
 
@@ -92,16 +96,20 @@ private:
             collect([&, b = box_of(*box)](const Vec3& p) { return b.contains(p, exact); });
         } else if (const auto* plane = std::get_if<PlaneSelector>(&fixed.selector)) {
             const Vec3 normal = plane->normal / norm(plane->normal);
-            collect([&](const Vec3& p) { return std::fabs(dot(normal, p - robot_.unit_m * plane->point)) < tolerance_; });
+            collect(
+                [&](const Vec3& p) { return std::fabs(dot(normal, p - robot_.unit_m * plane->point)) < tolerance_; });
         } else if (const auto* sphere = std::get_if<SphereSelector>(&fixed.selector)) {
-            collect([&](const Vec3& p) { return norm(p - robot_.unit_m * sphere->center) <= robot_.unit_m * sphere->radius + exact; });
+            collect([&](const Vec3& p) {
+                return norm(p - robot_.unit_m * sphere->center) <= robot_.unit_m * sphere->radius + exact;
+            });
         } else if (const auto* surface = std::get_if<SurfaceSelector>(&fixed.selector)) {
             nodes = select_on_surface(fixed, *surface);
         } else {
             nodes = std::get<NodeSelector>(fixed.selector).nodes;
             for (const int node : nodes) {
                 if (node < static_cast<int>(points.size())) continue;
-                problem(fixed.line, "fixed", fixed.name, fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
+                problem(fixed.line, "fixed", fixed.name,
+                        fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
                 return {};
             }
         }
@@ -121,7 +129,8 @@ private:
             const Vec3& p = description_.mesh.points[n];
             if (!bounds.contains(p, tolerance_)) continue;
             const bool near = std::any_of(surface.triangles.begin(), surface.triangles.end(), [&](const auto& t) {
-                return distance_to_triangle(p, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]) < tolerance_;
+                return distance_to_triangle(p, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]) <
+                       tolerance_;
             });
             if (near) nodes.push_back(static_cast<int>(n));
         }
@@ -141,7 +150,9 @@ private:
         const Box3 box = box_of(load.box);
         std::vector<mesh::Face> faces;
         for (const mesh::Face& face : mesh::boundary_faces(description_.mesh)) {
-            const auto inside = [&](int i) { return box.contains(description_.mesh.points[face.nodes[i]], 1e-9 * box_.diagonal()); };
+            const auto inside = [&](int i) {
+                return box.contains(description_.mesh.points[face.nodes[i]], 1e-9 * box_.diagonal());
+            };
             if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
         }
         if (faces.empty()) {
@@ -226,8 +237,9 @@ private:
         double length = 0;
         for (std::size_t k = 1; k < points.size(); ++k) length += norm(points[k] - points[k - 1]);
         if (spec.target.kind == sim::CableTarget::Kind::shortening_m && spec.target.value >= length) {
-            problem(spec.line, "cable", spec.name, fmt::format("cannot be shortened by {:.6g} mm, it is {:.6g} mm long",
-                                                               1e3 * spec.target.value, 1e3 * length));
+            problem(spec.line, "cable", spec.name,
+                    fmt::format("cannot be shortened by {:.6g} mm, it is {:.6g} mm long", 1e3 * spec.target.value,
+                                1e3 * length));
         }
     }
 
@@ -235,8 +247,9 @@ private:
         if (const auto* point = std::get_if<Vec3>(&spec.place)) {
             Result<sim::Attachment> attachment = attacher_->carried_by_tet(robot_.unit_m * *point, tolerance_);
             if (!attachment) {
-                problem(spec.line, "marker", spec.name, fmt::format("the point {} lies outside every body; {}",
-                                                                    show(robot_.unit_m * *point), show_bounds()));
+                problem(spec.line, "marker", spec.name,
+                        fmt::format("the point {} lies outside every body; {}", show(robot_.unit_m * *point),
+                                    show_bounds()));
                 return;
             }
             description_.markers.push_back({spec.name, std::move(*attachment)});
@@ -249,7 +262,8 @@ private:
         }
         sim::Attachment mean;
         for (std::size_t n = 0; n < corner.size(); ++n) {
-            if (corner[n] && box.contains(description_.mesh.points[n], 1e-9 * box_.diagonal())) mean.nodes.push_back(static_cast<int>(n));
+            if (corner[n] && box.contains(description_.mesh.points[n], 1e-9 * box_.diagonal()))
+                mean.nodes.push_back(static_cast<int>(n));
         }
         if (mean.nodes.empty()) {
             problem(spec.line, "marker", spec.name, "the box holds no corner node of the mesh; " + show_bounds());
@@ -269,6 +283,8 @@ private:
 
 }  // namespace
 
-Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) { return ModelBuilder(robot, std::move(mesh)).build(); }
+Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
+    return ModelBuilder(robot, std::move(mesh)).build();
+}
 
 }  // namespace pliant::robot

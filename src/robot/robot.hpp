@@ -87,7 +87,7 @@ struct CableSpec {
     std::vector<Vec3> points;
     Anchor anchor = Anchor::none;
     bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
-    double eyelet_radius = 0;  ///< length units
+    double eyelet_radius = 0;          ///< length units
     sim::CableTarget target;
     int line = 0;
 };
@@ -113,9 +113,10 @@ struct Robot {
     sim::Program program;
 };
 
-/// Reads and validates; `assignments` are `KEY=VALUE` as of `--set`. An error holds one line per problem, each with file
-/// and line.
-[[nodiscard]] Result<Robot> load_robot(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+/// Reads and validates; `assignments` are `KEY=VALUE` as of `--set`. An error holds one line per problem, each with
+/// file and line.
+[[nodiscard]] Result<Robot> load_robot(const std::filesystem::path& file,
+                                       const std::vector<std::string>& assignments = {});
 [[nodiscard]] Result<Robot> parse_robot(std::string_view text, const std::filesystem::path& file,
                                         const std::vector<std::string>& assignments = {});
 

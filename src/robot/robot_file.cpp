@@ -17,7 +17,7 @@ using config::Reader;
 struct Context {
     Robot& robot;
     Problems& problems;
-    std::vector<std::pair<std::string, Reader>> shapes;  ///< [shape.NAME]: solids that others may use
+    mesh::NamedShapes shapes;  ///< [shape.NAME]: solids that others may use
 };
 
 fs::path beside(const Context& context, const std::string& file) {
@@ -39,7 +39,8 @@ std::string read_name(Reader& reader, std::set<std::string>& taken, std::string_
 }
 
 std::string default_colour(std::size_t index) {
-    constexpr std::string_view colours[] = {"#e07a5f", "#3d6b9e", "#81b29a", "#f2cc8f", "#8d6a9f", "#5f6c7b", "#c9ada7", "#2a9d8f"};
+    constexpr std::string_view colours[] = {"#e07a5f", "#3d6b9e", "#81b29a", "#f2cc8f",
+                                            "#8d6a9f", "#5f6c7b", "#c9ada7", "#2a9d8f"};
     return std::string(colours[index % std::size(colours)]);
 }
 
@@ -48,7 +49,8 @@ material::Law read_law(Reader& reader) {
     const double nu = reader.number("poisson_ratio", 0.45);
     const double E = reader.quantity("youngs_modulus", Dimension::pressure);
     if (!(nu > -1 && nu < 0.5)) {
-        reader.problem("poisson_ratio", fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
+        reader.problem("poisson_ratio",
+                       fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
         return material::neo_hookean(1, 0.3);
     }
     if (reader.has("youngs_modulus") && !(E > 0)) reader.problem("youngs_modulus", "must be above zero");
@@ -59,15 +61,18 @@ material::Law read_law(Reader& reader) {
     if (reader.has("shape_parameter")) {
         // The thesis' way: one weight for all materials, R_omega tells them apart.
         const double R = reader.number("shape_parameter");
-        if (!(R >= 1)) reader.problem("shape_parameter", "R_omega is 1 (rigid) or more");
-        else blend.a = 1 / R;
+        if (!(R >= 1))
+            reader.problem("shape_parameter", "R_omega is 1 (rigid) or more");
+        else
+            blend.a = 1 / R;
     }
     return blend;
 }
 
 void read_materials(Reader& root, Context& context) {
     for (auto& [name, reader] : root.named_tables("material")) {
-        MaterialSpec material{name, read_law(reader), reader.quantity("density", Dimension::density, 1000), reader.text("resin", name),
+        MaterialSpec material{name, read_law(reader), reader.quantity("density", Dimension::density, 1000),
+                              reader.text("resin", name),
                               reader.text("colour", default_colour(context.robot.materials.size()))};
         if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
         const bool hex = material.colour.size() == 7 && material.colour[0] == '#' &&
@@ -88,8 +93,9 @@ int find_material(Reader& reader, const Context& context) {
     }
     if (reader.has("material") && !names.empty()) {
         const std::string near = nearest_name(wanted, names);
-        reader.problem("material", near.empty() ? fmt::format("no material \"{}\"; there is {}", wanted, join_names(names))
-                                                : fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
+        reader.problem("material", near.empty()
+                                       ? fmt::format("no material \"{}\"; there is {}", wanted, join_names(names))
+                                       : fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
     }
     return 0;
 }
@@ -108,7 +114,9 @@ Geometry read_geometry(Reader& reader, Context& context) {
     }
     const config::Value* geometry = reader.raw("geometry");
     if (geometry == nullptr) {
-        reader.problem("", "\"geometry\" is missing; it is a file such as \"finger.stl\" or a shape such as { box = [[0,0,0],[1,1,1]] }");
+        reader.problem("",
+                       "\"geometry\" is missing; it is a file such as \"finger.stl\" or a shape such as { box = "
+                       "[[0,0,0],[1,1,1]] }");
         return MeshRegion{"all"};
     }
     if (std::holds_alternative<std::string>(geometry->data)) {
@@ -138,7 +146,8 @@ void read_mesh(Reader& root, Context& context) {
     MeshSpec& mesh = context.robot.mesh;
     mesh.line = reader.line();
     mesh.order = static_cast<int>(reader.integer("order", 2));
-    if (mesh.order != 1 && mesh.order != 2) reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
+    if (mesh.order != 1 && mesh.order != 2)
+        reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
     if (reader.has("file")) {
         mesh.file = beside(context, reader.text("file"));
         need_file(reader, "file", *mesh.file);
@@ -156,7 +165,8 @@ BoxSelector read_box(Reader& reader) {
         return {};
     }
     const auto& [a, b] = std::pair(corners[0], corners[1]);
-    if (a.x > b.x || a.y > b.y || a.z > b.z) reader.problem("box", "the first corner must be the lower one on every axis");
+    if (a.x > b.x || a.y > b.y || a.z > b.z)
+        reader.problem("box", "the first corner must be the lower one on every axis");
     return {a, b};
 }
 
@@ -194,8 +204,10 @@ Selector read_selector(Reader& reader, const Context& context) {
     }
     NodeSelector selector;
     for (const double value : reader.numbers("nodes")) {
-        if (value < 0 || value != std::floor(value) || value > 2e9) reader.problem("nodes", "holds a value that is no node number");
-        else selector.nodes.push_back(static_cast<int>(value));
+        if (value < 0 || value != std::floor(value) || value > 2e9)
+            reader.problem("nodes", "holds a value that is no node number");
+        else
+            selector.nodes.push_back(static_cast<int>(value));
     }
     return selector;
 }
@@ -211,7 +223,8 @@ void read_supports(Reader& root, Context& context) {
         reader.finish();
         context.robot.fixed.push_back(std::move(fixed));
     }
-    if (context.robot.fixed.empty()) root.problem("", "nothing is fixed; add [[fixed]] with a box that holds one end of the robot");
+    if (context.robot.fixed.empty())
+        root.problem("", "nothing is fixed; add [[fixed]] with a box that holds one end of the robot");
 }
 
 void read_loads(Reader& root, Context& context) {
@@ -222,7 +235,8 @@ void read_loads(Reader& root, Context& context) {
         load.name = read_name(reader, taken, "loads");
         load.box = read_box(reader);
         const auto force = reader.quantities("force", Dimension::force, 3);
-        if (!reader.has("force")) reader.problem("", "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"]");
+        if (!reader.has("force"))
+            reader.problem("", "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"]");
         load.force_N = {force[0], force[1], force[2]};
         reader.finish();
         context.robot.loads.push_back(std::move(load));
@@ -238,7 +252,8 @@ sim::CableTarget read_target(Reader& cable) {
     if (reader.has("length_ratio")) {
         target = {Kind::length_ratio, reader.number("length_ratio")};
         if (!(target.value > 0 && target.value <= 1)) {
-            reader.problem("length_ratio", fmt::format("{} is not possible; a cable gets shorter: above 0, at most 1", target.value));
+            reader.problem("length_ratio",
+                           fmt::format("{} is not possible; a cable gets shorter: above 0, at most 1", target.value));
         }
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
@@ -256,9 +271,11 @@ void read_cables(Reader& root, Context& context) {
         cable.line = reader.line();
         cable.name = read_name(reader, taken, "cables");
         cable.points = reader.vectors("points");
-        if (reader.has("points") && cable.points.size() < 2) reader.problem("points", "a cable needs at least two points");
+        if (reader.has("points") && cable.points.size() < 2)
+            reader.problem("points", "a cable needs at least two points");
         for (std::size_t i = 1; i < cable.points.size(); ++i) {
-            if (cable.points[i] == cable.points[i - 1]) reader.problem("points", fmt::format("points {} and {} are the same", i, i + 1));
+            if (cable.points[i] == cable.points[i - 1])
+                reader.problem("points", fmt::format("points {} and {} are the same", i, i + 1));
         }
         const std::string anchor = reader.choice("anchor", {"none", "first", "last"}, "none");
         cable.anchor = anchor == "first" ? CableSpec::Anchor::first
@@ -301,15 +318,18 @@ void read_program(Reader& root, Context& context) {
         program.steps = 1;
     }
     program.tolerance = reader.number("tolerance", 1e-4);
-    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1)) reader.problem("tolerance", "must be between 1e-10 and 0.1");
+    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
+        reader.problem("tolerance", "must be between 1e-10 and 0.1");
     context.robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
     const std::string solver = reader.choice("solver", {"auto", "newton", "quasi-newton", "local-global"}, "auto");
     program.solver = solver == "newton"         ? sim::Solver::newton
                      : solver == "quasi-newton" ? sim::Solver::quasi_newton
                      : solver == "local-global" ? sim::Solver::local_global
                                                 : sim::Solver::automatic;
-    program.iteration_limit = static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
-    if (program.iteration_limit < 0) reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
+    program.iteration_limit =
+        static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
+    if (program.iteration_limit < 0)
+        reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
     reader.finish();
 }
 
@@ -325,10 +345,19 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     robot.file = document.file;
     robot.name = root.text("name");
     const std::string unit = root.text("length_unit");
-    if (const Result<double> factor = unit_factor(unit, Dimension::length)) robot.unit_m = *factor;
-    else if (root.has("length_unit")) root.problem("length_unit", factor.error().message);
+    if (const Result<double> factor = unit_factor(unit, Dimension::length))
+        robot.unit_m = *factor;
+    else if (root.has("length_unit"))
+        root.problem("length_unit", factor.error().message);
 
-    Context context{robot, problems, root.named_tables("shape")};
+    Context context{robot, problems, {}};
+    if (const config::Value* shapes = root.raw("shape"); shapes != nullptr) {
+        if (const auto* table = std::get_if<config::Table>(&shapes->data)) {
+            for (const auto& [name, value] : *table) context.shapes.emplace_back(name, &value);
+        } else {
+            root.problem("shape", "write [shape.NAME] for each shape");
+        }
+    }
     read_materials(root, context);
     read_mesh(root, context);
     read_bodies(root, context);
