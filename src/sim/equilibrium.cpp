@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/elements.hpp"
 
@@ -38,7 +39,7 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
         }
     }
     for (const Cable& cable : d.cables) {
-        cables_.emplace_back(cable);
+        cables_.emplace_back(cable, view(std::as_const(rest_)));
         rest_length_.push_back(cables_.back().length(view(rest_)));
     }
     double stiffest = 0;

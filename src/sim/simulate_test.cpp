@@ -223,10 +223,11 @@ TEST_CASE("the same input gives the same bits") {
 
 TEST_CASE("a cable's gradient and second gradient agree with differences") {
     Description d = bar(1);
-    const CablePath path(flexor(d.mesh, {}));
+    const Cable cable = flexor(d.mesh, {});
     const auto model = Model::create(std::move(d));
     REQUIRE(model);
     const Equilibrium system(*model);
+    const CablePath path(cable, {system.rest().x.data(), static_cast<std::size_t>(3 * model->node_count())});
     std::srand(4);
     const Eigen::VectorXd x = system.rest().x + 1e-3 * Eigen::VectorXd::Random(system.rest().x.size());
     const Eigen::VectorXd u = Eigen::VectorXd::Random(x.size());
