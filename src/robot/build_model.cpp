@@ -40,6 +40,8 @@ public:
         description_.mesh = std::move(mesh);
         for (const Vec3& p : description_.mesh.points) box_.add(p);
         tolerance_ = surface_share * box_.diagonal();
+        // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
+        box_margin_ = robot.mesh.file ? 0 : 1e-9 * box_.diagonal();
     }
 
     Result<sim::Model> build() {
@@ -85,7 +87,6 @@ private:
 
     std::vector<int> select(const FixedSpec& fixed) {
         const auto& points = description_.mesh.points;
-        const double exact = 1e-9 * box_.diagonal();
         std::vector<int> nodes;
         const auto collect = [&](const auto& inside) {
             for (std::size_t n = 0; n < points.size(); ++n) {
@@ -93,14 +94,14 @@ private:
             }
         };
         if (const auto* box = std::get_if<BoxSelector>(&fixed.selector)) {
-            collect([&, b = box_of(*box)](const Vec3& p) { return b.contains(p, exact); });
+            collect([&, b = box_of(*box)](const Vec3& p) { return b.contains(p, box_margin_); });
         } else if (const auto* plane = std::get_if<PlaneSelector>(&fixed.selector)) {
             const Vec3 normal = plane->normal / norm(plane->normal);
             collect(
                 [&](const Vec3& p) { return std::fabs(dot(normal, p - robot_.unit_m * plane->point)) < tolerance_; });
         } else if (const auto* sphere = std::get_if<SphereSelector>(&fixed.selector)) {
             collect([&](const Vec3& p) {
-                return norm(p - robot_.unit_m * sphere->center) <= robot_.unit_m * sphere->radius + exact;
+                return norm(p - robot_.unit_m * sphere->center) <= robot_.unit_m * sphere->radius + box_margin_;
             });
         } else if (const auto* surface = std::get_if<SurfaceSelector>(&fixed.selector)) {
             nodes = select_on_surface(fixed, *surface);
@@ -151,7 +152,7 @@ private:
         std::vector<mesh::Face> faces;
         for (const mesh::Face& face : mesh::boundary_faces(description_.mesh)) {
             const auto inside = [&](int i) {
-                return box.contains(description_.mesh.points[face.nodes[i]], 1e-9 * box_.diagonal());
+                return box.contains(description_.mesh.points[face.nodes[i]], box_margin_);
             };
             if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
         }
@@ -262,7 +263,7 @@ private:
         }
         sim::Attachment mean;
         for (std::size_t n = 0; n < corner.size(); ++n) {
-            if (corner[n] && box.contains(description_.mesh.points[n], 1e-9 * box_.diagonal()))
+            if (corner[n] && box.contains(description_.mesh.points[n], box_margin_))
                 mean.nodes.push_back(static_cast<int>(n));
         }
         if (mean.nodes.empty()) {
@@ -277,7 +278,8 @@ private:
     const sim::Attacher* attacher_;
     sim::Description description_;
     Box3 box_;
-    double tolerance_ = 0;
+    double tolerance_ = 0;   ///< for what should lie on the surface
+    double box_margin_ = 0;  ///< for what should lie in a box
     std::string problems_;
 };
 
