@@ -152,8 +152,11 @@ namespace {
 Result<Expose> parse_expose(std::string_view rest) {
     Expose e;
     unsigned seen = 0;
-    while (!trim(rest).empty()) {
-        const std::string_view token = take_token(rest);
+    for (rest = trim(rest); !rest.empty(); rest = trim(rest)) {
+        // The image comes last and runs to the end of the line: material names may hold blanks.
+        const bool image = rest.substr(0, 6) == "image=";
+        const std::string_view token = image ? rest : take_token(rest);
+        if (image) rest = {};
         const std::size_t equals = token.find('=');
         if (equals == std::string_view::npos) return input_error("\"{}\" is not KEY=VALUE", token);
         const std::string_view key = token.substr(0, equals);

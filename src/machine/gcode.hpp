@@ -60,7 +60,7 @@ struct Expose {
     int layer = 0;
     int material = 0;  ///< index into the job's materials
     double seconds = 0;
-    std::string image;  ///< name inside the job, without blanks
+    std::string image;  ///< name inside the job; may hold blanks, no control characters
 };
 
 struct Directive {

@@ -72,6 +72,7 @@ TEST_CASE("directives come back as they were written") {
     CHECK(d->expose->material == 1);
     CHECK(d->expose->seconds == 2.5);
     CHECK(d->expose->image == "layers/00012_soft.png");
+    CHECK(parse_directive(write_expose({1, 0, 2, "layers/a b.png"}))->expose->image == "layers/a b.png");
     CHECK(parse_directive(write_stop("M107 P1"))->stop_command == "M107 P1");
 }
 
@@ -80,7 +81,7 @@ TEST_CASE("a damaged directive is an error, never a guess") {
          {";@", ";@expos layer=1", ";@expose", ";@expose layer=1 material=0 seconds=2",
           ";@expose layer=-1 material=0 seconds=2 image=a", ";@stop", ";@stop rm -rf",
           ";@expose layer=1 material=0 seconds=1e9 image=a", ";@expose layer=1 material=0 seconds=nan image=a",
-          ";@expose layer=1 material=0 seconds=2 image=a more=1"}) {
+          ";@expose layer=1 material=0 seconds=2 more=1 image=a"}) {
         CAPTURE(line);
         CHECK_FALSE(parse_directive(line));
     }
