@@ -126,7 +126,7 @@ TEST_CASE("the print survives a damaged, a lost and an unanswered line wherever 
             p.run({n % 2 == 0, 2, {{kind, n}}});
             p.must_pass();
             resends += p.record.resends;
-            if (kind == Fault::Kind::lose_line) CHECK(p.record.resends > 0);
+            if (kind == Fault::Kind::lose_line && n > 1) CHECK(p.record.resends > 0);
         }
     }
     CHECK(resends > 100);

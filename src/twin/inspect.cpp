@@ -50,7 +50,7 @@ public:
     void claim(int material, const job::Image& image, double voxel_mm3) {
         MaterialReport& m = report_.materials[static_cast<std::size_t>(material)];
         const int resin = resins_.number(m.resin);
-        of(wanted_, resin);
+        Values& lacking = of(wanted_, resin);
         Values& cured = of(cured_, resin);
         long long wanted = 0, right = 0;
         for (std::size_t i = 0; i < pixels_; ++i) {
@@ -59,7 +59,7 @@ public:
             wanted += value;
             right += have;
             cured[i] -= have;
-            wanted_[resin][i] += value - have;
+            lacking[i] += value - have;
         }
         m.wanted_mm3 += static_cast<double>(wanted) / 255 * voxel_mm3;
         m.cured_mm3 += static_cast<double>(right) / 255 * voxel_mm3;
