@@ -185,10 +185,9 @@ private:
 
     void close_gaps() {
         const auto between = [&](int row, int column, int down, int right) {
-            const int own = canvas_.look(row, column).second;
             const auto [m0, v0] = canvas_.look(row - down, column - right);
             const auto [m1, v1] = canvas_.look(row + down, column + right);
-            return m0 >= 0 && m1 >= 0 && m0 != m1 && v0 >= own && v1 >= own && (v0 > own || v1 > own);
+            return m0 >= 0 && m1 >= 0 && m0 != m1 && std::max(v0, v1) == 255 && std::min(v0, v1) >= least_gap_value_;
         };
         std::erase_if(nearly_full_, [&](const auto& p) {
             return !between(p.first, p.second, 0, 1) && !between(p.first, p.second, 1, 0);

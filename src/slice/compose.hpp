@@ -37,8 +37,8 @@ struct ComposedLayer {
 /// interface between materials has neither a dark line nor a pixel in two images.
 ///
 /// Where a gap of up to `close_gap_um` between different materials runs through a pixel or along its border, the pixel
-/// gets full light: one that misses at most that width and lies between two pixels of different materials, neither
-/// darker than itself and one of them lighter.
+/// gets full light: one that misses at most that width and lies, in its row or its column, between two pixels of
+/// different materials, one of them full and the other missing no more than that either.
 [[nodiscard]] ComposedLayer compose(const std::vector<Cell>& cells, std::span<const int> material_of,
                                     const Raster& raster, const ComposeRules& rules);
 
