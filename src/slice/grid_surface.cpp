@@ -82,4 +82,16 @@ Vec3 area_vector2(const GridSurface& surface, const Triangle& t) {
     return cross(vector_of(surface.points[t[1]]) - a, vector_of(surface.points[t[2]]) - a);
 }
 
+double volume_mm3(const GridSurface& surface) {
+    double volume6 = 0;
+    for (const Triangle& t : surface.triangles) volume6 += signed_volume6(surface, t);
+    return volume6 / 6 * mm2_per_grid2 * 1e-3 / grid_per_um;
+}
+
+double area_mm2(const GridSurface& surface) {
+    double area2 = 0;
+    for (const Triangle& t : surface.triangles) area2 += norm(area_vector2(surface, t));
+    return area2 / 2 * mm2_per_grid2;
+}
+
 }  // namespace pliant::slice

@@ -39,4 +39,10 @@ struct GridSurface {
 /// Twice the area vector of a triangle, in grid units squared.
 [[nodiscard]] Vec3 area_vector2(const GridSurface& surface, const Triangle& triangle);
 
+/// Enclosed volume of a closed surface, negative where it is inside out.
+[[nodiscard]] double volume_mm3(const GridSurface& surface);
+[[nodiscard]] double area_mm2(const GridSurface& surface);
+
+inline constexpr double mm2_per_grid2 = 1e-6 / (1.0 * grid_per_um * grid_per_um);
+
 }  // namespace pliant::slice

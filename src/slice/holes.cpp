@@ -130,7 +130,7 @@ Holes close_holes(GridSurface& surface) {
     for (const std::vector<int>& loop : RimWalker(rim, surface.points.size()).loops()) {
         const double length = perimeter(surface, loop);
         const double area = fill(surface, loop);
-        holes.area += area;
+        holes.area_mm2 += area * mm2_per_grid2;
         // Mean width of a long crack: area over half the perimeter.
         if (area > 0.5 * length * grid_per_um) note(holes, surface, loop);
     }

@@ -8,7 +8,7 @@ namespace pliant::slice {
 struct Holes {
     int count = 0;           ///< wider than a crack of 1 um; cracks are closed and not counted
     int edges = 0;           ///< around those holes
-    double area = 0;         ///< of the new triangles, grid units squared
+    double area_mm2 = 0;     ///< of all new triangles
     std::int32_t z_low = 0;  ///< of the holes, grid units
     std::int32_t z_high = 0;
 };

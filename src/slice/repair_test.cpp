@@ -14,9 +14,7 @@ using mesh::TriMesh;
 namespace {
 
 double volume_um3(const GridSurface& surface) {
-    double sum = 0;
-    for (const Triangle& t : surface.triangles) sum += signed_volume6(surface, t);
-    return sum / 6 / std::pow(grid_per_um, 3);
+    return volume_mm3(surface) * 1e9;
 }
 
 bool is_closed(const GridSurface& surface) {

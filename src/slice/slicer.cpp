@@ -61,6 +61,7 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
             return tl::unexpected(status.error());
         std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(slicer.warnings_));
         slicer.labels_.push_back(label);
+        slicer.measures_.push_back({volume_mm3(repaired->surface), area_mm2(repaired->surface)});
         slicer.add_body(bodies[i], std::move(repaired->surface));
     }
     if (slicer.layer_count_ == 0)

@@ -31,6 +31,12 @@ struct Settings {
 /// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
 using SlicedLayer = ComposedLayer;
 
+/// Of a repaired body as drawn, before it became pixels.
+struct Measures {
+    double volume_mm3 = 0;
+    double area_mm2 = 0;
+};
+
 /// Repaired bodies, ready to be cut; immutable.
 class Slicer {
 public:
@@ -47,6 +53,9 @@ public:
     /// As messages name them, "body 'finger' (soft)".
     [[nodiscard]] const std::vector<std::string>& body_labels() const { return labels_; }
 
+    /// Per body.
+    [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
+
     /// Layer k lies between k and k + 1 times the layer's thickness and is cut in its middle; 0 <= k < layer_count().
     /// Safe to call from several threads. Cost: the pixels that outlines pass through, plus the images' memory.
     [[nodiscard]] SlicedLayer layer(int k) const;
@@ -58,6 +67,7 @@ private:
     Settings settings_;
     std::vector<Sectioner> sectioners_;  ///< per body
     std::vector<int> material_of_;       ///< per body
+    std::vector<Measures> measures_;     ///< per body
     std::vector<std::string> materials_, labels_, warnings_;
     int layer_count_ = 0;
 };
