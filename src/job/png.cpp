@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <memory>
+
+#include "job/rle_deflate.hpp"
 
 namespace pliant::job {
 namespace {
 
 constexpr std::array<unsigned char, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr int deflate_level = 1;  // layer images are long runs: higher levels cost time and gain little
 constexpr std::size_t max_deflate_ratio = 1032;
 
 void put_u32(std::string& out, std::uint32_t value) {
@@ -33,31 +33,28 @@ void put_chunk(std::string& out, std::string_view type, std::string_view data) {
     put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
+bool is_blank(const std::uint8_t* row, std::size_t width) {
+    return row[0] == 0 && std::memcmp(row, row + 1, width - 1) == 0;
+}
+
 /// Each row as its difference to the one above ("up", filter 2): rows of a solid part repeat, so most become zeros.
+/// Blank rows stay as they are (filter 0), so that they are zeros from end to end.
 std::string filtered(const slice::Image& image) {
     const auto width = static_cast<std::size_t>(image.width_px), height = static_cast<std::size_t>(image.height_px);
     std::string rows((width + 1) * height, '\0');
-    const std::uint8_t* above = nullptr;
     for (std::size_t r = 0; r < height; ++r) {
         const std::uint8_t* row = image.pixels.data() + r * width;
+        const std::uint8_t* above = r > 0 ? row - width : nullptr;
         auto* out = reinterpret_cast<std::uint8_t*>(rows.data() + r * (width + 1));
+        if (is_blank(row, width)) continue;
         *out++ = 2;
         if (above == nullptr) {
             std::memcpy(out, row, width);
         } else if (std::memcmp(row, above, width) != 0) {
             for (std::size_t c = 0; c < width; ++c) out[c] = static_cast<std::uint8_t>(row[c] - above[c]);
         }
-        above = row;
     }
     return rows;
-}
-
-std::string deflated(const std::string& bytes) {
-    const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-        libdeflate_alloc_compressor(deflate_level), &libdeflate_free_compressor);
-    std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-    out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(), out.size()));
-    return out;
 }
 
 }  // namespace
@@ -69,7 +66,7 @@ std::string encode_png(const slice::Image& image) {
     head += std::string_view("\x08\0\0\0\0", 5);  // 8 bits, grey, deflate, adaptive filters, not interlaced
     std::string png(reinterpret_cast<const char*>(signature.data()), signature.size());
     put_chunk(png, "IHDR", head);
-    put_chunk(png, "IDAT", deflated(filtered(image)));
+    put_chunk(png, "IDAT", deflate_runs(filtered(image)));
     put_chunk(png, "IEND", {});
     return png;
 }
