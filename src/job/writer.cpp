@@ -15,11 +15,11 @@ struct Writer::State {
     std::map<std::string, std::pair<int, int>> image_sizes;  ///< of the images added so far
     bool finished = false;
 
-    Status add(const std::string& file, std::string_view bytes, ZipWriter::Method method) {
+    Status add(const std::string& file, std::string bytes, ZipWriter::Method method) {
         if (finished) return failure("{}: is already finished", path.string());
         if (!is_safe_entry_name(file))
             return input_error("{}: entry '{}' must be a plain relative path", path.string(), file);
-        return zip.add(file, bytes, method);
+        return zip.add(file, std::move(bytes), method);
     }
 
     [[nodiscard]] Status check_images(const Manifest& manifest) const {
@@ -64,13 +64,13 @@ Status Writer::add_image(const std::string& file, const Image& image) {
 }
 
 Status Writer::add_image(const std::string& file, EncodedImage image) {
-    if (auto status = state_->add(file, image.png, ZipWriter::Method::store); !status) return status;
+    if (auto status = state_->add(file, std::move(image.png), ZipWriter::Method::store); !status) return status;
     state_->image_sizes[file] = {image.width_px, image.height_px};
     return {};
 }
 
 Status Writer::add_file(const std::string& file, std::string_view bytes) {
-    return state_->add(file, bytes, ZipWriter::Method::deflate);
+    return state_->add(file, std::string(bytes), ZipWriter::Method::deflate);
 }
 
 Status Writer::finish(const Manifest& manifest) {

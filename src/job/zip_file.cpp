@@ -2,8 +2,8 @@
 
 #include <zip.h>
 
-#include <cstdlib>
-#include <cstring>
+#include <algorithm>
+#include <deque>
 
 namespace pliant::job {
 namespace {
@@ -27,6 +27,7 @@ constexpr std::uint64_t max_deflate_ratio = 1032;
 
 struct ZipWriter::State {
     std::string path;
+    std::deque<std::string> entries;  ///< libzip reads them when the archive is closed, so they must outlive it
     Handle archive;
 };
 
@@ -39,21 +40,15 @@ Result<ZipWriter> ZipWriter::create(const std::filesystem::path& path) {
     int code = 0;
     Handle archive(zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
     if (!archive) return failure("{}: cannot be written: {}", path.string(), text_of(code));
-    return ZipWriter(std::make_unique<State>(State{path.string(), std::move(archive)}));
+    return ZipWriter(std::make_unique<State>(State{path.string(), {}, std::move(archive)}));
 }
 
-Status ZipWriter::add(const std::string& name, std::string_view bytes, Method method) {
+Status ZipWriter::add(const std::string& name, std::string bytes, Method method) {
     zip_t* archive = state_->archive.get();
     const auto fail = [&] { return failure("{}: {}: {}", state_->path, name, zip_strerror(archive)); };
-    // libzip reads the bytes when the archive is closed, and frees them then.
-    void* copy = std::malloc(bytes.size() + 1);
-    if (copy == nullptr) return failure("{}: {}: out of memory", state_->path, name);
-    if (!bytes.empty()) std::memcpy(copy, bytes.data(), bytes.size());
-    zip_source_t* source = zip_source_buffer(archive, copy, bytes.size(), 1);
-    if (source == nullptr) {
-        std::free(copy);
-        return fail();
-    }
+    const std::string& kept = state_->entries.emplace_back(std::move(bytes));
+    zip_source_t* source = zip_source_buffer(archive, kept.data(), kept.size(), 0);
+    if (source == nullptr) return fail();
     const zip_int64_t index = zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
     if (index < 0) {
         zip_source_free(source);

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "core/error.hpp"
 
@@ -21,7 +20,7 @@ public:
 
     enum class Method { store, deflate };
     /// Every entry gets the same date, so that equal calls give equal bytes.
-    [[nodiscard]] Status add(const std::string& name, std::string_view bytes, Method method);
+    [[nodiscard]] Status add(const std::string& name, std::string bytes, Method method);
     [[nodiscard]] Status close();
 
 private:
