@@ -12,7 +12,7 @@ struct CableState {
     std::string name;
     double length_ratio = 1;  ///< current length over rest length
     double length_m = 0;
-    double tension_N = 0;     ///< never negative: a cable only pulls
+    double tension_N = 0;  ///< never negative: a cable only pulls
 };
 
 struct ChamberState {
@@ -35,13 +35,13 @@ struct MarkerState {
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
-    double time = 0;        ///< 0 at rest, 1 at the end of the program
+    double time = 0;  ///< 0 at rest, 1 at the end of the program
     bool converged = true;
     int iterations = 0;
-    int substeps = 1;       ///< more than one where the step had to be halved
-    double residual = 0;    ///< norm of the out-of-balance force over the norm of the forces that balance
+    int substeps = 1;     ///< more than one where the step had to be halved
+    double residual = 0;  ///< norm of the out-of-balance force over the norm of the forces that balance
     double wall_s = 0;
-    double min_J = 1;       ///< smallest det F over all integration points
+    double min_J = 1;  ///< smallest det F over all integration points
     std::vector<CableState> cables;
     std::vector<ChamberState> chambers;
     std::vector<SupportState> supports;
@@ -49,11 +49,12 @@ struct Step {
     std::vector<Vec3> positions;  ///< (n, 3)
 };
 
-struct Result {
-    std::vector<Step> steps;     ///< rest state first; only converged ones
-    bool converged = true;       ///< the whole program was run
-    std::string message;         ///< where and why it stopped, if it did
-    std::string solver;          ///< the solver that ran: "newton", "quasi-newton", "local-global"
+struct Trajectory {
+    std::vector<Step> steps;            ///< rest state first; only converged ones
+    bool converged = true;              ///< the whole program was run
+    std::string message;                ///< where and why it stopped, if it did
+    std::vector<std::string> warnings;  ///< where the answer should not be trusted
+    std::string solver;                 ///< the solver that ran: "newton", "quasi-newton", "local-global"
     double setup_s = 0;
     double solve_s = 0;
 };

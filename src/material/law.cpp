@@ -1,0 +1,188 @@
+#include "material/law.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::material {
+namespace {
+
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+
+Vector9 vec(const Matrix3& A) {
+    return Eigen::Map<const Vector9>(A.data());
+}
+
+/// d J / d F.
+Matrix3 cofactor(const Matrix3& F) {
+    Matrix3 C;
+    C.col(0) = F.col(1).cross(F.col(2));
+    C.col(1) = F.col(2).cross(F.col(0));
+    C.col(2) = F.col(0).cross(F.col(1));
+    return C;
+}
+
+/// Adds s * d^2 J / dF^2: the derivative of column j of the cofactor is a cross product with the columns of dF.
+void add_cofactor_gradient(Matrix9& H, const Matrix3& F, double s) {
+    const auto add_skew = [&](int row_block, int column_block, const linalg::Vector3& v, double sign) {
+        // Block (row, column) of d(cofactor) += sign * [v]x.
+        const double f = s * sign;
+        const int r = 3 * row_block;
+        const int c = 3 * column_block;
+        H(r + 0, c + 1) -= f * v[2];
+        H(r + 0, c + 2) += f * v[1];
+        H(r + 1, c + 0) += f * v[2];
+        H(r + 1, c + 2) -= f * v[0];
+        H(r + 2, c + 0) -= f * v[1];
+        H(r + 2, c + 1) += f * v[0];
+    };
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        add_skew(i, k, F.col(j), 1);  // C_i = F_j x F_k
+        add_skew(i, j, F.col(k), -1);
+    }
+}
+
+std::optional<double> psi(const NeoHookean& law, const Matrix3& F) {
+    const double J = F.determinant();
+    return 0.5 * law.shear_Pa * (std::pow(J, -2.0 / 3) * F.squaredNorm() - 3) + 0.5 * law.bulk_Pa * (J - 1) * (J - 1);
+}
+
+Matrix3 first_piola(const NeoHookean& law, const Matrix3& F) {
+    const double J = F.determinant();
+    const double s = law.shear_Pa * std::pow(J, -2.0 / 3);
+    return s * F + (law.bulk_Pa * (J - 1) - s * F.squaredNorm() / (3 * J)) * cofactor(F);
+}
+
+Matrix9 first_piola_gradient(const NeoHookean& law, const Matrix3& F) {
+    const double J = F.determinant();
+    const double I1 = F.squaredNorm();
+    const double s = law.shear_Pa * std::pow(J, -2.0 / 3);
+    const Vector9 f = vec(F);
+    const Vector9 c = vec(cofactor(F));
+    const double cross_term = -2 * s / (3 * J);
+    Matrix9 H = (law.bulk_Pa + 5 * s * I1 / (9 * J * J)) * (c * c.transpose());
+    H += cross_term * (f * c.transpose() + c * f.transpose());
+    H.diagonal().array() += s;
+    add_cofactor_gradient(H, F, law.bulk_Pa * (J - 1) - s * I1 / (3 * J));
+    return H;
+}
+
+std::optional<double> psi(const ShapeBlend& law, const Matrix3& F) {
+    if (law.a != 1) return std::nullopt;
+    return 0.5 * law.weight_Pa * (F - linalg::nearest_rotation(F)).squaredNorm();
+}
+
+Matrix3 first_piola(const ShapeBlend& law, const Matrix3& F) {
+    const Matrix3 target = law.a * linalg::nearest_rotation(F) + (1 - law.a) * std::cbrt(1 / F.determinant()) * F;
+    return law.weight_Pa * (F - target);
+}
+
+Matrix9 first_piola_gradient(const ShapeBlend& law, const Matrix3& F) {
+    const double J = F.determinant();
+    const double soft = (1 - law.a) * std::cbrt(1 / J);
+    Matrix9 H = -law.a * linalg::nearest_rotation_gradient(linalg::signed_svd(F));
+    H += soft / (3 * J) * (vec(F) * vec(cofactor(F)).transpose());
+    H.diagonal().array() += 1 - soft;
+    return law.weight_Pa * H;
+}
+
+Matrix3 green_strain(const Matrix3& F) {
+    return 0.5 * (F.transpose() * F - Matrix3::Identity());
+}
+
+/// Second Piola-Kirchhoff stress for a (rate of) Green strain: linear in it.
+Matrix3 second_piola(const StVenantKirchhoff& law, const Matrix3& E) {
+    return 2 * law.shear_Pa * E + law.lame_Pa * E.trace() * Matrix3::Identity();
+}
+
+std::optional<double> psi(const StVenantKirchhoff& law, const Matrix3& F) {
+    const Matrix3 E = green_strain(F);
+    return law.shear_Pa * E.squaredNorm() + 0.5 * law.lame_Pa * E.trace() * E.trace();
+}
+
+Matrix3 first_piola(const StVenantKirchhoff& law, const Matrix3& F) {
+    return F * second_piola(law, green_strain(F));
+}
+
+Matrix9 first_piola_gradient(const StVenantKirchhoff& law, const Matrix3& F) {
+    const Matrix3 S = second_piola(law, green_strain(F));
+    Matrix9 H;
+    for (int k = 0; k < 9; ++k) {
+        Matrix3 dF = Matrix3::Zero();
+        dF(k % 3, k / 3) = 1;
+        const Matrix3 dE = 0.5 * (F.transpose() * dF + dF.transpose() * F);
+        H.col(k) = vec(dF * S + F * second_piola(law, dE));
+    }
+    return H;
+}
+
+}  // namespace
+
+Moduli moduli(double youngs_modulus_Pa, double poisson_ratio) {
+    return {youngs_modulus_Pa / (2 * (1 + poisson_ratio)), youngs_modulus_Pa / (3 * (1 - 2 * poisson_ratio))};
+}
+
+NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {m.shear_Pa, m.bulk_Pa};
+}
+
+StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
+}
+
+ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {3 * m.bulk_Pa, (1 - 2 * poisson_ratio) / (1 + poisson_ratio)};
+}
+
+double shape_parameter_of_thesis(double material_ratio) {
+    return (0.114 * material_ratio + 1.665) * material_ratio - 0.766;
+}
+
+double shape_parameter_small_strain(double material_ratio) {
+    return (3 * material_ratio - 1) / 2;
+}
+
+std::optional<double> energy(const Law& law, const Matrix3& F) {
+    return std::visit([&](const auto& l) { return psi(l, F); }, law);
+}
+
+Matrix3 stress(const Law& law, const Matrix3& F) {
+    return std::visit([&](const auto& l) { return first_piola(l, F); }, law);
+}
+
+Matrix9 tangent(const Law& law, const Matrix3& F) {
+    return std::visit([&](const auto& l) { return first_piola_gradient(l, F); }, law);
+}
+
+bool has_energy(const Law& law) {
+    const auto* blend = std::get_if<ShapeBlend>(&law);
+    return blend == nullptr || blend->a == 1;
+}
+
+double stiffness_bound(const Law& law) {
+    struct Bound {
+        double operator()(const NeoHookean& l) const { return std::max(3 * l.bulk_Pa, 2 * l.shear_Pa); }
+        double operator()(const ShapeBlend& l) const { return l.weight_Pa; }
+        double operator()(const StVenantKirchhoff& l) const {
+            return std::max(3 * l.lame_Pa + 2 * l.shear_Pa, 2 * l.shear_Pa);
+        }
+    };
+    return std::visit(Bound{}, law);
+}
+
+std::string_view name(const Law& law) {
+    struct Name {
+        std::string_view operator()(const NeoHookean&) const { return "neo-hookean"; }
+        std::string_view operator()(const ShapeBlend&) const { return "shape-blend"; }
+        std::string_view operator()(const StVenantKirchhoff&) const { return "st-venant-kirchhoff"; }
+    };
+    return std::visit(Name{}, law);
+}
+
+}  // namespace pliant::material

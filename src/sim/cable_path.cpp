@@ -1,0 +1,101 @@
+#include "sim/cable_path.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace pliant::sim {
+
+CablePath::CablePath(const Cable& cable, std::span<const double> rest) {
+    for (std::size_t k = 0; k + 1 < cable.points.size(); ++k) {
+        const Attachment& from = cable.points[k];
+        const Attachment& to = cable.points[k + 1];
+        std::map<int, double> weight;
+        for (std::size_t i = 0; i < to.nodes.size(); ++i) weight[to.nodes[i]] += to.weights[i];
+        for (std::size_t i = 0; i < from.nodes.size(); ++i) weight[from.nodes[i]] -= from.weights[i];
+        Segment segment;
+        for (const auto& [node, w] : weight) {
+            segment.nodes.push_back(node);
+            segment.weights.push_back(w);
+        }
+        if (to.nodes.empty()) segment.offset += to.fixed;
+        if (from.nodes.empty()) segment.offset -= from.fixed;
+        segments_.push_back(std::move(segment));
+    }
+    const double total = length(rest);
+    met_length_m_ = 1e-3 * total;
+    for (const Segment& segment : segments_)
+        met_length_m_ = std::min(met_length_m_, 0.25 * norm(vector_of(segment, rest)));
+    met_length_m_ = std::max(met_length_m_, 1e-9 * total);
+}
+
+Vec3 CablePath::vector_of(const Segment& segment, std::span<const double> x) {
+    Vec3 d = segment.offset;
+    for (std::size_t i = 0; i < segment.nodes.size(); ++i) {
+        const double* p = x.data() + 3 * static_cast<std::size_t>(segment.nodes[i]);
+        d += segment.weights[i] * Vec3{p[0], p[1], p[2]};
+    }
+    return d;
+}
+
+double CablePath::length(std::span<const double> x) const {
+    double sum = 0;
+    for (const Segment& segment : segments_) {
+        const double l = norm(vector_of(segment, x));
+        sum += l >= met_length_m_ ? l : 0.5 * (l * l / met_length_m_ + met_length_m_);
+    }
+    return sum;
+}
+
+int CablePath::closed_segment(std::span<const double> x) const {
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        if (norm(vector_of(segments_[k], x)) < met_length_m_) return static_cast<int>(k);
+    }
+    return -1;
+}
+
+void CablePath::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
+    for (const Segment& segment : segments_) {
+        const Vec3 d = vector_of(segment, x);
+        const double l = std::max(norm(d), met_length_m_);
+        for (std::size_t i = 0; i < segment.nodes.size(); ++i) {
+            const Vec3 f = (factor * segment.weights[i] / l) * d;
+            double* target = forces.data() + 3 * static_cast<std::size_t>(segment.nodes[i]);
+            target[0] += f.x;
+            target[1] += f.y;
+            target[2] += f.z;
+        }
+    }
+}
+
+void CablePath::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
+                            const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    for (const Segment& segment : segments_) {
+        const Vec3 d = vector_of(segment, x);
+        const double l = std::max(norm(d), met_length_m_);
+        const Vec3 t = norm(d) >= met_length_m_ ? d / l : Vec3{};
+        for (std::size_t b = 0; b < segment.nodes.size(); ++b) {
+            const int j = free_index[segment.nodes[b]];
+            if (j < 0) continue;
+            for (std::size_t a = 0; a < segment.nodes.size(); ++a) {
+                const int i = free_index[segment.nodes[a]];
+                if (i < j) continue;
+                const double scale = factor * segment.weights[a] * segment.weights[b] / l;
+                pattern.add_block(values, i, j, [&](int r, int c) {
+                    const auto row = static_cast<std::size_t>(r);
+                    const auto column = static_cast<std::size_t>(c);
+                    return scale * ((r == c ? 1.0 : 0.0) - t[row] * t[column]);
+                });
+            }
+        }
+    }
+}
+
+void CablePath::append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+    for (const Segment& segment : segments_) {
+        std::vector<int> clique;
+        for (const int node : segment.nodes) clique.push_back(free_index[node]);
+        cliques.push_back(std::move(clique));
+    }
+}
+
+}  // namespace pliant::sim

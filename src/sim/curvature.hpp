@@ -1,0 +1,55 @@
+// Three ways to turn forces into motion. The step solver asks for H^-1 times a few vectors, where H is
+//   local-global   the pre-factored weighted Laplacian: one step is the thesis' local and global step (A.1 to A.4)
+//   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
+//   newton         the tangent stiffness with the cables' own stiffness, factorised anew
+// so that elements, constraints and line search are the same for all.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string_view>
+
+#include "sim/equilibrium.hpp"
+
+namespace pliant::sim {
+
+class Curvature {
+public:
+    virtual ~Curvature() = default;
+    [[nodiscard]] virtual std::string_view name() const = 0;
+    [[nodiscard]] virtual int default_iteration_limit() const = 0;
+
+    /// Called at the start of each step of the program.
+    virtual void restart() {}
+    /// Called before solve() at a new state; `cautious` asks for a positive definite H. False: no H could be made.
+    [[nodiscard]] virtual bool refresh(const State& state, bool cautious) = 0;
+    /// columns (3 free, k) <- H^-1 columns.
+    virtual void solve(Eigen::MatrixXd& columns) = 0;
+    /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed tension.
+    virtual void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
+        (void)step;
+        (void)change;
+    }
+};
+
+/// The weighted Laplacian of a model, factorised once; shared by the first two and by the prediction of each step.
+class FactoredLaplacian {
+public:
+    explicit FactoredLaplacian(const Model& model);
+    FactoredLaplacian(FactoredLaplacian&&) noexcept;
+    ~FactoredLaplacian();
+    /// columns (3 free, k) <- L^-1 columns.
+    void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
+    /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
+    [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+[[nodiscard]] std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian);
+[[nodiscard]] std::unique_ptr<Curvature> make_quasi_newton(const FactoredLaplacian& laplacian);
+[[nodiscard]] std::unique_ptr<Curvature> make_newton(const Equilibrium& system);
+
+}  // namespace pliant::sim

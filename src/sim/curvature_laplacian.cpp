@@ -1,0 +1,71 @@
+#include "linalg/cholesky.hpp"
+#include "sim/curvature.hpp"
+#include "sim/elements.hpp"
+
+namespace pliant::sim {
+
+struct FactoredLaplacian::State {
+    const Model* model;
+    linalg::Cholesky factor;
+};
+
+namespace {
+
+linalg::SymmetricPattern scalar_pattern(const Model& model) {
+    return linalg::make_pattern(model.free_count(), 1, model.elements().cliques(model.free_index()));
+}
+
+/// Interleaved x y z of one vector <-> three right-hand sides of the scalar matrix.
+void solve_components(const linalg::Cholesky& factor, Eigen::Ref<Eigen::VectorXd> vector) {
+    const Eigen::Index n = vector.size() / 3;
+    Eigen::Map<Eigen::MatrixXd> interleaved(vector.data(), 3, n);
+    Eigen::MatrixXd columns = interleaved.transpose();
+    factor.solve({columns.data(), static_cast<std::size_t>(columns.size())}, 3);
+    interleaved = columns.transpose();
+}
+
+/// The thesis' iteration: every tet's target shape against the current one, reconciled by the constant matrix.
+class LocalGlobal final : public Curvature {
+public:
+    explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
+    [[nodiscard]] std::string_view name() const override { return "local-global"; }
+    [[nodiscard]] int default_iteration_limit() const override { return 20000; }
+    [[nodiscard]] bool refresh(const sim::State&, bool) override { return true; }
+    void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }
+
+private:
+    const FactoredLaplacian* laplacian_;
+};
+
+}  // namespace
+
+FactoredLaplacian::FactoredLaplacian(const Model& model) {
+    const linalg::SymmetricPattern pattern = scalar_pattern(model);
+    std::vector<double> values(pattern.entries(), 0.0);
+    model.elements().add_laplacian(model.free_index(), pattern, values);
+    state_ = std::make_unique<State>(State{&model, linalg::Cholesky(pattern)});
+    // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
+    [[maybe_unused]] const bool done = state_->factor.factorise(values);
+}
+
+FactoredLaplacian::FactoredLaplacian(FactoredLaplacian&&) noexcept = default;
+FactoredLaplacian::~FactoredLaplacian() = default;
+
+void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) solve_components(state_->factor, columns.col(k));
+}
+
+Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const {
+    Eigen::VectorXd coupling = Eigen::VectorXd::Zero(support_motion.size());
+    state_->model->elements().apply_laplacian({support_motion.data(), static_cast<std::size_t>(support_motion.size())},
+                                              {coupling.data(), static_cast<std::size_t>(coupling.size())});
+    Eigen::VectorXd motion = -system.restrict_to_free(coupling);
+    solve_components(state_->factor, motion);
+    return motion;
+}
+
+std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian) {
+    return std::make_unique<LocalGlobal>(laplacian);
+}
+
+}  // namespace pliant::sim

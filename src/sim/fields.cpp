@@ -1,0 +1,43 @@
+#include "sim/fields.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "sim/elements.hpp"
+#include "sim/model.hpp"
+
+namespace pliant::sim {
+namespace {
+
+double von_mises(const linalg::Matrix3& cauchy) {
+    const linalg::Matrix3 deviator = cauchy - cauchy.trace() / 3 * linalg::Matrix3::Identity();
+    return std::sqrt(1.5 * deviator.squaredNorm());
+}
+
+}  // namespace
+
+Fields compute_fields(const Model& model, std::span<const Vec3> positions) {
+    const Elements& elements = model.elements();
+    const std::size_t count = elements.tet_count();
+    const std::span<const double> x(&positions.data()->x, 3 * positions.size());
+    Fields fields{std::vector<double>(count), std::vector<double>(count), std::vector<double>(count),
+                  std::vector<double>(count)};
+    parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const double share = 1.0 / elements.points_per_tet();
+            for (int q = 0; q < elements.points_per_tet(); ++q) {
+                const linalg::Matrix3 F = elements.deformation_gradient(t, q, x);
+                const double J = F.determinant();
+                const linalg::Matrix3 cauchy = material::stress(elements.law(t), F) * F.transpose() / J;
+                fields.J[t] += share * J;
+                fields.von_mises_Pa[t] += share * von_mises(cauchy);
+                fields.max_stretch[t] += share * linalg::signed_svd(F).sigma[0];
+                fields.energy_density_Pa[t] += share * material::energy(elements.law(t), F).value_or(0);
+            }
+        }
+    });
+    return fields;
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,160 @@
+#include "sim/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+Status check_attachment(const Attachment& point, int nodes, const std::string& owner) {
+    if (point.nodes.size() != point.weights.size())
+        return input_error("{}: as many weights as nodes are needed", owner);
+    double sum = 0;
+    for (const double weight : point.weights) sum += weight;
+    for (const int node : point.nodes) {
+        if (node < 0 || node >= nodes) return input_error("{}: node {} does not exist", owner, node);
+    }
+    if (!point.nodes.empty() && !(std::fabs(sum - 1) < 1e-9)) return input_error("{}: weights do not sum to 1", owner);
+    if (!is_finite(point.fixed)) return input_error("{}: position is not finite", owner);
+    return {};
+}
+
+Status check_mesh(const Description& d) {
+    const mesh::TetMesh& mesh = d.mesh;
+    if (mesh.tet_count() == 0) return input_error("the mesh holds no tetrahedra");
+    if (mesh.region.size() != mesh.tet_count()) return input_error("the mesh needs one region per tetrahedron");
+    const int nodes = static_cast<int>(mesh.points.size());
+    for (const int node : mesh.nodes) {
+        if (node < 0 || node >= nodes) return input_error("the mesh names node {}, it has {}", node, nodes);
+    }
+    for (const Vec3& p : mesh.points) {
+        if (!is_finite(p)) return input_error("the mesh holds a point that is not finite");
+    }
+    for (const int region : mesh.region) {
+        if (region < 0 || region >= static_cast<int>(d.material_of_region.size())) {
+            return input_error("region {} has no material", region);
+        }
+    }
+    for (const int m : d.material_of_region) {
+        if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
+    }
+    return {};
+}
+
+Status check_cable(const Cable& cable, int nodes) {
+    const std::string owner = "cable \"" + cable.name + "\"";
+    if (cable.points.size() < 2) return input_error("{}: at least two points are needed", owner);
+    for (const Attachment& point : cable.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    const double value = cable.target.value;
+    const bool ratio = cable.target.kind == CableTarget::Kind::length_ratio;
+    if (!std::isfinite(value) || value < 0 || (ratio && value == 0)) {
+        return input_error("{}: the target {} is not possible", owner, value);
+    }
+    return {};
+}
+
+Status check_loads(const Description& d, int nodes) {
+    for (const Load& load : d.loads) {
+        const Attachment spread{load.nodes, load.shares, {}};
+        if (load.nodes.empty()) return input_error("load \"{}\": acts on nothing", load.name);
+        if (Status status = check_attachment(spread, nodes, "load \"" + load.name + "\""); !status) return status;
+        if (!is_finite(load.force_N)) return input_error("load \"{}\": the force is not finite", load.name);
+    }
+    for (const Marker& marker : d.markers) {
+        if (Status status = check_attachment(marker.point, nodes, "marker \"" + marker.name + "\""); !status)
+            return status;
+    }
+    return is_finite(d.gravity_m_s2) ? Status{} : input_error("gravity is not finite");
+}
+
+/// Numbers the free nodes; nodes that no tet uses are held too, they have no stiffness.
+Status number_free_nodes(const Description& d, std::vector<int>& free_index, int& count) {
+    const int nodes = static_cast<int>(d.mesh.points.size());
+    std::vector<int> owner(nodes, -1);
+    for (std::size_t s = 0; s < d.supports.size(); ++s) {
+        const Support& support = d.supports[s];
+        if (support.nodes.empty()) return input_error("fixed \"{}\": catches no node", support.name);
+        for (const int node : support.nodes) {
+            if (node < 0 || node >= nodes)
+                return input_error("fixed \"{}\": node {} does not exist", support.name, node);
+            if (owner[node] >= 0 && owner[node] != static_cast<int>(s)) {
+                return input_error("fixed \"{}\" and fixed \"{}\" share nodes; let each node belong to one",
+                                   d.supports[owner[node]].name, support.name);
+            }
+            owner[node] = static_cast<int>(s);
+        }
+    }
+    std::vector<bool> used(nodes, false);
+    for (const int node : d.mesh.nodes) used[node] = true;
+    free_index.assign(nodes, -1);
+    count = 0;
+    for (int node = 0; node < nodes; ++node) {
+        if (used[node] && owner[node] < 0) free_index[node] = count++;
+    }
+    return {};
+}
+
+/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium.
+Status check_held(const Description& d) {
+    const auto& mesh = d.mesh;
+    std::vector<int> root(mesh.points.size());
+    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
+    const auto find = [&](int node) {
+        while (root[node] != node) node = root[node] = root[root[node]];
+        return node;
+    };
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const int first = find(mesh.tet(t)[0]);
+        for (const int node : mesh.tet(t)) root[find(node)] = first;
+    }
+    std::vector<bool> held(mesh.points.size(), false);
+    for (const Support& support : d.supports) {
+        for (const int node : support.nodes) held[find(node)] = true;
+    }
+    std::size_t loose = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) loose += held[find(mesh.tet(t)[0])] ? 0 : 1;
+    if (loose == 0) return {};
+    if (loose == mesh.tet_count()) return input_error("nothing is fixed; add a [[fixed]] that holds the robot");
+    return input_error("a piece of {} of the {} tetrahedra is connected to nothing that is fixed", loose,
+                       mesh.tet_count());
+}
+
+}  // namespace
+
+Model::Model() = default;
+Model::Model(Model&&) noexcept = default;
+Model& Model::operator=(Model&&) noexcept = default;
+Model::~Model() = default;
+
+Result<Model> Model::create(Description description) {
+    Model model;
+    const int nodes = static_cast<int>(description.mesh.points.size());
+    Status status = check_mesh(description);
+    if (status) status = check_loads(description, nodes);
+    for (std::size_t c = 0; status && c < description.cables.size(); ++c)
+        status = check_cable(description.cables[c], nodes);
+    if (status) status = number_free_nodes(description, model.free_index_, model.free_count_);
+    if (status) status = check_held(description);
+    if (!status) return tl::unexpected(status.error());
+    model.description_ = std::move(description);
+    Result<Elements> elements = Elements::create(model.description_);
+    if (!elements) return tl::unexpected(elements.error());
+    model.elements_ = std::make_unique<Elements>(std::move(*elements));
+    return model;
+}
+
+Vec3 position(const Attachment& point, std::span<const double> x) {
+    if (point.nodes.empty()) return point.fixed;
+    Vec3 sum;
+    for (std::size_t i = 0; i < point.nodes.size(); ++i) {
+        const double* p = x.data() + 3 * static_cast<std::size_t>(point.nodes[i]);
+        sum += point.weights[i] * Vec3{p[0], p[1], p[2]};
+    }
+    return sum;
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,213 @@
+#include "sim/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+
+#include "material/law.hpp"
+#include "sim/curvature.hpp"
+#include "sim/step_solver.hpp"
+
+namespace pliant::sim {
+namespace {
+
+constexpr double smallest_share = 1.0 / 64;  // of a step of the program
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The walk through the program: the last two converged states and the solver.
+class Run {
+public:
+    Run(const Model& model, const Program& program)
+        : model_(model),
+          program_(program),
+          system_(model),
+          laplacian_(model),
+          state_(system_.rest()),
+          previous_(state_) {
+        curvature_ = make_curvature(program.solver);
+    }
+
+    [[nodiscard]] std::string_view solver_name() const { return curvature_->name(); }
+
+    /// Goes to `time` in as many pieces as it takes. False: stuck; `message` says why.
+    bool advance(double time, Step& step, const Progress& progress, std::string& message) {
+        const double whole = 1.0 / program_.steps;
+        double piece = time - time_;
+        step.substeps = 0;
+        while (time_ < time) {
+            const double target = time_ + piece >= time - 1e-9 * whole ? time : time_ + piece;
+            State next = state_;
+            const StepOutcome outcome = attempt(target, next, progress);
+            step.iterations += outcome.iterations;
+            if (outcome.converged) {
+                previous_ = std::move(state_);
+                previous_time_ = time_;
+                state_ = std::move(next);
+                time_ = target;
+                evaluation_ = outcome.evaluation;
+                ++step.substeps;
+                continue;
+            }
+            message = outcome.reason;
+            piece *= 0.5;
+            if (progress.cancelled() || piece < smallest_share * whole) return false;
+        }
+        return true;
+    }
+
+    void describe(Step& step) const {
+        step.residual = evaluation_.residual;
+        step.min_J = evaluation_.min_J;
+        const auto& d = model_.description();
+        const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
+        for (std::size_t c = 0; c < d.cables.size(); ++c) {
+            const double length = system_.cables()[c].length(x);
+            step.cables.push_back({d.cables[c].name, length / system_.rest_length_m(c), length,
+                                   state_.tension[static_cast<Eigen::Index>(c)]});
+        }
+        for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});
+        for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
+        for (int n = 0; n < model_.node_count(); ++n) step.positions.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
+    }
+
+    /// A gap that has closed between two guide points: from here on the flanks would touch.
+    void warn(int step, std::vector<std::string>& warnings) {
+        const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
+        for (std::size_t c = 0; c < system_.cables().size(); ++c) {
+            const int segment = system_.cables()[c].closed_segment(x);
+            if (segment < 0 || !warned_.insert(c).second) continue;
+            warnings.push_back(
+                fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
+                            "closed, and contact "
+                            "of its flanks is not modelled",
+                            step, segment + 1, segment + 2, model_.description().cables[c].name));
+        }
+    }
+
+    void evaluate_rest() { evaluation_ = system_.evaluate(state_, system_.controls(0)); }
+
+private:
+    std::unique_ptr<Curvature> make_curvature(Solver solver) const {
+        switch (solver) {
+            case Solver::local_global:
+                return make_local_global(laplacian_);
+            case Solver::quasi_newton:
+                return make_quasi_newton(laplacian_);
+            case Solver::newton:
+                return make_newton(system_);
+            case Solver::automatic:
+                break;
+        }
+        const bool conservative =
+            std::all_of(model_.description().materials.begin(), model_.description().materials.end(),
+                        [](const Material& m) { return material::has_energy(m.law); });
+        return conservative ? make_newton(system_) : make_quasi_newton(laplacian_);
+    }
+
+    /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
+    /// out, as it was.
+    StepOutcome attempt(double time, State& next, const Progress& progress) {
+        const Controls controls = system_.controls(time);
+        next = follow_supports(state_, controls);
+        if (previous_time_ < time_) {
+            State onward = state_;
+            const double factor = (time - time_) / (time_ - previous_time_);
+            onward.x += factor * (state_.x - previous_.x);
+            onward.tension = (onward.tension + factor * (state_.tension - previous_.tension)).cwiseMax(0.0);
+            system_.place_supports(controls, onward.x);
+            if (system_.evaluate(onward, controls).min_J > 0) next = std::move(onward);
+        }
+        const Evaluation start = system_.evaluate(next, controls);
+        if (!(start.min_J > 0)) {
+            StepOutcome outcome;
+            outcome.reason = "the prescribed motion turns a tetrahedron inside out";
+            return outcome;
+        }
+        curvature_->restart();
+        return solve_step(system_, *curvature_, controls, {program_.tolerance, program_.iteration_limit}, next,
+                          progress);
+    }
+
+    [[nodiscard]] State follow_supports(const State& from, const Controls& controls) const {
+        State next = from;
+        system_.place_supports(controls, next.x);
+        const Eigen::VectorXd motion = next.x - from.x;
+        if (motion.squaredNorm() > 0) system_.add_free(laplacian_.follow(system_, motion), 1, next.x);
+        return next;
+    }
+
+    [[nodiscard]] Vec3 reaction(const Support& support) const {
+        Vec3 sum;
+        for (const int node : support.nodes) {
+            const auto force = evaluation_.out_of_balance.segment<3>(3 * node);
+            sum += Vec3{force[0], force[1], force[2]};
+        }
+        return sum;
+    }
+
+    const Model& model_;
+    const Program& program_;
+    Equilibrium system_;
+    FactoredLaplacian laplacian_;
+    std::unique_ptr<Curvature> curvature_;
+    State state_;
+    State previous_;
+    double time_ = 0;
+    double previous_time_ = 0;
+    Evaluation evaluation_;
+    std::set<std::size_t> warned_;  ///< cables
+};
+
+}  // namespace
+
+Trajectory run(const Model& model, const Program& program, Progress& progress) {
+    Trajectory result;
+    const auto start = std::chrono::steady_clock::now();
+    Run walk(model, program);
+    result.solver = walk.solver_name();
+    Step rest;
+    walk.evaluate_rest();
+    walk.describe(rest);
+    result.steps.push_back(std::move(rest));
+    result.setup_s = seconds_since(start);
+    for (int k = 1; k <= program.steps; ++k) {
+        progress.advance("simulate", static_cast<double>(k - 1) / program.steps);
+        const auto begin = std::chrono::steady_clock::now();
+        Step step;
+        step.index = k;
+        step.time = static_cast<double>(k) / program.steps;
+        std::string message;
+        if (!walk.advance(step.time, step, progress, message)) {
+            result.converged = false;
+            result.message = fmt::format("stopped at step {} of {}: {}", k, program.steps, message);
+            break;
+        }
+        walk.describe(step);
+        walk.warn(k, result.warnings);
+        step.wall_s = seconds_since(begin);
+        result.solve_s += step.wall_s;
+        result.steps.push_back(std::move(step));
+    }
+    progress.advance("simulate", 1);
+    return result;
+}
+
+std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    const std::span<const double> x(&positions.data()->x, 3 * positions.size());
+    std::vector<std::vector<Vec3>> cables;
+    for (const Cable& cable : model.description().cables) {
+        std::vector<Vec3> points;
+        for (const Attachment& point : cable.points) points.push_back(position(point, x));
+        cables.push_back(std::move(points));
+    }
+    return cables;
+}
+
+}  // namespace pliant::sim

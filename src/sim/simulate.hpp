@@ -1,0 +1,28 @@
+// Runs a program: from rest to the targets, step by step.
+#pragma once
+
+#include <string>
+
+#include "core/progress.hpp"
+#include "sim/model.hpp"
+#include "sim/trajectory.hpp"
+
+namespace pliant::sim {
+
+enum class Solver { automatic, newton, quasi_newton, local_global };
+
+struct Program {
+    int steps = 30;
+    double tolerance = 1e-4;
+    Solver solver = Solver::automatic;
+    int iteration_limit = 0;  ///< per solved step; 0: the solver's own
+};
+
+/// A step that does not converge is halved, and halved again, down to 1/64 of a step. A program that cannot finish
+/// keeps the steps that converged and says in Trajectory::message at which step it stopped and why.
+[[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress);
+
+/// Positions of the points of every cable for node positions (n, 3): [cable][point].
+[[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);
+
+}  // namespace pliant::sim

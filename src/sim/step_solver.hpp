@@ -1,0 +1,32 @@
+// Brings one state to equilibrium at fixed controls: sequential quadratic programming with cables as constraints.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "sim/curvature.hpp"
+#include "sim/equilibrium.hpp"
+
+namespace pliant::sim {
+
+struct StepSettings {
+    double tolerance = 1e-4;
+    int iteration_limit = 0;  ///< 0: the curvature's own
+};
+
+struct StepOutcome {
+    bool converged = false;
+    int iterations = 0;
+    Evaluation evaluation;  ///< of the state that is left behind
+    std::string reason;     ///< why it did not converge
+};
+
+/// Minimises the energy subject to length <= allowed length for every cable driven by length; the multiplier is the
+/// tension, so a cable only pulls. Every accepted state has min_J > 0 and a lower merit (energy plus the price of
+/// excess length) or, where a law has no energy, a lower residual. Precondition: min_J > 0 at `state`.
+/// Source of the constraint step: Nocedal and Wright, Numerical Optimization, chapter 18.
+[[nodiscard]] StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
+                                     const StepSettings& settings, State& state, const Progress& progress);
+
+}  // namespace pliant::sim
