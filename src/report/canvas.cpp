@@ -17,7 +17,7 @@ namespace {
 void select(cairo_t* cairo, const Font& font) {
     cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                            font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cairo, font.size_px);
+    cairo_set_font_size(cairo, font.size);
 }
 
 double advance_width(cairo_t* cairo, const std::string& text, const Font& font) {
@@ -71,23 +71,26 @@ Canvas::Canvas(int width_px, int height_px, const Colour& background) : state_(s
     state_->cairo.reset(cairo_create(state_->surface.get()));
     cairo_set_source_rgb(state_->cairo.get(), background.r, background.g, background.b);
     cairo_paint(state_->cairo.get());
+    const double scale = height_px / height();
+    cairo_scale(state_->cairo.get(), scale, scale);
+    width_ = width_px / scale;
 }
 Canvas::Canvas(Canvas&&) noexcept = default;
 Canvas& Canvas::operator=(Canvas&&) noexcept = default;
 Canvas::~Canvas() = default;
 
-void Canvas::image(const Image& image, int x, int y) {
+void Canvas::image(const Image& image, int x_px, int y_px) {
     cairo_surface_t* surface = state_->surface.get();
     cairo_surface_flush(surface);
     unsigned char* pixels = cairo_image_surface_get_data(surface);
     if (pixels == nullptr) return;
     const int stride = cairo_image_surface_get_stride(surface);
-    const int rows = std::min(image.height_px, cairo_image_surface_get_height(surface) - y);
-    const int columns = std::min(image.width_px, cairo_image_surface_get_width(surface) - x);
+    const int rows = std::min(image.height_px, cairo_image_surface_get_height(surface) - y_px);
+    const int columns = std::min(image.width_px, cairo_image_surface_get_width(surface) - x_px);
     for (int j = 0; j < rows; ++j) {
         const std::uint8_t* in =
             image.rgb.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width_px) * 3;
-        auto* out = reinterpret_cast<std::uint32_t*>(pixels + static_cast<std::ptrdiff_t>(y + j) * stride) + x;
+        auto* out = reinterpret_cast<std::uint32_t*>(pixels + static_cast<std::ptrdiff_t>(y_px + j) * stride) + x_px;
         for (int i = 0; i < columns; ++i, in += 3) {
             *out++ = static_cast<std::uint32_t>(in[0]) << 16 | static_cast<std::uint32_t>(in[1]) << 8 | in[2];
         }
@@ -109,36 +112,36 @@ double Canvas::text_width(std::string_view text, const Font& font) const {
     return advance_width(state_->cairo.get(), printable(text), font);
 }
 
-void Canvas::line(std::span<const Point2> points, double width_px, const Colour& colour, double opacity) {
+void Canvas::line(std::span<const Point2> points, double width, const Colour& colour, double opacity) {
     cairo_t* cairo = state_->cairo.get();
     cairo_new_path(cairo);
     for (const Point2& p : points) cairo_line_to(cairo, p.x, p.y);
-    cairo_set_line_width(cairo, width_px);
+    cairo_set_line_width(cairo, width);
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
     cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
     cairo_stroke(cairo);
 }
 
-void Canvas::box(const Point2& corner, double width_px, double height_px, const Colour& colour, double radius_px,
+void Canvas::box(const Point2& corner, double width, double height, const Colour& colour, double radius,
                  double opacity) {
     cairo_t* cairo = state_->cairo.get();
-    const double quarter = std::numbers::pi / 2, left = corner.x + radius_px, right = corner.x + width_px - radius_px;
-    const double top = corner.y + radius_px, bottom = corner.y + height_px - radius_px;
+    const double quarter = std::numbers::pi / 2, left = corner.x + radius, right = corner.x + width - radius;
+    const double top = corner.y + radius, bottom = corner.y + height - radius;
     cairo_new_path(cairo);
-    cairo_arc(cairo, right, top, radius_px, -quarter, 0);
-    cairo_arc(cairo, right, bottom, radius_px, 0, quarter);
-    cairo_arc(cairo, left, bottom, radius_px, quarter, 2 * quarter);
-    cairo_arc(cairo, left, top, radius_px, 2 * quarter, 3 * quarter);
+    cairo_arc(cairo, right, top, radius, -quarter, 0);
+    cairo_arc(cairo, right, bottom, radius, 0, quarter);
+    cairo_arc(cairo, left, bottom, radius, quarter, 2 * quarter);
+    cairo_arc(cairo, left, top, radius, 2 * quarter, 3 * quarter);
     cairo_close_path(cairo);
     cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
     cairo_fill(cairo);
 }
 
-void Canvas::disc(const Point2& centre, double radius_px, const Colour& colour) {
+void Canvas::disc(const Point2& centre, double radius, const Colour& colour) {
     cairo_t* cairo = state_->cairo.get();
     cairo_new_path(cairo);
-    cairo_arc(cairo, centre.x, centre.y, radius_px, 0, 2 * std::numbers::pi);
+    cairo_arc(cairo, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
     cairo_set_source_rgb(cairo, colour.r, colour.g, colour.b);
     cairo_fill(cairo);
 }

@@ -6,15 +6,15 @@
 namespace pliant::report {
 namespace {
 
-constexpr double margin_px = 44;
+constexpr double margin = 44;
 constexpr Colour ink = {0.13, 0.16, 0.21};
 constexpr Colour faint_ink = {0.36, 0.40, 0.46};
 constexpr Colour white = {1, 1, 1};
 constexpr std::size_t named_markers = 8;
 
-Point2 pixel_of(const Camera& camera, const Vec3& point, int width_px, int height_px) {
+Point2 place_of(const Canvas& canvas, const Camera& camera, const Vec3& point) {
     const auto [u, v, depth] = camera.project(point);
-    return {(u + 1) / 2 * width_px, (1 - v) / 2 * height_px};
+    return {(u + 1) / 2 * canvas.width(), (1 - v) / 2 * canvas.height()};
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `value`.
@@ -30,17 +30,28 @@ std::string metres_text(double metres) {
                          : fmt::format("{:g} m", metres);
 }
 
+/// The font, smaller where the text would not fit between the margins.
+Font fitting(const Canvas& canvas, const std::string& text, Font font) {
+    const double room = canvas.width() - 2 * margin, width = canvas.text_width(text, font);
+    if (width > room) font.size *= room / width;
+    return font;
+}
+
 }  // namespace
 
 void draw_heading(Canvas& canvas, const std::string& title, const std::string& line) {
-    canvas.text({margin_px, 64}, title, {32, ink, Align::left, true});
-    canvas.text({margin_px, 102}, line, {23, faint_ink});
+    canvas.text({margin, 64}, title, fitting(canvas, title, {32, ink, Align::left, true}));
+    canvas.text({margin, 102}, line, fitting(canvas, line, {23, faint_ink}));
 }
 
-void draw_legend(Canvas& canvas, int height_px, const std::vector<std::pair<Colour, std::string>>& entries) {
-    const double swatch = 24, baseline = height_px - margin_px;
-    double x = margin_px;
+void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string>>& entries) {
+    const double swatch = 24, baseline = canvas.height() - margin;
+    double x = margin;
     for (const auto& [colour, name] : entries) {
+        if (x > 0.66 * canvas.width()) {  // the scale bar has the rest
+            canvas.text({x, baseline}, "…", {23, ink});
+            return;
+        }
         canvas.box({x, baseline - swatch + 3}, swatch, swatch, colour, 6);
         const Font font{23, ink};
         canvas.text({x + swatch + 10, baseline}, name, font);
@@ -48,18 +59,18 @@ void draw_legend(Canvas& canvas, int height_px, const std::vector<std::pair<Colo
     }
 }
 
-void draw_scale_bar(Canvas& canvas, int width_px, int height_px, const Camera& camera, const Vec3& centre) {
+void draw_scale_bar(Canvas& canvas, const Camera& camera, const Vec3& centre) {
     const double depth = camera.project(centre)[2];
-    const double metres_per_px = 2 * camera.half_width * depth / width_px;
-    const double length_m = round_below(0.16 * width_px * metres_per_px);
-    const double right = width_px - margin_px, left = right - length_m / metres_per_px, y = height_px - margin_px - 4;
+    const double metres_per_unit = 2 * camera.half_width * depth / canvas.width();
+    const double length_m = round_below(0.16 * canvas.width() * metres_per_unit);
+    const double right = canvas.width() - margin, left = right - length_m / metres_per_unit,
+                 y = canvas.height() - margin - 4;
     canvas.line(std::array<Point2, 4>{{{left, y - 9}, {left, y}, {right, y}, {right, y - 9}}}, 2.5, ink);
     canvas.text({(left + right) / 2, y - 14}, metres_text(length_m), {23, ink, Align::centre});
 }
 
-void draw_colour_bar(Canvas& canvas, int width_px, int height_px, const std::string& title, double top,
-                     const std::string& unit, double highest) {
-    const double width = 30, height = 0.50 * height_px, x = width_px - 190, y0 = 0.24 * height_px;
+void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const std::string& unit, double highest) {
+    const double width = 30, height = 0.50 * canvas.height(), x = canvas.width() - 190, y0 = 0.24 * canvas.height();
     const int bands = static_cast<int>(height);
     for (int i = 0; i < bands; ++i) {
         canvas.box({x, y0 + i}, width, 1.5, field_colour(1 - (i + 0.5) / bands));
@@ -76,12 +87,12 @@ void draw_colour_bar(Canvas& canvas, int width_px, int height_px, const std::str
         canvas.text({x + width, y0 + height + 48}, fmt::format("peak {:.3g}", highest), {21, faint_ink, Align::centre});
 }
 
-void draw_marker_paths(Canvas& canvas, int width_px, int height_px, const Camera& camera, const sim::Result& result) {
+void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Result& result) {
     const std::size_t markers = result.steps.front().markers.size();
     for (std::size_t m = 0; m < markers; ++m) {
         std::vector<Point2> path;
         for (const sim::Step& step : result.steps) {
-            path.push_back(pixel_of(camera, step.markers[m].position_m, width_px, height_px));
+            path.push_back(place_of(canvas, camera, step.markers[m].position_m));
         }
         canvas.line(path, 6, white, 0.75);
         canvas.line(path, 2.5, ink, 0.9);
@@ -94,7 +105,7 @@ void draw_marker_paths(Canvas& canvas, int width_px, int height_px, const Camera
         const std::string& name = result.steps.front().markers[m].name;
         const Font font{22, ink};
         const double width = canvas.text_width(name, font);
-        const double x = end.x + 20 + width > width_px - 8 ? end.x - 20 - width : end.x + 20;
+        const double x = end.x + 20 + width > canvas.width() - 8 ? end.x - 20 - width : end.x + 20;
         canvas.box({x - 8, end.y - 20}, width + 16, 34, white, 8, 0.78);
         canvas.text({x, end.y + 5}, name, font);
     }

@@ -14,16 +14,15 @@ namespace pliant::report {
 void draw_heading(Canvas& canvas, const std::string& title, const std::string& line);
 
 /// Swatches with names from the bottom left.
-void draw_legend(Canvas& canvas, int height_px, const std::vector<std::pair<Colour, std::string>>& entries);
+void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string>>& entries);
 
 /// A bar of a round length, true at the depth of `centre`, at the bottom right.
-void draw_scale_bar(Canvas& canvas, int width_px, int height_px, const Camera& camera, const Vec3& centre);
+void draw_scale_bar(Canvas& canvas, const Camera& camera, const Vec3& centre);
 
 /// The colour map from 0 to `top`, at the right; `highest` is the largest value there is.
-void draw_colour_bar(Canvas& canvas, int width_px, int height_px, const std::string& title, double top,
-                     const std::string& unit, double highest);
+void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const std::string& unit, double highest);
 
 /// The way of each marker over all steps, with its name at the end.
-void draw_marker_paths(Canvas& canvas, int width_px, int height_px, const Camera& camera, const sim::Result& result);
+void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Result& result);
 
 }  // namespace pliant::report

@@ -13,7 +13,7 @@
 namespace pliant::report {
 namespace {
 
-constexpr int width_px = 1600, height_px = 1000, heading_px = 120;
+constexpr double heading_share = 0.12;  // of the height, over the stages
 constexpr std::array<double, 4> plain_margins = {0.06, 0.06, 0.12, 0.14};
 constexpr std::array<double, 4> bar_margins = {0.06, 0.16, 0.10, 0.14};
 constexpr Colour stage_backdrop = {0.955, 0.962, 0.970};
@@ -22,8 +22,8 @@ constexpr std::size_t fitted_steps = 12;  // steps that the view must hold, besi
 /// What all pictures share.
 class Painter {
 public:
-    Painter(const Simulation& s, const Surface& surface, Progress& progress)
-        : s_(s), surface_(surface), progress_(progress) {
+    Painter(const Simulation& s, const Surface& surface, const PictureSize& size, Progress& progress)
+        : s_(s), surface_(surface), size_(size), progress_(progress) {
         std::vector<std::size_t> steps = thinned_steps(s.result.steps.size(), fitted_steps);
         steps.insert(steps.begin(), 0);
         std::vector<std::vector<Vec3>> clouds;
@@ -49,13 +49,14 @@ private:
     [[nodiscard]] std::vector<Colour> material_colours() const;
     [[nodiscard]] std::vector<std::pair<Colour, std::string>> legend() const;
     [[nodiscard]] Camera whole_camera(const std::array<double, 4>& margins) const {
-        return fitted(view_, points_, static_cast<double>(width_px) / height_px, margins);
+        return fitted(view_, points_, static_cast<double>(size_.width_px) / size_.height_px, margins);
     }
     [[nodiscard]] Result<Canvas> drawn(const Scene& scene, const Camera& camera) const;
     [[nodiscard]] std::size_t last() const { return s_.result.steps.size() - 1; }
 
     const Simulation& s_;
     const Surface& surface_;
+    PictureSize size_;
     Progress& progress_;
     Camera view_;
     std::vector<Vec3> points_;  ///< everything that must be seen
@@ -102,9 +103,9 @@ Scene Painter::scene_of(std::size_t step) const {
 }
 
 Result<Canvas> Painter::drawn(const Scene& scene, const Camera& camera) const {
-    const auto image = render(scene, camera, width_px, height_px, progress_);
+    const auto image = render(scene, camera, size_.width_px, size_.height_px, progress_);
     if (!image) return tl::unexpected(image.error());
-    Canvas canvas(width_px, height_px, scene.backdrop_top);
+    Canvas canvas(size_.width_px, size_.height_px, scene.backdrop_top);
     canvas.image(*image, 0, 0);
     return canvas;
 }
@@ -114,8 +115,8 @@ Result<Picture> Painter::rest() {
     auto canvas = drawn(scene_of(0), camera);
     if (!canvas) return tl::unexpected(canvas.error());
     draw_heading(*canvas, s_.robot, "at rest");
-    draw_legend(*canvas, height_px, legend());
-    draw_scale_bar(*canvas, width_px, height_px, camera, box_.center());
+    draw_legend(*canvas, legend());
+    draw_scale_bar(*canvas, camera, box_.center());
     return finished(*canvas, "rest.png", "At rest");
 }
 
@@ -126,26 +127,31 @@ Result<Picture> Painter::final() {
     auto canvas = drawn(scene, camera);
     if (!canvas) return tl::unexpected(canvas.error());
     draw_heading(*canvas, s_.robot, step_line(s_, last()));
-    draw_marker_paths(*canvas, width_px, height_px, camera, s_.result);
-    draw_legend(*canvas, height_px, legend());
-    draw_scale_bar(*canvas, width_px, height_px, camera, box_.center());
+    draw_marker_paths(*canvas, camera, s_.result);
+    draw_legend(*canvas, legend());
+    draw_scale_bar(*canvas, camera, box_.center());
     return finished(*canvas, "final.png", "At the end, over the rest shape");
 }
 
 Result<Picture> Painter::stages() {
-    const StageLayout layout = lay_out_stages(view_, points_, s_.result.steps.size(), width_px, height_px - heading_px);
-    Canvas canvas(width_px, height_px, stage_backdrop);
+    const int heading_px = static_cast<int>(heading_share * size_.height_px);
+    const StageLayout layout =
+        lay_out_stages(view_, points_, s_.result.steps.size(), size_.width_px, size_.height_px - heading_px);
+    const double unit_px = size_.height_px / 1000.0;
+    Canvas canvas(size_.width_px, size_.height_px, stage_backdrop);
     for (std::size_t i = 0; i < layout.steps.size(); ++i) {
-        const auto image =
-            render(scene_of(layout.steps[i]), layout.camera, layout.panel_width_px, layout.panel_height_px, progress_);
+        Scene scene = scene_of(layout.steps[i]);
+        scene.backdrop_top = scene.backdrop_bottom = stage_backdrop;
+        const auto image = render(scene, layout.camera, layout.panel_width_px, layout.panel_height_px, progress_);
         if (!image) return tl::unexpected(image.error());
         const int x = static_cast<int>(i) % layout.columns * layout.panel_width_px;
         const int y = heading_px + static_cast<int>(i) / layout.columns * layout.panel_height_px;
         canvas.image(*image, x, y);
-        canvas.text({x + 44.0, y + 44.0}, layout.steps[i] == 0 ? "at rest" : step_line(s_, layout.steps[i]),
-                    {layout.panel_width_px > 600 ? 23.0 : 17.0, {0.30, 0.34, 0.40}});
+        canvas.text({x / unit_px + 44, y / unit_px + 44},
+                    layout.steps[i] == 0 ? "at rest" : step_line(s_, layout.steps[i]),
+                    {layout.columns <= 2 ? 23.0 : 17.0, {0.30, 0.34, 0.40}});
     }
-    canvas.text({44, 72}, s_.robot, {32, {0.13, 0.16, 0.21}, Align::left, true});
+    draw_heading(canvas, s_.robot, "");
     return finished(canvas, "stages.png", "On the way");
 }
 
@@ -176,8 +182,8 @@ Result<Picture> Painter::von_mises() {
     auto canvas = drawn(scene, camera);
     if (!canvas) return tl::unexpected(canvas.error());
     draw_heading(*canvas, s_.robot, step_line(s_, last()));
-    draw_colour_bar(*canvas, width_px, height_px, "von Mises stress", top, unit, factor * highest);
-    draw_scale_bar(*canvas, width_px, height_px, camera, box_.center());
+    draw_colour_bar(*canvas, "von Mises stress", top, unit, factor * highest);
+    draw_scale_bar(*canvas, camera, box_.center());
     return finished(*canvas, "von_mises.png", "Von Mises stress at the end");
 }
 
@@ -208,10 +214,11 @@ std::string step_line(const Simulation& s, std::size_t step) {
     return line;
 }
 
-Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, Progress& progress) {
+Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, const PictureSize& size,
+                                           Progress& progress) {
     using Draw = Result<Picture> (Painter::*)();
     static constexpr std::array<Draw, 4> all = {&Painter::rest, &Painter::final, &Painter::stages, &Painter::von_mises};
-    Painter painter(s, surface, progress);
+    Painter painter(s, surface, size, progress);
     std::vector<Picture> pictures;
     for (std::size_t i = 0; i < all.size(); ++i) {
         progress.advance("pictures", static_cast<double>(i) / all.size());

@@ -16,9 +16,15 @@ struct Picture {
     std::string png;    ///< the file's bytes
 };
 
-/// rest.png, final.png (rest as a ghost, markers with their paths), stages.png and von_mises.png, 1600 x 1000 each.
+struct PictureSize {
+    int width_px = 1600;
+    int height_px = 1000;
+};
+
+/// rest.png, final.png (rest as a ghost, markers with their paths), stages.png and von_mises.png. Text and lines keep
+/// their proportions to the picture.
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
-                                                         Progress& progress);
+                                                         const PictureSize& size, Progress& progress);
 
 /// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N".
 [[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);

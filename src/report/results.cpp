@@ -12,7 +12,8 @@
 
 namespace pliant::report {
 
-Status write_results(const std::filesystem::path& folder, const Simulation& s, Progress& progress) {
+Status write_results(const std::filesystem::path& folder, const Simulation& s, Progress& progress,
+                     const PictureSize& picture_size) {
     if (Status status = check(s); !status) return status;
     if (Status status = write_file(folder / "summary.json", summary_json(s)); !status) return status;
     if (Status status = write_file(folder / "steps.csv", steps_csv(s.result)); !status) return status;
@@ -21,7 +22,7 @@ Status write_results(const std::filesystem::path& folder, const Simulation& s, P
 
     const Surface surface = outer_surface(s.mesh, s.region_material);
     if (Status status = write_file(folder / "robot.glb", robot_glb(s, surface)); !status) return status;
-    const auto pictures = draw_pictures(s, surface, progress);
+    const auto pictures = draw_pictures(s, surface, picture_size, progress);
     if (!pictures) return tl::unexpected(pictures.error());
     std::error_code code;
     std::filesystem::create_directories(folder / "pictures", code);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/progress.hpp"
+#include "report/pictures.hpp"
 #include "report/simulation.hpp"
 
 namespace pliant::report {
@@ -12,6 +13,6 @@ namespace pliant::report {
 /// into `folder`, which exists and is written aside by the caller (core/files.hpp, write_folder). Ray casting the
 /// pictures takes seconds; the rest is quick.
 [[nodiscard]] Status write_results(const std::filesystem::path& folder, const Simulation& simulation,
-                                   Progress& progress);
+                                   Progress& progress, const PictureSize& picture_size = {});
 
 }  // namespace pliant::report

@@ -1,5 +1,7 @@
 #include "report/simulation.hpp"
 
+#include <algorithm>
+
 #include "core/error.hpp"
 
 namespace pliant::report {
@@ -18,6 +20,14 @@ Status check_mesh(const Simulation& s) {
             return input_error("report: region_material names material {} of {}", material, s.materials.size());
         }
     }
+    if (s.mesh.region.size() != s.mesh.tet_count()) {
+        return input_error("report: {} tets have a region, the mesh has {}", s.mesh.region.size(), s.mesh.tet_count());
+    }
+    for (const int node : s.mesh.nodes) {
+        if (node < 0 || static_cast<std::size_t>(node) >= s.mesh.points.size()) {
+            return input_error("report: a tet names node {} of {}", node, s.mesh.points.size());
+        }
+    }
     for (const int region : s.mesh.region) {
         if (region < 0 || region >= static_cast<int>(regions)) {
             return input_error("report: a tet names region {} of {}", region, regions);
@@ -32,6 +42,9 @@ Status check_step(const Simulation& s, std::size_t i) {
     if (step.positions.size() != s.mesh.points.size()) {
         return input_error("report: step {} has {} positions, the mesh {} points", step.index, step.positions.size(),
                            s.mesh.points.size());
+    }
+    if (!std::all_of(step.positions.begin(), step.positions.end(), is_finite)) {
+        return input_error("report: step {} has positions that are not numbers", step.index);
     }
     if (step.cables.size() != rest.cables.size() || step.chambers.size() != rest.chambers.size() ||
         step.supports.size() != rest.supports.size() || step.markers.size() != rest.markers.size()) {

@@ -38,7 +38,7 @@ function plot(title, xlabel, ylabel, labels, rows, options = {}) {
         strokeWidth: 2, drawPoints: rows.length <= 60, pointSize: 2.5, highlightCircleSize: 5, connectSeparatedPoints: true,
         gridLineColor: dark.matches ? "#2c3541" : "#e3e7ec", axisLineColor: dark.matches ? "#4a5566" : "#b9c1cb",
         axisLabelFontSize: 12, yRangePad: 8, xRangePad: 8,
-        axes: { y: { axisLabelWidth: 58, valueFormatter: shown } }, ...options,
+        axes: { y: { axisLabelWidth: 58, valueFormatter: shown, axisLabelFormatter: shown } }, ...options,
     }));
 }
 
