@@ -1,4 +1,6 @@
 // pliant check: is a robot, printer, job or mesh file what it should be?
+#include "plan/check.hpp"
+
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -11,7 +13,6 @@
 #include "mesh/mesh_report.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
-#include "plan/check.hpp"
 #include "robot/build.hpp"
 
 namespace pliant::app {
@@ -37,8 +38,8 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
 Result<std::string> check_printer(const std::string& file) {
     const Result<machine::Printer> printer = machine::load_printer(file);
     if (!printer) return tl::unexpected(printer.error());
-    return fmt::format("printer \"{}\": {} slots, {} vats, {} x {} px", printer->name, printer->tower.slots, printer->vats.size(),
-                       printer->projector.width_px, printer->projector.height_px);
+    return fmt::format("printer \"{}\": {} slots, {} vats, {} x {} px", printer->name, printer->tower.slots,
+                       printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
 }
 
 /// Robot and printer files are told apart by what only one of them has.
@@ -64,9 +65,10 @@ Result<std::string> check_job(const std::string& file) {
     }
     const Result<std::string> gcode = job->archive.file("job.gcode");
     if (!gcode) return tl::unexpected(gcode.error());
-    if (Status status = plan::check_gcode(*gcode, job->printer); !status) return input_error("{}: job.gcode: {}", file, status.error().message);
-    return fmt::format("job \"{}\": {} layers, {} images, {} materials, G-code keeps the machine's limits", manifest.name,
-                       manifest.layers.size(), images, manifest.materials.size());
+    if (Status status = plan::check_gcode(*gcode, job->printer); !status)
+        return input_error("{}: job.gcode: {}", file, status.error().message);
+    return fmt::format("job \"{}\": {} layers, {} images, {} materials, G-code keeps the machine's limits",
+                       manifest.name, manifest.layers.size(), images, manifest.materials.size());
 }
 
 Result<std::string> check_mesh(const std::string& file) {
@@ -102,8 +104,10 @@ void add_check(CLI::App& app, int& status) {
         const auto progress = terminal_progress(options->output);
         for (const std::string& file : options->files) {
             const Result<std::string> text = check(file, *progress);
-            if (!text) status = report(text.error());
-            else if (!options->output.quiet) fmt::print("{}: {}\n", file, *text);
+            if (!text)
+                status = report(text.error());
+            else if (!options->output.quiet)
+                fmt::print("{}: {}\n", file, *text);
         }
     });
 }

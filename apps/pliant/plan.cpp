@@ -26,8 +26,10 @@ Status make_plan(const Options& options) {
     }
     const Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
     if (!plan) return tl::unexpected(plan.error());
-    if (options.output.json) fmt::print("{}\n", plan::plan_json(*plan));
-    else if (!options.output.quiet) fmt::print("{}", plan::plan_text(*plan));
+    if (options.output.json)
+        fmt::print("{}\n", plan::plan_json(*plan));
+    else if (!options.output.quiet)
+        fmt::print("{}", plan::plan_text(*plan));
     return {};
 }
 

@@ -1,9 +1,10 @@
 // pliant print: prints a job. The virtual printer obeys the same G-code and sees the same images as the real one.
+#include "host/print.hpp"
+
 #include <fmt/core.h>
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "host/print.hpp"
 #include "job_tools.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
@@ -32,16 +33,21 @@ Result<int> print_on_twin(const Options& options) {
     TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
     const auto images = [&](int layer, int material) { return image_of(job->archive, layer, material); };
     host::PrintRecord record;
-    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record); !printed) return tl::unexpected(printed.error());
+    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record); !printed)
+        return tl::unexpected(printed.error());
     const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, images);
     if (!report) return tl::unexpected(report.error());
 
     const std::string json = twin::report_json(*report);
     if (!options.report_file.empty()) {
-        if (Status written = write_file(options.report_file, json + "\n"); !written) return tl::unexpected(written.error());
+        if (Status written = write_file(options.report_file, json + "\n"); !written)
+            return tl::unexpected(written.error());
     }
-    if (options.output.json) fmt::print("{}\n", json);
-    else if (!options.output.quiet) fmt::print("{} lines sent, {} exposures\n{}", record.lines_sent, record.exposures.size(), twin::report_text(*report));
+    if (options.output.json)
+        fmt::print("{}\n", json);
+    else if (!options.output.quiet)
+        fmt::print("{} lines sent, {} exposures\n{}", record.lines_sent, record.exposures.size(),
+                   twin::report_text(*report));
     return report->passed ? exit_done : exit_failed;
 }
 
@@ -49,7 +55,8 @@ Result<int> print_on_twin(const Options& options) {
 
 void add_print(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("print", "print a job on the virtual printer and compare what cured with the model");
+    CLI::App* command =
+        app.add_subcommand("print", "print a job on the virtual printer and compare what cured with the model");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_flag("--twin", options->twin, "print on the virtual printer")->required();
     command->add_option("-o,--output", options->report_file, "file for the report (.json)");

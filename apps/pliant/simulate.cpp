@@ -10,7 +10,8 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "report/report.hpp"
+#include "report/results.hpp"
+#include "report/summary.hpp"
 #include "robot/build.hpp"
 #include "sim/fields.hpp"
 
@@ -31,12 +32,20 @@ double peak_memory_MB() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+/// "neo-hookean, E 12 MPa, Poisson ratio 0.45": what the file says, for people.
+std::string law_text(const robot::MaterialSpec& material) {
+    return fmt::format("{}, E {:.6g} MPa, Poisson ratio {:.4g}", material::name(material.law),
+                       material.youngs_modulus_Pa / 1e6, material.poisson_ratio);
+}
+
 report::Simulation describe(const robot::Robot& robot, const sim::Model& model, const sim::Trajectory& trajectory) {
-    report::Simulation simulation{.robot = robot.name, .mesh = model.mesh(), .trajectory = trajectory};
-    for (const robot::BodySpec& body : robot.bodies) {
-        const robot::MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
-        simulation.regions.push_back({body.name, material.name, material.colour});
+    report::Simulation simulation{.robot = robot.name, .mesh = model.mesh(), .result = trajectory};
+    for (const robot::MaterialSpec& m : robot.materials) {
+        report::Material material{m.name, law_text(m), m.resin, m.density_kg_m3, {}};
+        if (m.colour) material.colour = report::Colour{(*m.colour)[0], (*m.colour)[1], (*m.colour)[2]};
+        simulation.materials.push_back(std::move(material));
     }
+    for (const robot::BodySpec& body : robot.bodies) simulation.region_material.push_back(body.material);
     simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));
@@ -89,6 +98,8 @@ Result<int> simulate(const Options& options) {
     if (!options.folder.empty() && !options.output.quiet && !options.output.json) {
         fmt::print("results: {}, open report.html there\n", options.folder);
     }
+    for (const std::string& warning : trajectory.warnings)
+        fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
     if (trajectory.converged) return exit_done;
     fmt::print(stderr, "{}: {}\n", options.robot, trajectory.message);
     return exit_failed;

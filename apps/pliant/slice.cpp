@@ -48,7 +48,8 @@ Result<Drawing> read_robot(const Options& options, Progress& progress) {
         const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
         drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
     }
-    for (const robot::MaterialSpec& material : robot->materials) drawing.resin_of_material.emplace_back(material.name, material.resin);
+    for (const robot::MaterialSpec& material : robot->materials)
+        drawing.resin_of_material.emplace_back(material.name, material.resin);
     return drawing;
 }
 
@@ -73,12 +74,14 @@ Result<Drawing> read_surfaces(const Options& options) {
 }
 
 Result<Drawing> read_drawing(const Options& options, Progress& progress) {
-    const bool robot = options.inputs.size() == 1 && std::filesystem::path(options.inputs.front()).extension() == ".toml";
+    const bool robot =
+        options.inputs.size() == 1 && std::filesystem::path(options.inputs.front()).extension() == ".toml";
     return robot ? read_robot(options, progress) : read_surfaces(options);
 }
 
 /// Exposures come from the printer file; for a resin that it does not know, the longest ones it has are taken.
-std::vector<job::Material> with_exposures(const Drawing& drawing, const machine::Printer& printer, std::vector<std::string>& warnings) {
+std::vector<job::Material> with_exposures(const Drawing& drawing, const machine::Printer& printer,
+                                          std::vector<std::string>& warnings) {
     std::vector<job::Material> materials;
     for (const auto& [material, resin] : drawing.resin_of_material) {
         const auto same_name = [&](const job::Material& known) { return known.name == material; };
@@ -94,8 +97,9 @@ std::vector<job::Material> with_exposures(const Drawing& drawing, const machine:
                 entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
                 entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
             }
-            warnings.push_back(fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed",
-                                           resin, entry.exposure_s, entry.bottom_exposure_s));
+            warnings.push_back(fmt::format(
+                "resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed", resin,
+                entry.exposure_s, entry.bottom_exposure_s));
         }
         materials.push_back(std::move(entry));
     }
@@ -107,7 +111,8 @@ Result<int> layer_height_um(const Options& options, const machine::Printer& prin
     const Result<double> height = parse_quantity(options.layer, Dimension::length);
     if (!height) return input_error("--layer: {}", height.error().message);
     const double um = std::round(*height * 1e6);
-    if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6) return input_error("--layer {}: a whole number of micrometres from 1 to 1000 is needed", options.layer);
+    if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
+        return input_error("--layer {}: a whole number of micrometres from 1 to 1000 is needed", options.layer);
     return static_cast<int>(um);
 }
 
@@ -120,7 +125,8 @@ int bottom_layers(const machine::Printer& printer) {
 void print_summary(const Options& options, const job::Manifest& manifest, const plan::Plan& plan) {
     if (options.output.quiet) return;
     fmt::print("{}: {} layers of {} um, {} x {} px of {} um\n", options.job, manifest.layers.size(),
-               manifest.layers.empty() ? 0 : manifest.layers.front().thickness_um, manifest.width_px, manifest.height_px, manifest.pixel_um);
+               manifest.layers.empty() ? 0 : manifest.layers.front().thickness_um, manifest.width_px,
+               manifest.height_px, manifest.pixel_um);
     for (const job::Material& material : manifest.materials) {
         fmt::print("material {}: resin {}, {:.1f} mm^3\n", material.name, material.resin, material.model_volume_mm3);
     }
@@ -145,7 +151,8 @@ Status slice(const Options& options) {
     settings.name = drawing->name;
     settings.pliant_version = PLIANT_VERSION;
     settings.bottom_layers = bottom_layers(*printer);
-    settings.slicing.raster = {projector.width_px, projector.height_px, projector.pixel_um, projector.mirror_x, projector.mirror_y};
+    settings.slicing.raster = {projector.width_px, projector.height_px, projector.pixel_um, projector.mirror_x,
+                               projector.mirror_y};
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
     const Result<std::vector<std::string>> placed = slice::place_on_platform(drawing->bodies, settings.slicing.raster);
@@ -174,13 +181,17 @@ Status slice(const Options& options) {
 void add_slice(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
-    command->add_option("inputs", options->inputs, "a robot file, or MATERIAL=FILE.stl for each body (millimetres)")->required();
+    command->add_option("inputs", options->inputs, "a robot file, or MATERIAL=FILE.stl for each body (millimetres)")
+        ->required();
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
     command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();
     command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
-    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")->type_name("KEY=VALUE");
+    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
+        ->type_name("KEY=VALUE");
     add_output_options(*command, options->output, false);
-    command->footer("Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o gripper.zip");
+    command->footer(
+        "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "
+        "gripper.zip");
     command->callback([options, &status] {
         const Status result = slice(*options);
         status = result ? exit_done : report(result.error());

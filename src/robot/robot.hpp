@@ -3,6 +3,7 @@
 // Coordinates are in the file's `length_unit` (`unit_m` metres); all other quantities are SI.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,10 +20,12 @@ namespace pliant::robot {
 
 struct MaterialSpec {
     std::string name;
-    material::Law law;
+    material::Law law = material::NeoHookean{};
+    double youngs_modulus_Pa = 0;
+    double poisson_ratio = 0;
     double density_kg_m3 = 0;
-    std::string resin;   ///< the material's own name where the file says nothing
-    std::string colour;  ///< "#rrggbb"
+    std::string resin;                            ///< the material's own name where the file says nothing
+    std::optional<std::array<double, 3>> colour;  ///< sRGB, each in [0, 1]
 };
 
 /// Geometry of a body: a solid expression, a surface file, or a region of the mesh file ("all": every region).

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -38,24 +39,36 @@ std::string read_name(Reader& reader, std::set<std::string>& taken, std::string_
     return name;
 }
 
-std::string default_colour(std::size_t index) {
-    constexpr std::string_view colours[] = {"#e07a5f", "#3d6b9e", "#81b29a", "#f2cc8f",
-                                            "#8d6a9f", "#5f6c7b", "#c9ada7", "#2a9d8f"};
-    return std::string(colours[index % std::size(colours)]);
+std::optional<std::array<double, 3>> read_colour(Reader& reader) {
+    if (!reader.has("colour")) return (void)reader.raw("colour"), std::nullopt;
+    const std::string text = reader.text("colour");
+    std::array<double, 3> rgb{};
+    bool good = text.size() == 7 && text[0] == '#';
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        int value = 0;
+        const char* first = text.data() + 1 + 2 * i;
+        const auto [end, code] = std::from_chars(first, first + 2, value, 16);
+        good = code == std::errc() && end == first + 2;
+        rgb[i] = value / 255.0;
+    }
+    if (!good) reader.problem("colour", "write a colour as \"#rrggbb\"");
+    return rgb;
 }
 
-material::Law read_law(Reader& reader) {
+/// Law and elastic constants of one material.
+void read_law(Reader& reader, MaterialSpec& material) {
     const std::string law = reader.choice("law", {"neo-hookean", "shape-blend", "st-venant-kirchhoff"}, "neo-hookean");
-    const double nu = reader.number("poisson_ratio", 0.45);
-    const double E = reader.quantity("youngs_modulus", Dimension::pressure);
+    const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
+    const double E = material.youngs_modulus_Pa = reader.quantity("youngs_modulus", Dimension::pressure);
     if (!(nu > -1 && nu < 0.5)) {
         reader.problem("poisson_ratio",
                        fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
-        return material::neo_hookean(1, 0.3);
+        return;
     }
     if (reader.has("youngs_modulus") && !(E > 0)) reader.problem("youngs_modulus", "must be above zero");
-    if (law == "st-venant-kirchhoff") return material::st_venant_kirchhoff(E, nu);
-    if (law == "neo-hookean") return material::neo_hookean(E, nu);
+    material.law = material::neo_hookean(E, nu);
+    if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
+    if (law != "shape-blend") return;
     if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
     material::ShapeBlend blend = material::shape_blend(E, nu);
     if (reader.has("shape_parameter")) {
@@ -66,18 +79,18 @@ material::Law read_law(Reader& reader) {
         else
             blend.a = 1 / R;
     }
-    return blend;
+    material.law = blend;
 }
 
 void read_materials(Reader& root, Context& context) {
     for (auto& [name, reader] : root.named_tables("material")) {
-        MaterialSpec material{name, read_law(reader), reader.quantity("density", Dimension::density, 1000),
-                              reader.text("resin", name),
-                              reader.text("colour", default_colour(context.robot.materials.size()))};
+        MaterialSpec material;
+        material.name = name;
+        read_law(reader, material);
+        material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
         if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
-        const bool hex = material.colour.size() == 7 && material.colour[0] == '#' &&
-                         material.colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-        if (!hex) reader.problem("colour", "write a colour as \"#rrggbb\"");
+        material.resin = reader.text("resin", name);
+        material.colour = read_colour(reader);
         reader.finish();
         context.robot.materials.push_back(std::move(material));
     }

@@ -1,0 +1,232 @@
+#include "report/pictures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/canvas.hpp"
+#include "report/gltf.hpp"
+#include "report/overlay.hpp"
+#include "report/raycast.hpp"
+#include "report/stage_layout.hpp"
+
+namespace pliant::report {
+namespace {
+
+constexpr double heading_share = 0.12;  // of the height, over the stages
+constexpr std::array<double, 4> plain_margins = {0.06, 0.06, 0.12, 0.14};
+constexpr std::array<double, 4> bar_margins = {0.06, 0.16, 0.10, 0.14};
+constexpr Colour stage_backdrop = {0.955, 0.962, 0.970};
+constexpr std::size_t fitted_steps = 12;  // steps that the view must hold, beside rest
+
+/// What all pictures share.
+class Painter {
+public:
+    Painter(const Simulation& s, const Surface& surface, const PictureSize& size, Progress& progress)
+        : s_(s), surface_(surface), size_(size), progress_(progress) {
+        std::vector<std::size_t> steps = thinned_steps(s.result.steps.size(), fitted_steps);
+        steps.insert(steps.begin(), 0);
+        std::vector<std::vector<Vec3>> clouds;
+        for (const std::size_t step : steps) clouds.push_back(pose(surface, s.result.steps[step].positions).positions);
+        const std::vector<std::span<const Vec3>> moved(clouds.begin() + 1, clouds.end());
+        view_ = choose_view(clouds.front(), moved);
+        for (const auto& cloud : clouds) points_.insert(points_.end(), cloud.begin(), cloud.end());
+        for (const Vec3& p : points_) box_.add(p);
+        for (const std::size_t step : steps) add_cable_points(step);
+    }
+
+    Result<Picture> rest();
+    Result<Picture> final();
+    Result<Picture> stages();
+    Result<Picture> von_mises();
+
+private:
+    void add_cable_points(std::size_t step) {
+        if (s_.cable_points.empty()) return;
+        for (const auto& cable : s_.cable_points[step]) points_.insert(points_.end(), cable.begin(), cable.end());
+    }
+    [[nodiscard]] Scene scene_of(std::size_t step) const;
+    [[nodiscard]] std::vector<Colour> material_colours() const;
+    [[nodiscard]] std::vector<std::pair<Colour, std::string>> legend() const;
+    [[nodiscard]] Camera whole_camera(const std::array<double, 4>& margins) const {
+        return fitted(view_, points_, static_cast<double>(size_.width_px) / size_.height_px, margins);
+    }
+    [[nodiscard]] Result<Canvas> drawn(const Scene& scene, const Camera& camera) const;
+    [[nodiscard]] std::size_t last() const { return s_.result.steps.size() - 1; }
+
+    const Simulation& s_;
+    const Surface& surface_;
+    PictureSize size_;
+    Progress& progress_;
+    Camera view_;
+    std::vector<Vec3> points_;  ///< everything that must be seen
+    Box3 box_;                  ///< of the robot over its whole motion
+};
+
+Result<Picture> finished(const Canvas& canvas, std::string file, std::string title) {
+    auto png = canvas.png();
+    if (!png) return tl::unexpected(png.error());
+    return Picture{std::move(file), std::move(title), std::move(*png)};
+}
+
+std::vector<Colour> Painter::material_colours() const {
+    std::vector<Colour> colours(surface_.vertex_node.size());
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+        for (const int v : surface_.triangles[t]) {
+            colours[static_cast<std::size_t>(v)] = colour_of(s_, surface_.material[t]);
+        }
+    }
+    return colours;
+}
+
+std::vector<std::pair<Colour, std::string>> Painter::legend() const {
+    std::vector<std::pair<Colour, std::string>> entries;
+    for (int m = 0; m < static_cast<int>(s_.materials.size()); ++m) {
+        if (std::find(surface_.material.begin(), surface_.material.end(), m) == surface_.material.end()) continue;
+        entries.emplace_back(colour_of(s_, m), s_.materials[static_cast<std::size_t>(m)].name);
+    }
+    if (!s_.cable_points.empty() && !s_.cable_points.front().empty()) entries.emplace_back(cable_colour, "cable");
+    return entries;
+}
+
+Scene Painter::scene_of(std::size_t step) const {
+    Scene scene;
+    scene.surface = &surface_;
+    scene.body = pose(surface_, s_.result.steps[step].positions);
+    scene.vertex_colours = material_colours();
+    scene.cable_radius_m = drawn_cable_radius(s_);
+    scene.floor_z_m = box_.low.z;
+    if (!s_.cable_points.empty()) {
+        for (const auto& points : s_.cable_points[step]) scene.cables.push_back({points});
+    }
+    return scene;
+}
+
+Result<Canvas> Painter::drawn(const Scene& scene, const Camera& camera) const {
+    const auto image = render(scene, camera, size_.width_px, size_.height_px, progress_);
+    if (!image) return tl::unexpected(image.error());
+    Canvas canvas(size_.width_px, size_.height_px, scene.backdrop_top);
+    canvas.image(*image, 0, 0);
+    return canvas;
+}
+
+Result<Picture> Painter::rest() {
+    const Camera camera = whole_camera(plain_margins);
+    auto canvas = drawn(scene_of(0), camera);
+    if (!canvas) return tl::unexpected(canvas.error());
+    draw_heading(*canvas, s_.robot, "at rest");
+    draw_legend(*canvas, legend());
+    draw_scale_bar(*canvas, camera, box_.center());
+    return finished(*canvas, "rest.png", "At rest");
+}
+
+Result<Picture> Painter::final() {
+    const Camera camera = whole_camera(plain_margins);
+    Scene scene = scene_of(last());
+    if (last() > 0) scene.ghost = pose(surface_, s_.result.steps.front().positions);
+    auto canvas = drawn(scene, camera);
+    if (!canvas) return tl::unexpected(canvas.error());
+    draw_heading(*canvas, s_.robot, step_line(s_, last()));
+    draw_marker_paths(*canvas, camera, s_.result);
+    draw_legend(*canvas, legend());
+    draw_scale_bar(*canvas, camera, box_.center());
+    return finished(*canvas, "final.png", "At the end, over the rest shape");
+}
+
+Result<Picture> Painter::stages() {
+    const int heading_px = static_cast<int>(heading_share * size_.height_px);
+    const StageLayout layout =
+        lay_out_stages(view_, points_, s_.result.steps.size(), size_.width_px, size_.height_px - heading_px);
+    const double unit_px = size_.height_px / 1000.0;
+    Canvas canvas(size_.width_px, size_.height_px, stage_backdrop);
+    for (std::size_t i = 0; i < layout.steps.size(); ++i) {
+        Scene scene = scene_of(layout.steps[i]);
+        scene.backdrop_top = scene.backdrop_bottom = stage_backdrop;
+        const auto image = render(scene, layout.camera, layout.panel_width_px, layout.panel_height_px, progress_);
+        if (!image) return tl::unexpected(image.error());
+        const int x = static_cast<int>(i) % layout.columns * layout.panel_width_px;
+        const int y = heading_px + static_cast<int>(i) / layout.columns * layout.panel_height_px;
+        canvas.image(*image, x, y);
+        canvas.text({x / unit_px + 44, y / unit_px + 44},
+                    layout.steps[i] == 0 ? "at rest" : step_line(s_, layout.steps[i]),
+                    {layout.columns <= 2 ? 23.0 : 17.0, {0.30, 0.34, 0.40}});
+    }
+    draw_heading(canvas, s_.robot, "");
+    return finished(canvas, "stages.png", "On the way");
+}
+
+/// Unit and factor that keep the numbers short.
+std::pair<std::string, double> stress_unit(double highest_Pa) {
+    if (highest_Pa >= 2e6) return {"MPa", 1e-6};
+    if (highest_Pa >= 2e3) return {"kPa", 1e-3};
+    return {"Pa", 1};
+}
+
+Result<Picture> Painter::von_mises() {
+    const sim::Step& step = s_.result.steps[last()];
+    const auto fields = s_.fields(step.positions);
+    const auto values = at_vertices(s_.mesh, s_.region_material, surface_, fields.von_mises_Pa);
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const double highest = sorted.empty() ? 0 : sorted.back();
+    const double most =
+        sorted.empty() ? 0 : sorted[static_cast<std::size_t>(0.99 * static_cast<double>(sorted.size() - 1))];
+    const auto [unit, factor] = stress_unit(most);
+    const double top = nice_ceiling(factor * most);
+
+    Scene scene = scene_of(last());
+    for (std::size_t v = 0; v < values.size(); ++v) scene.vertex_colours[v] = field_colour(factor * values[v] / top);
+    scene.cables.clear();
+    scene.shading = 0.4;
+    const Camera camera = whole_camera(bar_margins);
+    auto canvas = drawn(scene, camera);
+    if (!canvas) return tl::unexpected(canvas.error());
+    draw_heading(*canvas, s_.robot, step_line(s_, last()));
+    draw_colour_bar(*canvas, "von Mises stress", top, unit, factor * highest);
+    draw_scale_bar(*canvas, camera, box_.center());
+    return finished(*canvas, "von_mises.png", "Von Mises stress at the end");
+}
+
+}  // namespace
+
+double nice_ceiling(double value) {
+    if (!(value > 0) || !std::isfinite(value)) return 1;
+    const double power = std::pow(10, std::floor(std::log10(value)));
+    for (const double digit : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+        if (digit * power >= value * (1 - 1e-12)) return digit * power;
+    }
+    return 10 * power;
+}
+
+std::string step_line(const Simulation& s, std::size_t step) {
+    constexpr std::size_t named = 2;
+    const sim::Step& state = s.result.steps[step];
+    std::string line = fmt::format("step {} of {}", state.index, s.result.steps.back().index);
+    for (std::size_t i = 0; i < std::min(named, state.cables.size()); ++i) {
+        const auto& cable = state.cables[i];
+        line += fmt::format(" · {} {:.3g} %, {:.3g} N", cable.name, 100 * cable.length_ratio, cable.tension_N);
+    }
+    for (std::size_t i = 0; i < std::min(named, state.chambers.size()); ++i) {
+        const auto& chamber = state.chambers[i];
+        line += fmt::format(" · {} {:.4g} %, {:.3g} kPa", chamber.name, 100 * chamber.volume_ratio,
+                            1e-3 * chamber.pressure_Pa);
+    }
+    return line;
+}
+
+Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, const PictureSize& size,
+                                           Progress& progress) {
+    using Draw = Result<Picture> (Painter::*)();
+    static constexpr std::array<Draw, 4> all = {&Painter::rest, &Painter::final, &Painter::stages, &Painter::von_mises};
+    Painter painter(s, surface, size, progress);
+    std::vector<Picture> pictures;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        progress.advance("pictures", static_cast<double>(i) / all.size());
+        auto picture = (painter.*all[i])();
+        if (!picture) return tl::unexpected(picture.error());
+        pictures.push_back(std::move(*picture));
+    }
+    return pictures;
+}
+
+}  // namespace pliant::report

@@ -1,0 +1,36 @@
+// pictures/*.png: the robot at rest, at the end, on its way, and under stress, all from one point of view.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "report/simulation.hpp"
+#include "report/surface.hpp"
+
+namespace pliant::report {
+
+struct Picture {
+    std::string file;   ///< "rest.png"
+    std::string title;  ///< for people
+    std::string png;    ///< the file's bytes
+};
+
+struct PictureSize {
+    int width_px = 1600;
+    int height_px = 1000;
+};
+
+/// rest.png, final.png (rest as a ghost, markers with their paths), stages.png and von_mises.png. Text and lines keep
+/// their proportions to the picture.
+[[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
+                                                         const PictureSize& size, Progress& progress);
+
+/// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N".
+[[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);
+
+/// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value`; 1 for values that
+/// are not positive.
+[[nodiscard]] double nice_ceiling(double value);
+
+}  // namespace pliant::report

@@ -1,0 +1,268 @@
+#include "report/raycast.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "report/embree_scene.hpp"
+#include "report/lighting.hpp"
+
+namespace pliant::report {
+namespace {
+
+constexpr int grid = 4;           // samples per pixel and direction
+constexpr int floor_cell_px = 4;  // the floor's soft shadow is computed at every fourth pixel
+constexpr double sky_strength = 0.64;
+constexpr double key_strength = 0.60;
+constexpr double floor_sky_shadow = 0.42;  // darkening of the backdrop where no sky arrives
+constexpr double floor_key_shadow = 0.26;
+constexpr double floor_contrast = 0.04;
+constexpr double ghost_clearance = 0.003;            // of the body's size: faces that did not move do not flicker
+constexpr double cable_behind = 0.55;                // opacity of a cable inside the body
+constexpr Colour ghost_colour = {0.42, 0.47, 0.54};  // sRGB
+
+Vec3 unit(const Vec3& v) {
+    return v / norm(v);
+}
+
+/// Everything that is computed once per picture.
+class Renderer {
+public:
+    Renderer(const Scene& scene, const Camera& camera, int width, int height)
+        : scene_(scene),
+          camera_(camera),
+          width_(width),
+          height_(height),
+          reach_(reach_of(scene)),
+          lighting_(camera, reach_),
+          body_(device_),
+          cables_(device_),
+          ghost_(device_) {
+        body_.add_triangles(scene.body.positions, scene.surface->triangles);
+        for (const Cable& cable : scene.cables) {
+            if (cable.points.size() >= 2) cables_.add_tube(cable.points, scene.cable_radius_m);
+        }
+        if (scene.ghost) ghost_.add_triangles(scene.ghost->positions, scene.surface->triangles);
+        body_.commit();
+        cables_.commit();
+        ghost_.commit();
+        for (const Colour& c : scene.vertex_colours) albedo_.push_back(to_linear(c));
+        find_window();
+        backdrop_top_ = to_linear(scene.backdrop_top);
+        backdrop_bottom_ = to_linear(scene.backdrop_bottom);
+        cable_albedo_ = to_linear(cable_colour);
+        ghost_albedo_ = to_linear(ghost_colour);
+    }
+
+    [[nodiscard]] Status status() const { return device_.status(); }
+
+    void prepare_floor(const Progress& progress) {
+        floor_columns_ = width_ / floor_cell_px + 2;
+        const int rows = height_ / floor_cell_px + 2;
+        floor_.assign(static_cast<std::size_t>(floor_columns_ * rows), 1.0);
+        parallel_for(static_cast<std::size_t>(rows), 2, [&](std::size_t begin, std::size_t end) {
+            if (progress.cancelled()) return;
+            for (std::size_t row = begin; row < end; ++row) {
+                for (int column = 0; column < floor_columns_; ++column) {
+                    floor_[row * static_cast<std::size_t>(floor_columns_) + static_cast<std::size_t>(column)] =
+                        floor_shade(column * floor_cell_px, static_cast<double>(row) * floor_cell_px);
+                }
+            }
+        });
+    }
+
+    [[nodiscard]] Colour pixel(int x, int y) const;
+
+private:
+    /// Where in the pixel a body was met, and the light there: shared by the samples that see the same smooth patch.
+    struct Patch {
+        Vec3 point, normal;
+        Light light;
+    };
+    /// What the samples of one pixel share.
+    struct Shared {
+        std::vector<Patch> patches;
+        std::optional<double> floor;
+    };
+
+    static double reach_of(const Scene& scene) {
+        Box3 box;
+        for (const Vec3& p : scene.body.positions) box.add(p);
+        return std::max(1e-9, box.diagonal());
+    }
+
+    /// The pixels outside which only backdrop and floor can be seen.
+    void find_window() {
+        const double bead = 2 * scene_.cable_radius_m;
+        const auto widen = [&](const Vec3& p, double radius) {
+            const auto [u, v, depth] = camera_.project(p);
+            const double margin = 2 + radius / depth / camera_.half_height * height_;
+            const double x = (u + 1) / 2 * width_, y = (1 - v) / 2 * height_;
+            window_.add({x - margin, y - margin, 0});
+            window_.add({x + margin, y + margin, 0});
+        };
+        for (const Vec3& p : scene_.body.positions) widen(p, 0);
+        for (const Cable& cable : scene_.cables) {
+            for (const Vec3& p : cable.points) widen(p, bead);
+        }
+        if (!scene_.ghost) return;
+        for (const Vec3& p : scene_.ghost->positions) widen(p, 0);
+    }
+
+    [[nodiscard]] Colour backdrop_colour(double y, double floor) const {
+        return floor * mix(backdrop_top_, backdrop_bottom_, y / height_);
+    }
+
+    [[nodiscard]] Vec3 ray(double x, double y) const {
+        return camera_.direction(2 * x / width_ - 1, 1 - 2 * y / height_);
+    }
+    [[nodiscard]] double floor_shade(double x, double y) const;
+    [[nodiscard]] double floor_at(double x, double y) const;
+    [[nodiscard]] Colour body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const;
+    [[nodiscard]] Light patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
+                                    std::vector<Patch>& patches) const;
+    [[nodiscard]] Colour sample(double x, double y, Shared& shared) const;
+    [[nodiscard]] Colour lit(const Colour& albedo, const Vec3& normal, const Vec3& direction, const Light& light) const;
+
+    const Scene& scene_;
+    const Camera& camera_;
+    int width_, height_;
+    double reach_;
+    Lighting lighting_;
+    EmbreeDevice device_;
+    EmbreeScene body_, cables_, ghost_;
+    std::vector<Colour> albedo_;
+    Colour cable_albedo_, ghost_albedo_, backdrop_top_, backdrop_bottom_;  // linear
+    std::vector<double> floor_;
+    int floor_columns_ = 0;
+    Box3 window_;  ///< pixels, z unused
+};
+
+double Renderer::floor_shade(double x, double y) const {
+    const Vec3 direction = ray(x, y);
+    if (direction.z >= -1e-6) return 1;
+    const double t = (scene_.floor_z_m - camera_.eye.z) / direction.z;
+    if (t <= 0) return 1;
+    const Vec3 lift{0, 0, 1e-4 * reach_};
+    const Light light = lighting_.on_floor(body_, camera_.eye + t * direction + lift);
+    return 1 - floor_sky_shadow * (1 - light.sky) - floor_key_shadow * (1 - light.key);
+}
+
+/// Bilinear between the computed points or, where those differ much (a body touches the floor), computed here.
+double Renderer::floor_at(double x, double y) const {
+    const double column = x / floor_cell_px, row = y / floor_cell_px;
+    const auto c = static_cast<std::size_t>(column), r = static_cast<std::size_t>(row);
+    const double a = column - static_cast<double>(c), b = row - static_cast<double>(r);
+    const auto value = [&](std::size_t i, std::size_t j) {
+        return floor_[i * static_cast<std::size_t>(floor_columns_) + j];
+    };
+    const auto [low, high] = std::minmax({value(r, c), value(r, c + 1), value(r + 1, c), value(r + 1, c + 1)});
+    if (high - low > floor_contrast) return floor_shade(x, y);
+    return (1 - b) * ((1 - a) * value(r, c) + a * value(r, c + 1)) +
+           b * ((1 - a) * value(r + 1, c) + a * value(r + 1, c + 1));
+}
+
+Light Renderer::patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
+                            std::vector<Patch>& patches) const {
+    for (const Patch& patch : patches) {
+        if (dot(patch.normal, normal) > 0.98 && std::abs(dot(patch.normal, point - patch.point)) < 0.004 * reach_) {
+            return patch.light;
+        }
+    }
+    patches.push_back({point, normal, lighting_.at(body_, point, normal, geometric)});
+    return patches.back().light;
+}
+
+Colour Renderer::lit(const Colour& albedo, const Vec3& normal, const Vec3& direction, const Light& light) const {
+    const Vec3 half = unit(lighting_.key_direction() - unit(direction));
+    const double gloss = light.key > 0 ? 0.07 * std::pow(std::max(0.0, dot(normal, half)), 30) : 0.0;
+    const double full = sky_strength * light.sky + key_strength * light.key;
+    return (1 + scene_.shading * (full - 1)) * albedo + scene_.shading * gloss * Colour{1, 1, 1};
+}
+
+Colour Renderer::body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const {
+    const auto& corners = scene_.surface->triangles[hit.primitive];
+    const std::array<double, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
+    Vec3 normal;
+    Colour albedo;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(corners[k]);
+        normal += weights[k] * scene_.body.normals[v];
+        albedo += weights[k] * albedo_[v];
+    }
+    Vec3 geometric = unit(hit.normal);
+    if (dot(geometric, direction) > 0) geometric = -geometric;
+    normal = norm(normal) > 0 ? unit(normal) : geometric;
+    if (dot(normal, geometric) < 0) normal = geometric;
+    const Vec3 point = camera_.eye + hit.distance * direction;
+    return lit(albedo, normal, direction, patch_light(point, normal, geometric, patches));
+}
+
+Colour Renderer::sample(double x, double y, Shared& shared) const {
+    const Vec3 direction = ray(x, y);
+    const Hit body = body_.closest(camera_.eye, direction);
+    if (!body.found && !shared.floor) shared.floor = floor_at(x, y);
+    Colour colour = body.found ? body_colour(body, direction, shared.patches) : backdrop_colour(y, *shared.floor);
+    const double depth = body.found ? body.distance : HUGE_VAL;
+    if (scene_.ghost) {
+        const Hit ghost = ghost_.closest(camera_.eye, direction);
+        if (ghost.found && ghost.distance + ghost_clearance * reach_ / norm(direction) < depth) {
+            const double facing = std::abs(dot(unit(ghost.normal), unit(direction)));
+            colour = mix(colour, ghost_albedo_, 0.13 + 0.24 * std::pow(1 - facing, 2));
+        }
+    }
+    const Hit cable = cables_.closest(camera_.eye, direction);
+    if (cable.found) {
+        Vec3 normal = unit(cable.normal);
+        if (dot(normal, direction) > 0) normal = -normal;
+        const Colour shaded = lit(cable_albedo_, normal, direction, lighting_.unshadowed(normal));
+        colour = mix(colour, shaded, cable.distance < depth ? 1.0 : cable_behind);
+    }
+    return colour;
+}
+
+Colour Renderer::pixel(int x, int y) const {
+    if (!window_.contains({x + 0.5, y + 0.5, 0}, 1)) {
+        return to_srgb(backdrop_colour(y + 0.5, floor_at(x + 0.5, y + 0.5)));
+    }
+    Shared shared;
+    Colour sum;
+    for (int j = 0; j < grid; ++j) {
+        for (int i = 0; i < grid; ++i) {
+            // A rotated lattice: no two samples share a row or column, so near-axis edges get 16 grey levels.
+            const double dx = (i + (j + 0.5) / grid) / grid, dy = (j + (grid - 1 - i + 0.5) / grid) / grid;
+            sum += sample(x + dx, y + dy, shared);
+        }
+    }
+    return to_srgb((1.0 / (grid * grid)) * sum);
+}
+
+std::uint8_t byte(double v) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
+}
+
+}  // namespace
+
+Result<Image> render(const Scene& scene, const Camera& camera, int width_px, int height_px, const Progress& progress) {
+    Renderer renderer(scene, camera, width_px, height_px);
+    if (Status status = renderer.status(); !status) return tl::unexpected(status.error());
+    renderer.prepare_floor(progress);
+    Image image{width_px, height_px, std::vector<std::uint8_t>(static_cast<std::size_t>(width_px * height_px) * 3)};
+    parallel_for(static_cast<std::size_t>(height_px), 4, [&](std::size_t begin, std::size_t end) {
+        if (progress.cancelled()) return;
+        for (std::size_t y = begin; y < end; ++y) {
+            std::uint8_t* out = image.rgb.data() + y * static_cast<std::size_t>(width_px) * 3;
+            for (int x = 0; x < width_px; ++x) {
+                const Colour c = renderer.pixel(x, static_cast<int>(y));
+                *out++ = byte(c.r);
+                *out++ = byte(c.g);
+                *out++ = byte(c.b);
+            }
+        }
+    });
+    if (progress.cancelled()) return cancelled();
+    return image;
+}
+
+}  // namespace pliant::report

@@ -1,0 +1,48 @@
+// What a report is made from: a finished simulation as plain data. Lengths in metres, everything in SI.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/vec3.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "report/colour.hpp"
+#include "sim/fields.hpp"
+#include "sim/trajectory.hpp"
+
+namespace pliant::report {
+
+struct Material {
+    std::string name;
+    std::string law;               ///< for people: "neo-Hookean, E 12 MPa, Poisson ratio 0.45"
+    std::string resin;             ///< what it is printed in; may be empty
+    double density_kg_m3 = 0;      ///< 0: not given
+    std::optional<Colour> colour;  ///< none: a colour of the palette, by index
+};
+
+struct Simulation {
+    std::string robot;                   ///< name of the robot
+    const mesh::TetMesh& mesh;           ///< at rest
+    std::vector<Material> materials{};   ///< at least one
+    std::vector<int> region_material{};  ///< (regions of the mesh), index into materials; -1: a void, never drawn
+    const sim::Trajectory& result;       ///< at least the rest state; every step has (n, 3) positions
+    std::function<sim::Fields(std::span<const Vec3>)> fields{};  ///< of node positions; (tets) values each
+    /// [step][cable][point], as many steps as the result has; empty where there are no cables.
+    std::vector<std::vector<std::vector<Vec3>>> cable_points{};
+    double tolerance = 1e-4;
+    double peak_memory_MB = 0;
+    std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
+};
+
+/// Sizes and indices agree; otherwise an error that names the field.
+[[nodiscard]] Status check(const Simulation& simulation);
+
+/// The material's own colour or that of the palette.
+[[nodiscard]] Colour colour_of(const Simulation& simulation, int material);
+
+}  // namespace pliant::report

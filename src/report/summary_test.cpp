@@ -1,0 +1,56 @@
+#include "report/summary.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/test_robot.hpp"
+
+using namespace pliant;
+using namespace pliant::report;
+using nlohmann::json;
+
+TEST_CASE("summary.json has the keys and values that the design promises") {
+    auto robot = test::bent_bar(10, 2);
+    robot.result.steps.back().chambers = {{"air", 1.25, 2e-6, 40e3}};
+    const json j = json::parse(summary_json(robot.simulation()));
+    CHECK(j["robot"] == "bent bar");
+    CHECK(j["pliant"].get<std::string>().find('.') != std::string::npos);
+    CHECK(j["nodes"] == robot.mesh.points.size());
+    CHECK(j["tets"] == 1440);
+    CHECK(j["order"] == 2);
+    CHECK(j["solver"] == "newton");
+    CHECK(j["converged"] == true);
+    CHECK(j["message"] == "");
+    CHECK(j["peak_memory_MB"] == 123.5);
+    CHECK(j["timing"]["setup_ms"] == 250);
+    CHECK(j["timing"]["solve_ms"] == 500);
+    CHECK(j["timing"]["frames_per_second"] == 20);
+    REQUIRE(j["steps"].size() == 10);
+    CHECK(j["rest"]["index"] == 0);
+    CHECK(j["steps"][0]["index"] == 1);
+    const json& last = j["steps"][9];
+    CHECK(last["index"] == 10);
+    CHECK(last["iterations"] == 6);
+    CHECK(last["residual"] == doctest::Approx(3.5e-6));
+    CHECK(last["wall_ms"] == doctest::Approx(12));
+    CHECK(last["min_J"] == doctest::Approx(0.98));
+    CHECK(last["cables"]["flexor"]["tension_N"] == 71);
+    CHECK(last["cables"]["flexor"]["length_mm"].get<double>() ==
+          doctest::Approx(120 * last["cables"]["flexor"]["length_ratio"].get<double>()));
+    CHECK(last["chambers"]["air"]["volume_mm3"] == doctest::Approx(2000));
+    CHECK(last["chambers"]["air"]["pressure_kPa"] == doctest::Approx(40));
+    CHECK(last["supports"]["base"]["force_N"] == json({-71, 0, 0.5}));
+    CHECK(last["markers"]["tip"][0].get<double>() == doctest::Approx(200 / 3.14159265358979));
+    CHECK(j["steps"][3]["chambers"].empty());
+}
+
+TEST_CASE("what is no number becomes null and what is no text is replaced") {
+    auto robot = test::bent_bar(1, 1);
+    robot.result.steps[1].residual = std::nan("");
+    robot.result.message = "stopped \xff here";
+    const json j = json::parse(summary_json(robot.simulation(), -1));
+    CHECK(j["steps"][0]["residual"].is_null());
+    CHECK(j["message"] == "stopped \xef\xbf\xbd here");
+}

@@ -1,0 +1,108 @@
+#include "report/tables.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+
+namespace pliant::report {
+namespace {
+
+/// Collects one line; fields are separated as they come.
+class Row {
+public:
+    void text(std::string_view value) { add(csv_field(value)); }
+    void number(double value) { add(fmt::format("{:.10g}", value)); }
+    void number(int value) { add(fmt::format("{}", value)); }
+    void vector(const Vec3& v, double factor) {
+        for (std::size_t i = 0; i < 3; ++i) number(factor * v[i]);
+    }
+    [[nodiscard]] std::string line() const { return line_ + "\n"; }
+
+private:
+    void add(const std::string& field) {
+        if (!line_.empty()) line_ += ',';
+        line_ += field;
+    }
+    std::string line_;
+};
+
+void names(Row& row, const std::string& name, std::span<const std::string_view> columns) {
+    for (const std::string_view column : columns) row.text(fmt::format("{}_{}", name, column));
+}
+
+std::string steps_header(const sim::Step& rest) {
+    static constexpr std::array<std::string_view, 8> common = {"index",    "time",     "converged", "iterations",
+                                                               "substeps", "residual", "wall_ms",   "min_J"};
+    static constexpr std::array<std::string_view, 3> cable = {"length_ratio", "length_mm", "tension_N"};
+    static constexpr std::array<std::string_view, 3> chamber = {"volume_ratio", "volume_mm3", "pressure_kPa"};
+    static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
+    Row row;
+    for (const std::string_view name : common) row.text(name);
+    for (const auto& c : rest.cables) names(row, c.name, cable);
+    for (const auto& c : rest.chambers) names(row, c.name, chamber);
+    for (const auto& s : rest.supports) names(row, s.name, force);
+    return row.line();
+}
+
+std::string steps_row(const sim::Step& step) {
+    Row row;
+    row.number(step.index);
+    row.number(step.time);
+    row.number(step.converged ? 1 : 0);
+    row.number(step.iterations);
+    row.number(step.substeps);
+    row.number(step.residual);
+    row.number(1e3 * step.wall_s);
+    row.number(step.min_J);
+    for (const auto& c : step.cables) {
+        row.number(c.length_ratio);
+        row.number(1e3 * c.length_m);
+        row.number(c.tension_N);
+    }
+    for (const auto& c : step.chambers) {
+        row.number(c.volume_ratio);
+        row.number(1e9 * c.volume_m3);
+        row.number(1e-3 * c.pressure_Pa);
+    }
+    for (const auto& s : step.supports) row.vector(s.force_N, 1);
+    return row.line();
+}
+
+}  // namespace
+
+std::string csv_field(std::string_view text) {
+    const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+    const std::string out = fmt::format("{}{}", formula ? "'" : "", text);
+    if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
+    std::string quoted = "\"";
+    for (const char c : out) {
+        if (c == '"') quoted += '"';
+        quoted += c;
+    }
+    return quoted + "\"";
+}
+
+std::string steps_csv(const sim::Trajectory& result) {
+    std::string out = steps_header(result.steps.front());
+    for (const sim::Step& step : result.steps) out += steps_row(step);
+    return out;
+}
+
+std::string markers_csv(const sim::Trajectory& result) {
+    static constexpr std::array<std::string_view, 3> axes = {"x_mm", "y_mm", "z_mm"};
+    Row header;
+    header.text("index");
+    header.text("time");
+    for (const auto& marker : result.steps.front().markers) names(header, marker.name, axes);
+    std::string out = header.line();
+    for (const sim::Step& step : result.steps) {
+        Row row;
+        row.number(step.index);
+        row.number(step.time);
+        for (const auto& marker : step.markers) row.vector(marker.position_m, 1e3);
+        out += row.line();
+    }
+    return out;
+}
+
+}  // namespace pliant::report
