@@ -124,7 +124,7 @@ int bottom_layers(const machine::Printer& printer) {
 
 void print_summary(const Options& options, const job::Manifest& manifest, const plan::Plan& plan) {
     if (options.output.quiet) return;
-    fmt::print("{}: {} layers of {} um, {} x {} px of {} um\n", options.job, manifest.layers.size(),
+    fmt::print("{}: {} layers of {} um, {} x {} px of {:.6g} um\n", options.job, manifest.layers.size(),
                manifest.layers.empty() ? 0 : manifest.layers.front().thickness_um, manifest.width_px,
                manifest.height_px, manifest.pixel_um);
     for (const job::Material& material : manifest.materials) {
