@@ -154,6 +154,8 @@ TEST_CASE("the writer refuses bad names, repeated names and missing folders") {
     auto writer = Writer::create(folder / "a.zip");
     CHECK(!writer->add_file("../x", "").has_value());
     CHECK(!writer->add_image("/x.png", image_a).has_value());
+    CHECK(!writer->add_image("a.png", Image{}).has_value());
+    CHECK(!writer->add_image("a.png", Image{8, 4, {1, 2, 3}}).has_value());
     CHECK(writer->add_file("x", "").has_value());
     CHECK(!writer->add_file("x", "").has_value());
     CHECK(!Writer::create(folder / "none/a.zip").has_value());

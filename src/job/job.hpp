@@ -68,7 +68,8 @@ struct EncodedImage {
     std::string png;
 };
 
-/// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads.
+/// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads. Precondition: at least
+/// one pixel, and as many values as pixels.
 [[nodiscard]] EncodedImage encode(const Image& image);
 
 /// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
@@ -81,7 +82,8 @@ public:
     Writer& operator=(Writer&&) noexcept;
     ~Writer();
 
-    /// Adds an image; `file` as in LayerImage. Errors: an unsafe name, a name used before.
+    /// Adds an image; `file` as in LayerImage. Errors: an unsafe name, a name used before, an image
+    /// without pixels or with another number of values.
     [[nodiscard]] Status add_image(const std::string& file, const Image& image);
     [[nodiscard]] Status add_image(const std::string& file, EncodedImage image);
     /// Adds any other file, deflated. Errors as above.

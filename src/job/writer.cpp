@@ -60,6 +60,10 @@ Result<Writer> Writer::create(const fs::path& path) {
 }
 
 Status Writer::add_image(const std::string& file, const Image& image) {
+    const long long count = static_cast<long long>(image.width_px) * image.height_px;
+    if (image.width_px < 1 || image.height_px < 1 || count != static_cast<long long>(image.pixels.size()))
+        return input_error("{}: image '{}' of {} x {} pixels holds {} values", state_->path.string(), file,
+                           image.width_px, image.height_px, image.pixels.size());
     return add_image(file, encode(image));
 }
 

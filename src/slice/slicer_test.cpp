@@ -289,6 +289,37 @@ TEST_CASE("emit's error and cancellation stop the work") {
               .cause == Cause::cancelled);
 }
 
+TEST_CASE("any tangle of triangles is refused or printed inside its box") {
+    std::uint32_t state = 7;
+    const auto random = [&](int n) {
+        state = state * 1664525 + 1013904223;
+        return static_cast<int>((state >> 8) % static_cast<std::uint32_t>(n));
+    };
+    int printed = 0;
+    for (int round = 0; round < 300; ++round) {
+        mesh::TriMesh tangle = box({-500, -500, 0}, {500, 500, 400});
+        for (int i = random(4); i > 0; --i) tangle.triangles.erase(tangle.triangles.begin() + random(8));
+        for (int i = 0; i < 6; ++i)
+            tangle.points.push_back({random(1000) - 500.0, random(1000) - 500.0, random(400) * 1.0});
+        const int points = static_cast<int>(tangle.points.size());
+        for (int i = random(8); i > 0; --i)
+            tangle.triangles.push_back({random(points), random(points), random(points)});
+        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", tangle, ""}}, {raster, 50, {}});
+        if (!slicer) continue;
+        ++printed;
+        for (int k = 0; k < slicer->layer_count(); ++k) {
+            for (const MaterialImage& m : slicer->layer(k).images) {
+                long inside = 0;
+                for (int row = 24 - 5; row < 24 + 5; ++row) {
+                    for (int column = 32 - 5; column < 32 + 5; ++column) inside += m.image.at(row, column);
+                }
+                CHECK(inside == value_sum(m.image));
+            }
+        }
+    }
+    CHECK(printed > 30);
+}
+
 TEST_CASE("placing centres the part, lowers it, and refuses what is too large") {
     std::vector<Body> bodies{{"soft", box({5000, 6000, 7000}, {6000, 8000, 7100}), ""},
                              {"rigid", box({6000, 6000, 7000}, {7000, 8000, 7200}), ""}};
