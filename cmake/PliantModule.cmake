@@ -8,7 +8,8 @@
 
 add_library(pliant_flags INTERFACE)
 target_include_directories(pliant_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
-target_compile_options(pliant_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+target_compile_options(pliant_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # false alarms of GCC 12
 if(PLIANT_SANITIZE)
   target_compile_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -g)
   target_link_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE})

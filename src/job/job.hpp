@@ -14,34 +14,30 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "slice/image.hpp"
 
 namespace pliant::job {
 
-/// 8-bit grey, row by row from the top; 0 is dark, 255 full light.
-struct Image {
-    int width_px = 0;
-    int height_px = 0;
-    std::vector<std::uint8_t> pixels;  ///< (height_px, width_px)
-};
+using Image = slice::Image;
 
 struct Material {
-    std::string name;               ///< as in the robot file; unique
-    std::string resin;              ///< what a printer's vat is filled with
-    double model_volume_mm3 = 0;    ///< of the bodies as drawn, for the comparison after the print
-    double model_area_mm2 = 0;      ///< of their surface: one pixel layer around it is the error a raster may make
-    double exposure_s = 0;          ///< of a normal layer
-    double bottom_exposure_s = 0;   ///< of the first `bottom_layers`
+    std::string name;              ///< as in the robot file; unique
+    std::string resin;             ///< what a printer's vat is filled with
+    double model_volume_mm3 = 0;   ///< of the bodies as drawn, for the comparison after the print
+    double model_area_mm2 = 0;     ///< of their surface: one pixel layer around it is the error a raster may make
+    double exposure_s = 0;         ///< of a normal layer
+    double bottom_exposure_s = 0;  ///< of the first `bottom_layers`
 };
 
 /// One image that is not blank.
 struct LayerImage {
-    int material = 0;         ///< index into Manifest::materials
-    std::string file;         ///< name inside the archive
-    double area_mm2 = 0;      ///< sum of pixel values / 255 times the pixel's area
+    int material = 0;     ///< index into Manifest::materials
+    std::string file;     ///< name inside the archive
+    double area_mm2 = 0;  ///< sum of pixel values / 255 times the pixel's area
 };
 
 struct Layer {
-    int z_um = 0;             ///< height of the layer's top above the platform
+    int z_um = 0;  ///< height of the layer's top above the platform
     int thickness_um = 0;
     std::vector<LayerImage> images;  ///< ordered by material; empty where nothing is printed
 };
@@ -50,24 +46,48 @@ struct Manifest {
     std::string name;
     std::string pliant_version;
     int width_px = 0, height_px = 0;
-    double pixel_um = 0;      ///< edge length of a (square) pixel on the platform
+    double pixel_um = 0;  ///< edge length of a (square) pixel on the platform
     int bottom_layers = 0;
     std::vector<Material> materials;
     std::vector<Layer> layers;
     std::vector<std::string> warnings;  ///< what the slicer repaired or noticed
 };
 
-/// Writes a job aside and puts it in place with finish(); without it nothing is left behind.
+/// Refuses a manifest that does not agree with itself: sizes and numbers out of range, a material without a name or
+/// named twice, heights that do not rise, an image of a material that does not exist or comes twice in its layer, file
+/// names that are not plain relative paths. The message starts with `where`.
+[[nodiscard]] Status check(const Manifest& manifest, std::string_view where);
+
+/// "layers/00012_soft.png"; what is not a letter, digit, '-' or '_' in the material's name becomes '_'.
+[[nodiscard]] std::string image_file_name(int layer, std::string_view material);
+
+/// An image as a PNG file, with its size at hand.
+struct EncodedImage {
+    int width_px = 0;
+    int height_px = 0;
+    std::string png;
+};
+
+/// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads.
+[[nodiscard]] EncodedImage encode(const Image& image);
+
+/// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
+/// give the same bytes. Encoded files stay in memory until finish(): some 10 kB per image of 2 megapixels.
 class Writer {
 public:
+    /// Errors: the folder does not exist, PATH is a folder.
     [[nodiscard]] static Result<Writer> create(const std::filesystem::path& path);
     Writer(Writer&&) noexcept;
     Writer& operator=(Writer&&) noexcept;
     ~Writer();
 
-    /// Encodes and adds an image; `file` as in LayerImage.
+    /// Adds an image; `file` as in LayerImage. Errors: an unsafe name, a name used before.
     [[nodiscard]] Status add_image(const std::string& file, const Image& image);
+    [[nodiscard]] Status add_image(const std::string& file, EncodedImage image);
+    /// Adds any other file, deflated. Errors as above.
     [[nodiscard]] Status add_file(const std::string& file, std::string_view bytes);
+    /// Adds the manifest, writes everything and renames. Errors: check(), an image that was not added or has another
+    /// size than the manifest says, the disk. The writer is spent either way.
     [[nodiscard]] Status finish(const Manifest& manifest);
 
 private:
@@ -77,7 +97,8 @@ private:
 };
 
 /// A job that has been opened and validated: every image that the manifest lists exists, indices and sizes agree.
-/// Archives from anywhere are safe to open: sizes are checked before memory is taken.
+/// Archives from anywhere are safe to open: sizes are checked before memory is taken. Errors name archive and entry.
+/// One thread at a time.
 class Archive {
 public:
     [[nodiscard]] static Result<Archive> open(const std::filesystem::path& path);
@@ -87,6 +108,7 @@ public:
 
     [[nodiscard]] const Manifest& manifest() const;
     [[nodiscard]] bool has_file(const std::string& file) const;
+    /// The bytes of an entry of at most 1 GB.
     [[nodiscard]] Result<std::string> file(const std::string& file) const;
     /// Decodes an image; its size is that of the manifest.
     [[nodiscard]] Result<Image> image(const std::string& file) const;

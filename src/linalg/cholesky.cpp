@@ -1,6 +1,7 @@
 #include "linalg/cholesky.hpp"
 
 #include <cholmod.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cassert>
@@ -46,6 +47,19 @@ struct Cholesky::State {
 
 namespace {
 
+/// CHOLMOD's loops ask OpenMP for four threads that spin while they wait; on a shared machine that costs more than the
+/// factorisation. While one of these lives, OpenMP regions run on the calling thread alone.
+class OneThread {
+public:
+    OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+    ~OneThread() { omp_set_max_active_levels(before_); }
+    OneThread(const OneThread&) = delete;
+    OneThread& operator=(const OneThread&) = delete;
+
+private:
+    int before_;
+};
+
 /// Fill-reducing order of the nodes: the graph is `block` times smaller than that of the unknowns.
 std::vector<int> order_nodes(const SymmetricPattern& pattern, cholmod_common& common) {
     cholmod_sparse graph{};
@@ -67,6 +81,7 @@ std::vector<int> order_nodes(const SymmetricPattern& pattern, cholmod_common& co
 }  // namespace
 
 Cholesky::Cholesky(const SymmetricPattern& pattern) : state_(std::make_unique<State>()) {
+    const OneThread scope;
     cholmod_common& common = state_->common;
     state_->pattern = pattern;
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -91,6 +106,7 @@ Cholesky::~Cholesky() = default;
 bool Cholesky::factorise(std::span<const double> values) {
     assert(values.size() == state_->pattern.entries());
     if (state_->factor == nullptr) return false;
+    const OneThread scope;
     cholmod_sparse matrix = state_->view(values.data());
     cholmod_factorize(&matrix, state_->factor, &state_->common);
     return state_->common.status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
@@ -100,6 +116,7 @@ void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
     const auto n = static_cast<std::size_t>(state_->pattern.size());
     assert(right_hand_sides.size() == n * static_cast<std::size_t>(columns));
     if (n == 0 || columns == 0) return;
+    const OneThread scope;
     cholmod_dense b{};
     b.nrow = b.d = n;
     b.ncol = static_cast<std::size_t>(columns);

@@ -89,6 +89,36 @@ Matrix9 first_piola_gradient(const ShapeBlend& law, const Matrix3& F) {
     return law.weight_Pa * H;
 }
 
+Matrix3 green_strain(const Matrix3& F) {
+    return 0.5 * (F.transpose() * F - Matrix3::Identity());
+}
+
+/// Second Piola-Kirchhoff stress for a (rate of) Green strain: linear in it.
+Matrix3 second_piola(const StVenantKirchhoff& law, const Matrix3& E) {
+    return 2 * law.shear_Pa * E + law.lame_Pa * E.trace() * Matrix3::Identity();
+}
+
+std::optional<double> psi(const StVenantKirchhoff& law, const Matrix3& F) {
+    const Matrix3 E = green_strain(F);
+    return law.shear_Pa * E.squaredNorm() + 0.5 * law.lame_Pa * E.trace() * E.trace();
+}
+
+Matrix3 first_piola(const StVenantKirchhoff& law, const Matrix3& F) {
+    return F * second_piola(law, green_strain(F));
+}
+
+Matrix9 first_piola_gradient(const StVenantKirchhoff& law, const Matrix3& F) {
+    const Matrix3 S = second_piola(law, green_strain(F));
+    Matrix9 H;
+    for (int k = 0; k < 9; ++k) {
+        Matrix3 dF = Matrix3::Zero();
+        dF(k % 3, k / 3) = 1;
+        const Matrix3 dE = 0.5 * (F.transpose() * dF + dF.transpose() * F);
+        H.col(k) = vec(dF * S + F * second_piola(law, dE));
+    }
+    return H;
+}
+
 }  // namespace
 
 Moduli moduli(double youngs_modulus_Pa, double poisson_ratio) {
@@ -98,6 +128,11 @@ Moduli moduli(double youngs_modulus_Pa, double poisson_ratio) {
 NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio) {
     const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
     return {m.shear_Pa, m.bulk_Pa};
+}
+
+StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
 }
 
 ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio) {
@@ -131,13 +166,23 @@ bool has_energy(const Law& law) {
 }
 
 double stiffness_bound(const Law& law) {
-    if (const auto* blend = std::get_if<ShapeBlend>(&law)) return blend->weight_Pa;
-    const auto& neo = std::get<NeoHookean>(law);
-    return std::max(3 * neo.bulk_Pa, 2 * neo.shear_Pa);
+    struct Bound {
+        double operator()(const NeoHookean& l) const { return std::max(3 * l.bulk_Pa, 2 * l.shear_Pa); }
+        double operator()(const ShapeBlend& l) const { return l.weight_Pa; }
+        double operator()(const StVenantKirchhoff& l) const {
+            return std::max(3 * l.lame_Pa + 2 * l.shear_Pa, 2 * l.shear_Pa);
+        }
+    };
+    return std::visit(Bound{}, law);
 }
 
 std::string_view name(const Law& law) {
-    return law.index() == 0 ? "neo-hookean" : "shape-blend";
+    struct Name {
+        std::string_view operator()(const NeoHookean&) const { return "neo-hookean"; }
+        std::string_view operator()(const ShapeBlend&) const { return "shape-blend"; }
+        std::string_view operator()(const StVenantKirchhoff&) const { return "st-venant-kirchhoff"; }
+    };
+    return std::visit(Name{}, law);
 }
 
 }  // namespace pliant::material

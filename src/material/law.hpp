@@ -38,9 +38,17 @@ struct ShapeBlend {
     double a;
 };
 
-using Law = std::variant<NeoHookean, ShapeBlend>;
+/// psi = mu E:E + lambda/2 (tr E)^2 with the Green strain E = (F^T F - I) / 2: Hooke's law for large rotations and
+/// small strains; it has no resistance to being crushed. CalculiX' *ELASTIC with NLGEOM.
+struct StVenantKirchhoff {
+    double shear_Pa;
+    double lame_Pa;  ///< lambda = K - 2 mu / 3
+};
+
+using Law = std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff>;
 
 [[nodiscard]] NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio);
+[[nodiscard]] StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio);
 /// The blend with the same small-strain moduli: w = 3K, a = (1 - 2 nu) / (1 + nu).
 [[nodiscard]] ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio);
 

@@ -13,9 +13,8 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 namespace {
 
 const std::vector<std::pair<std::string, Law>> laws = {
-    {"neo-hookean, nu 0.3", neo_hookean(12e6, 0.3)},
-    {"neo-hookean, nu 0.499", neo_hookean(12e6, 0.499)},
-    {"shape-blend", shape_blend(12e6, 0.45)},
+    {"neo-hookean, nu 0.3", neo_hookean(12e6, 0.3)},          {"neo-hookean, nu 0.499", neo_hookean(12e6, 0.499)},
+    {"st-venant-kirchhoff", st_venant_kirchhoff(12e6, 0.45)}, {"shape-blend", shape_blend(12e6, 0.45)},
     {"shape-blend, rigid target", ShapeBlend{3e6, 1.0}},
 };
 
@@ -103,7 +102,7 @@ TEST_CASE("a rotation of the deformed body rotates the stress and leaves the ene
 TEST_CASE("small strains follow Hooke's law with the given E and nu") {
     const double E = 12e6;
     const double nu = 0.4;
-    for (const Law& law : {Law(neo_hookean(E, nu)), Law(shape_blend(E, nu))}) {
+    for (const Law& law : {Law(neo_hookean(E, nu)), Law(shape_blend(E, nu)), Law(st_venant_kirchhoff(E, nu))}) {
         const double strain = 1e-7;  // uniaxial stress: sideways contraction nu
         const Matrix3 F = Eigen::Vector3d(1 + strain, 1 - nu * strain, 1 - nu * strain).asDiagonal();
         const Matrix3 P = stress(law, F);

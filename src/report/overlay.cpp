@@ -95,7 +95,7 @@ void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const
         canvas.text({x + width, y0 + height + 48}, fmt::format("peak {:.3g}", highest), {21, faint_ink, Align::centre});
 }
 
-void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Result& result) {
+void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajectory& result) {
     const std::size_t markers = result.steps.front().markers.size();
     for (std::size_t m = 0; m < markers; ++m) {
         std::vector<Point2> path;

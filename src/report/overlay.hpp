@@ -27,6 +27,6 @@ void draw_scale_bar(Canvas& canvas, const Camera& camera, const Vec3& centre);
 void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const std::string& unit, double highest);
 
 /// The way of each marker over all steps, with its name at the end.
-void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Result& result);
+void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajectory& result);
 
 }  // namespace pliant::report

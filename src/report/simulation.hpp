@@ -13,7 +13,7 @@
 #include "mesh/tet_mesh.hpp"
 #include "report/colour.hpp"
 #include "sim/fields.hpp"
-#include "sim/result.hpp"
+#include "sim/trajectory.hpp"
 
 namespace pliant::report {
 
@@ -26,17 +26,17 @@ struct Material {
 };
 
 struct Simulation {
-    std::string robot;                 ///< name of the robot
-    const mesh::TetMesh& mesh;         ///< at rest
-    std::vector<Material> materials;   ///< at least one
-    std::vector<int> region_material;  ///< (regions of the mesh), index into materials; -1: a void, never drawn
-    const sim::Result& result;         ///< at least the rest state; every step has (n, 3) positions
-    std::function<sim::Fields(std::span<const Vec3>)> fields;  ///< of node positions; (tets) values each
+    std::string robot;                   ///< name of the robot
+    const mesh::TetMesh& mesh;           ///< at rest
+    std::vector<Material> materials{};   ///< at least one
+    std::vector<int> region_material{};  ///< (regions of the mesh), index into materials; -1: a void, never drawn
+    const sim::Trajectory& result;       ///< at least the rest state; every step has (n, 3) positions
+    std::function<sim::Fields(std::span<const Vec3>)> fields{};  ///< of node positions; (tets) values each
     /// [step][cable][point], as many steps as the result has; empty where there are no cables.
-    std::vector<std::vector<std::vector<Vec3>>> cable_points;
+    std::vector<std::vector<std::vector<Vec3>>> cable_points{};
     double tolerance = 1e-4;
     double peak_memory_MB = 0;
-    std::vector<std::pair<std::string, std::string>> settings;  ///< what else the report should list: name, value
+    std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
 };
 
 /// Sizes and indices agree; otherwise an error that names the field.

@@ -45,7 +45,7 @@ Json step_json(const sim::Step& step) {
     return out;
 }
 
-Json timing_json(const sim::Result& result) {
+Json timing_json(const sim::Trajectory& result) {
     const auto steps = static_cast<double>(result.steps.size()) - 1;
     return {{"setup_ms", 1e3 * result.setup_s},
             {"solve_ms", 1e3 * result.solve_s},

@@ -82,13 +82,13 @@ std::string csv_field(std::string_view text) {
     return quoted + "\"";
 }
 
-std::string steps_csv(const sim::Result& result) {
+std::string steps_csv(const sim::Trajectory& result) {
     std::string out = steps_header(result.steps.front());
     for (const sim::Step& step : result.steps) out += steps_row(step);
     return out;
 }
 
-std::string markers_csv(const sim::Result& result) {
+std::string markers_csv(const sim::Trajectory& result) {
     static constexpr std::array<std::string_view, 3> axes = {"x_mm", "y_mm", "z_mm"};
     Row header;
     header.text("index");

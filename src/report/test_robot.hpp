@@ -8,7 +8,7 @@ namespace pliant::report::test {
 /// Owns what a Simulation refers to.
 struct Robot {
     mesh::TetMesh mesh;
-    sim::Result result;
+    sim::Trajectory result;
     std::vector<std::vector<std::vector<Vec3>>> cable_points;
 
     [[nodiscard]] Simulation simulation() const;

@@ -1,15 +1,11 @@
 #include "sim/cable_path.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace pliant::sim {
-namespace {
 
-constexpr double shortest_m = 1e-12;  // a segment shorter than this has no direction
-
-}  // namespace
-
-CablePath::CablePath(const Cable& cable) {
+CablePath::CablePath(const Cable& cable, std::span<const double> rest) {
     for (std::size_t k = 0; k + 1 < cable.points.size(); ++k) {
         const Attachment& from = cable.points[k];
         const Attachment& to = cable.points[k + 1];
@@ -25,6 +21,11 @@ CablePath::CablePath(const Cable& cable) {
         if (from.nodes.empty()) segment.offset -= from.fixed;
         segments_.push_back(std::move(segment));
     }
+    const double total = length(rest);
+    met_length_m_ = 1e-3 * total;
+    for (const Segment& segment : segments_)
+        met_length_m_ = std::min(met_length_m_, 0.25 * norm(vector_of(segment, rest)));
+    met_length_m_ = std::max(met_length_m_, 1e-9 * total);
 }
 
 Vec3 CablePath::vector_of(const Segment& segment, std::span<const double> x) {
@@ -38,15 +39,24 @@ Vec3 CablePath::vector_of(const Segment& segment, std::span<const double> x) {
 
 double CablePath::length(std::span<const double> x) const {
     double sum = 0;
-    for (const Segment& segment : segments_) sum += norm(vector_of(segment, x));
+    for (const Segment& segment : segments_) {
+        const double l = norm(vector_of(segment, x));
+        sum += l >= met_length_m_ ? l : 0.5 * (l * l / met_length_m_ + met_length_m_);
+    }
     return sum;
+}
+
+int CablePath::closed_segment(std::span<const double> x) const {
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        if (norm(vector_of(segments_[k], x)) < met_length_m_) return static_cast<int>(k);
+    }
+    return -1;
 }
 
 void CablePath::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
     for (const Segment& segment : segments_) {
         const Vec3 d = vector_of(segment, x);
-        const double l = norm(d);
-        if (l < shortest_m) continue;
+        const double l = std::max(norm(d), met_length_m_);
         for (std::size_t i = 0; i < segment.nodes.size(); ++i) {
             const Vec3 f = (factor * segment.weights[i] / l) * d;
             double* target = forces.data() + 3 * static_cast<std::size_t>(segment.nodes[i]);
@@ -61,9 +71,8 @@ void CablePath::add_hessian(std::span<const double> x, double factor, const std:
                             const linalg::SymmetricPattern& pattern, std::span<double> values) const {
     for (const Segment& segment : segments_) {
         const Vec3 d = vector_of(segment, x);
-        const double l = norm(d);
-        if (l < shortest_m) continue;
-        const Vec3 t = d / l;
+        const double l = std::max(norm(d), met_length_m_);
+        const Vec3 t = norm(d) >= met_length_m_ ? d / l : Vec3{};
         for (std::size_t b = 0; b < segment.nodes.size(); ++b) {
             const int j = free_index[segment.nodes[b]];
             if (j < 0) continue;

@@ -14,9 +14,12 @@ namespace pliant::sim {
 ///   length          L = sum |d|
 ///   gradient        dL/dx_i = sum W_i t,                t = d / |d|
 ///   second gradient d2L/dx_i dx_j = sum W_i W_j (I - t t^T) / |d|.
+/// |d| has a kink at zero, where two guide points meet because a gap has closed. Below `met_length_m` (a thousandth of
+/// the cable) it is replaced by the parabola that continues it smoothly (Huber), so that the points stay together.
 class CablePath {
 public:
-    explicit CablePath(const Cable& cable);
+    /// `rest` (3n): node positions at rest.
+    CablePath(const Cable& cable, std::span<const double> rest);
 
     [[nodiscard]] double length(std::span<const double> x) const;
     /// forces (3n) += factor * dL/dx.
@@ -24,6 +27,8 @@ public:
     /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques().
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+    /// The first segment whose ends have met (its index from 0), or -1.
+    [[nodiscard]] int closed_segment(std::span<const double> x) const;
     void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
 
 private:
@@ -34,6 +39,7 @@ private:
     };
     [[nodiscard]] static Vec3 vector_of(const Segment& segment, std::span<const double> x);
     std::vector<Segment> segments_;
+    double met_length_m_ = 0;
 };
 
 }  // namespace pliant::sim

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/elements.hpp"
 
@@ -38,12 +39,14 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
         }
     }
     for (const Cable& cable : d.cables) {
-        cables_.emplace_back(cable);
+        cables_.emplace_back(cable, view(std::as_const(rest_)));
         rest_length_.push_back(cables_.back().length(view(rest_)));
     }
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
-    force_floor_ = 1e-12 * stiffest * std::pow(std::max(mesh::volume(d.mesh), 0.0), 2.0 / 3);
+    const double volume = mesh::volume(d.mesh);
+    force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
+    energy_rounding_ = 1e-16 * stiffest * volume;
 }
 
 Controls Equilibrium::controls(double time) const {

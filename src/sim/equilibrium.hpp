@@ -55,6 +55,9 @@ public:
     [[nodiscard]] const std::vector<CablePath>& cables() const { return cables_; }
     [[nodiscard]] double rest_length_m(std::size_t cable) const { return rest_length_[cable]; }
 
+    /// Energies that differ by less than this are the same to rounding.
+    [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
+
     /// (3n) -> (3 free nodes) and back; the rest of `full` is left alone.
     [[nodiscard]] Eigen::VectorXd restrict_to_free(const Eigen::VectorXd& full) const;
     void add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const;
@@ -70,6 +73,7 @@ private:
     Eigen::VectorXd rest_;      ///< (3n)
     Eigen::VectorXd external_;  ///< (3n) all loads and gravity at full scale
     double force_floor_ = 0;    ///< forces below this are rounding, not load
+    double energy_rounding_ = 0;
 };
 
 }  // namespace pliant::sim

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <set>
 
 #include "material/law.hpp"
 #include "sim/curvature.hpp"
@@ -75,6 +76,20 @@ public:
         for (int n = 0; n < model_.node_count(); ++n) step.positions.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
     }
 
+    /// A gap that has closed between two guide points: from here on the flanks would touch.
+    void warn(int step, std::vector<std::string>& warnings) {
+        const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
+        for (std::size_t c = 0; c < system_.cables().size(); ++c) {
+            const int segment = system_.cables()[c].closed_segment(x);
+            if (segment < 0 || !warned_.insert(c).second) continue;
+            warnings.push_back(
+                fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
+                            "closed, and contact "
+                            "of its flanks is not modelled",
+                            step, segment + 1, segment + 2, model_.description().cables[c].name));
+        }
+    }
+
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, system_.controls(0)); }
 
 private:
@@ -95,7 +110,8 @@ private:
         return conservative ? make_newton(system_) : make_quasi_newton(laplacian_);
     }
 
-    /// Supports at their new place and two guesses for the rest: as they were, or on as before. The better one starts.
+    /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
+    /// out, as it was.
     StepOutcome attempt(double time, State& next, const Progress& progress) {
         const Controls controls = system_.controls(time);
         next = follow_supports(state_, controls);
@@ -105,9 +121,7 @@ private:
             onward.x += factor * (state_.x - previous_.x);
             onward.tension = (onward.tension + factor * (state_.tension - previous_.tension)).cwiseMax(0.0);
             system_.place_supports(controls, onward.x);
-            const Evaluation still = system_.evaluate(next, controls);
-            const Evaluation moved = system_.evaluate(onward, controls);
-            if (moved.min_J > 0 && (!(still.min_J > 0) || moved.error() < still.error())) next = std::move(onward);
+            if (system_.evaluate(onward, controls).min_J > 0) next = std::move(onward);
         }
         const Evaluation start = system_.evaluate(next, controls);
         if (!(start.min_J > 0)) {
@@ -147,12 +161,13 @@ private:
     double time_ = 0;
     double previous_time_ = 0;
     Evaluation evaluation_;
+    std::set<std::size_t> warned_;  ///< cables
 };
 
 }  // namespace
 
-Result run(const Model& model, const Program& program, Progress& progress) {
-    Result result;
+Trajectory run(const Model& model, const Program& program, Progress& progress) {
+    Trajectory result;
     const auto start = std::chrono::steady_clock::now();
     Run walk(model, program);
     result.solver = walk.solver_name();
@@ -174,6 +189,7 @@ Result run(const Model& model, const Program& program, Progress& progress) {
             break;
         }
         walk.describe(step);
+        walk.warn(k, result.warnings);
         step.wall_s = seconds_since(begin);
         result.solve_s += step.wall_s;
         result.steps.push_back(std::move(step));

@@ -5,7 +5,7 @@
 
 #include "core/progress.hpp"
 #include "sim/model.hpp"
-#include "sim/result.hpp"
+#include "sim/trajectory.hpp"
 
 namespace pliant::sim {
 
@@ -19,8 +19,8 @@ struct Program {
 };
 
 /// A step that does not converge is halved, and halved again, down to 1/64 of a step. A program that cannot finish
-/// keeps the steps that converged and says in Result::message at which step it stopped and why.
-[[nodiscard]] Result run(const Model& model, const Program& program, Progress& progress);
+/// keeps the steps that converged and says in Trajectory::message at which step it stopped and why.
+[[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress);
 
 /// Positions of the points of every cable for node positions (n, 3): [cable][point].
 [[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);

@@ -21,6 +21,42 @@ struct Direction {
     double slope_J = 0;       ///< change of energy along dx, to first order
 };
 
+/// The tensions t >= 0 that minimise t^T S t / 2 - t^T b: each cable either pulls and keeps its length, or is slack and
+/// not too long. S = A^T H^-1 A may be singular (parallel cables). Lawson and Hanson 1974, chapter 23.
+Eigen::VectorXd tensions_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b) {
+    const Eigen::Index count = b.size();
+    Eigen::VectorXd t = Eigen::VectorXd::Zero(count);
+    std::vector<Eigen::Index> pulling;
+    const double rounding = 1e-13 * (b.cwiseAbs().maxCoeff() + 1e-300);
+    for (Eigen::Index round = 0; round < 3 * count + 3; ++round) {
+        const Eigen::VectorXd excess = b - S * t;
+        Eigen::Index worst = -1;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const bool slack = std::find(pulling.begin(), pulling.end(), i) == pulling.end();
+            if (slack && excess[i] > rounding && (worst < 0 || excess[i] > excess[worst])) worst = i;
+        }
+        if (worst < 0) break;
+        pulling.push_back(worst);
+        while (!pulling.empty()) {
+            const Eigen::MatrixXd small = S(pulling, pulling);
+            const Eigen::VectorXd wanted = small.ldlt().solve(b(pulling));
+            double share = 1;  // of the way from t to wanted that keeps every tension positive
+            for (std::size_t k = 0; k < pulling.size(); ++k) {
+                const double from = t[pulling[k]];
+                const double to = wanted[static_cast<Eigen::Index>(k)];
+                if (to <= 0) share = std::min(share, from / (from - to));
+            }
+            for (std::size_t k = 0; k < pulling.size(); ++k) {
+                t[pulling[k]] += share * (wanted[static_cast<Eigen::Index>(k)] - t[pulling[k]]);
+            }
+            if (share == 1) break;
+            std::erase_if(pulling,
+                          [&](Eigen::Index i) { return t[i] <= 1e-14 * t.maxCoeff() ? (t[i] = 0, true) : false; });
+        }
+    }
+    return t;
+}
+
 class StepSolver {
 public:
     StepSolver(const Equilibrium& system, Curvature& curvature, const Controls& controls, State& state)
@@ -70,42 +106,6 @@ private:
         return excess;
     }
 
-    /// The change of tensions that keeps the linearised lengths, with slack cables let go: a primal active-set loop on
-    /// the small matrix S = A^T H^-1 A.
-    [[nodiscard]] Eigen::VectorXd active_tension_change(const Eigen::MatrixXd& S, const Eigen::VectorXd& wanted,
-                                                        const Eigen::VectorXd& tension) const {
-        const Eigen::Index k = wanted.size();
-        std::vector<bool> active(static_cast<std::size_t>(k), true);
-        Eigen::VectorXd change = -tension;
-        for (Eigen::Index round = 0; round <= 2 * k; ++round) {
-            std::vector<Eigen::Index> list;
-            for (Eigen::Index i = 0; i < k; ++i) {
-                if (active[static_cast<std::size_t>(i)]) list.push_back(i);
-            }
-            change = -tension;
-            if (!list.empty()) {
-                const Eigen::VectorXd rest = wanted + S * tension;
-                const Eigen::MatrixXd small = S(list, list);
-                const Eigen::VectorXd total = small.ldlt().solve(rest(list));  // tension itself, not its change
-                for (std::size_t i = 0; i < list.size(); ++i)
-                    change[list[i]] = total[static_cast<Eigen::Index>(i)] - tension[list[i]];
-            }
-            const Eigen::VectorXd result = tension + change;
-            const Eigen::VectorXd left = wanted - S * change;  // excess that remains after the step
-            bool settled = true;
-            for (Eigen::Index i = 0; i < k; ++i) {
-                const bool on = active[static_cast<std::size_t>(i)];
-                if (on && result[i] < 0)
-                    active[static_cast<std::size_t>(i)] = settled = false;
-                else if (!on && left[i] > 1e-12)
-                    active[static_cast<std::size_t>(i)] = true, settled = false;
-                if (!settled) break;  // one change at a time keeps the loop finite
-            }
-            if (settled) break;
-        }
-        return change;
-    }
-
     [[nodiscard]] Direction find_direction() {
         const Eigen::VectorXd gradient = system_.restrict_to_free(evaluation_.out_of_balance);
         const Eigen::MatrixXd A = constraint_gradients();
@@ -121,8 +121,8 @@ private:
         if (!driven_.empty()) {
             const Eigen::VectorXd tension = state_.tension(driven_);
             const Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
-            const Eigen::VectorXd wanted = excess_of_driven() - A.transpose() * columns.col(0);
-            const Eigen::VectorXd change = active_tension_change(S, wanted, tension);
+            const Eigen::VectorXd excess = excess_of_driven() - A.transpose() * columns.col(0);  // after the free step
+            const Eigen::VectorXd change = tensions_that_hold(S, excess + S * tension) - tension;
             direction.dx -= columns.rightCols(A.cols()) * change;
             direction.tension(driven_) += change;
             direction.tension = direction.tension.cwiseMax(0.0);
@@ -146,9 +146,8 @@ private:
             next.tension += alpha * (direction.tension - state_.tension);
             const Equilibrium::Merit merit = system_.merit(next.x, controls_, price);
             if (!(merit.min_J > 0.05 * evaluation_.min_J)) continue;
-            const double rounding = 1e-14 * (std::fabs(start.value_J) + std::fabs(merit.value_J));
-            const bool lower =
-                conservative_ && slope < 0 && merit.value_J <= start.value_J + 1e-4 * alpha * slope + rounding;
+            const bool lower = conservative_ && slope < 0 &&
+                               merit.value_J <= start.value_J + 1e-4 * alpha * slope + system_.energy_rounding_J();
             Evaluation evaluation = system_.evaluate(next, controls_);
             const bool nearer = evaluation.error() < (conservative_ ? 0.5 : 1 - 1e-3 * alpha) * evaluation_.error();
             if (!lower && !nearer) continue;

@@ -49,11 +49,12 @@ struct Step {
     std::vector<Vec3> positions;  ///< (n, 3)
 };
 
-struct Result {
-    std::vector<Step> steps;  ///< rest state first; only converged ones
-    bool converged = true;    ///< the whole program was run
-    std::string message;      ///< where and why it stopped, if it did
-    std::string solver;       ///< the solver that ran: "newton", "quasi-newton", "local-global"
+struct Trajectory {
+    std::vector<Step> steps;            ///< rest state first; only converged ones
+    bool converged = true;              ///< the whole program was run
+    std::string message;                ///< where and why it stopped, if it did
+    std::vector<std::string> warnings;  ///< where the answer should not be trusted
+    std::string solver;                 ///< the solver that ran: "newton", "quasi-newton", "local-global"
     double setup_s = 0;
     double solve_s = 0;
 };

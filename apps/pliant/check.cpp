@@ -1,0 +1,115 @@
+// pliant check: is a robot, printer, job or mesh file what it should be?
+#include "plan/check.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "command.hpp"
+#include "core/config.hpp"
+#include "job/job.hpp"
+#include "job_tools.hpp"
+#include "machine/printer.hpp"
+#include "mesh/mesh_report.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/tet_file.hpp"
+#include "robot/build.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::vector<std::string> files;
+    Output output;
+};
+
+/// A robot is checked as far as a mesh of it: overlaps, cables outside, supports that catch nothing show only then.
+Result<std::string> check_robot(const std::string& file, Progress& progress) {
+    const Result<robot::Robot> robot = robot::load_robot(file);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, progress);
+    if (!mesh) return tl::unexpected(mesh.error());
+    const Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
+    if (!model) return tl::unexpected(model.error());
+    return fmt::format("robot \"{}\": {} bodies, {} materials, {} cables, {} tets", robot->name, robot->bodies.size(),
+                       robot->materials.size(), robot->cables.size(), model->mesh().tet_count());
+}
+
+Result<std::string> check_printer(const std::string& file) {
+    const Result<machine::Printer> printer = machine::load_printer(file);
+    if (!printer) return tl::unexpected(printer.error());
+    return fmt::format("printer \"{}\": {} slots, {} vats, {} x {} px", printer->name, printer->tower.slots,
+                       printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
+}
+
+/// Robot and printer files are told apart by what only one of them has.
+Result<std::string> check_toml(const std::string& file, Progress& progress) {
+    const Result<config::Document> document = config::load(file);
+    if (!document) return tl::unexpected(document.error());
+    for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
+        if (key == "axis" || key == "projector" || key == "vat" || key == "tower") return check_printer(file);
+    }
+    return check_robot(file, progress);
+}
+
+Result<std::string> check_job(const std::string& file) {
+    const Result<OpenJob> job = open_job(file);
+    if (!job) return tl::unexpected(job.error());
+    const job::Manifest& manifest = job->archive.manifest();
+    std::size_t images = 0;
+    for (const job::Layer& layer : manifest.layers) {
+        for (const job::LayerImage& image : layer.images) {
+            if (const auto decoded = job->archive.image(image.file); !decoded) return tl::unexpected(decoded.error());
+            ++images;
+        }
+    }
+    const Result<std::string> gcode = job->archive.file("job.gcode");
+    if (!gcode) return tl::unexpected(gcode.error());
+    if (Status status = plan::check_gcode(*gcode, job->printer); !status)
+        return input_error("{}: job.gcode: {}", file, status.error().message);
+    return fmt::format("job \"{}\": {} layers, {} images, {} materials, G-code keeps the machine's limits",
+                       manifest.name, manifest.layers.size(), images, manifest.materials.size());
+}
+
+Result<std::string> check_mesh(const std::string& file) {
+    if (mesh::looks_like_tet_file(file)) {
+        const Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(file);
+        if (!mesh) return tl::unexpected(mesh.error());
+        return mesh::report_text(mesh::report_on(*mesh));
+    }
+    const Result<mesh::SurfaceFile> surface = mesh::read_surface(file);
+    if (!surface) return tl::unexpected(surface.error());
+    std::string text = fmt::format("surface: {} points, {} triangles, volume {:.6g}", surface->mesh.points.size(),
+                                   surface->mesh.triangles.size(), mesh::signed_volume(surface->mesh));
+    for (const std::string& warning : surface->warnings) text += "\n  warning: " + warning;
+    return text;
+}
+
+Result<std::string> check(const std::string& file, Progress& progress) {
+    const std::string extension = std::filesystem::path(file).extension().string();
+    if (extension == ".toml") return check_toml(file, progress);
+    if (extension == ".zip") return check_job(file);
+    return check_mesh(file);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("check", "validate robot, printer, job and mesh files");
+    command->add_option("files", options->files, "files to check")->required();
+    add_output_options(*command, options->output, false);
+    command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
+    command->callback([options, &status] {
+        const auto progress = terminal_progress(options->output);
+        for (const std::string& file : options->files) {
+            const Result<std::string> text = check(file, *progress);
+            if (!text)
+                status = report(text.error());
+            else if (!options->output.quiet)
+                fmt::print("{}: {}\n", file, *text);
+        }
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,39 @@
+// What all commands share: how they end, how they report errors and progress.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/progress.hpp"
+
+namespace pliant::app {
+
+/// Exit status of every command: DESIGN section 3.
+enum Exit { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
+
+/// `-q`, `-v` and `--json`, as given on the command line.
+struct Output {
+    bool quiet = false;
+    bool json = false;
+};
+
+/// A command adds itself to the parser; `status` receives its exit status when it has run.
+using AddCommand = void (*)(CLI::App& app, int& status);
+void add_simulate(CLI::App& app, int& status);
+void add_mesh(CLI::App& app, int& status);
+void add_slice(CLI::App& app, int& status);
+void add_plan(CLI::App& app, int& status);
+void add_print(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+
+void add_output_options(CLI::App& command, Output& output, bool with_json);
+
+/// Prints the error to stderr and gives the exit status that belongs to it.
+int report(const Error& error);
+
+/// A bar on a terminal's stderr for work that takes over a second; Ctrl-C cancels.
+[[nodiscard]] std::unique_ptr<Progress> terminal_progress(const Output& output);
+
+}  // namespace pliant::app

@@ -1,0 +1,29 @@
+// The command line: one file per command, each thin over the library.
+#include <malloc.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "command.hpp"
+
+int main(int argc, char** argv) {
+    using namespace pliant::app;
+    // The solver takes and gives back the same large blocks again and again: keep them instead of mapping them anew.
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+
+    CLI::App app("Pliant takes a multi-material soft robot from a drawing to a moving part.", "pliant");
+    app.set_version_flag("--version", std::string(PLIANT_VERSION));
+    app.require_subcommand(1);
+    app.footer(
+        "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
+    int status = exit_done;
+    for (const AddCommand add : {add_simulate, add_mesh, add_slice, add_plan, add_print, add_check}) add(app, status);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_bad_input;
+    }
+    return status;
+}

@@ -1,0 +1,51 @@
+// pliant plan: what a job takes on its printer: vats, swaps, times, resin.
+#include "plan/plan.hpp"
+
+#include <fmt/core.h>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "job_tools.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string job;
+    std::string printer;
+    Output output;
+};
+
+Status make_plan(const Options& options) {
+    Result<OpenJob> job = open_job(options.job);
+    if (!job) return tl::unexpected(job.error());
+    if (!options.printer.empty()) {
+        Result<machine::Printer> other = machine::load_printer(options.printer);
+        if (!other) return tl::unexpected(other.error());
+        job->printer = std::move(*other);
+    }
+    const Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
+    if (!plan) return tl::unexpected(plan.error());
+    if (options.output.json)
+        fmt::print("{}\n", plan::plan_json(*plan));
+    else if (!options.output.quiet)
+        fmt::print("{}", plan::plan_text(*plan));
+    return {};
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("plan", "what a job takes: vats, swaps, times, resin");
+    command->add_option("job", options->job, "job file (.zip)")->required();
+    command->add_option("--printer", options->printer, "another printer file than the job's own, to compare");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant plan gripper.zip --json");
+    command->callback([options, &status] {
+        const Status result = make_plan(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,71 @@
+// pliant print: prints a job. The virtual printer obeys the same G-code and sees the same images as the real one.
+#include "host/print.hpp"
+
+#include <fmt/core.h>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "job_tools.hpp"
+#include "plan/plan.hpp"
+#include "twin/inspect.hpp"
+#include "twin_bench.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string job;
+    std::string report_file;
+    bool twin = false;
+    Output output;
+};
+
+Result<int> print_on_twin(const Options& options) {
+    const auto progress = terminal_progress(options.output);
+    const Result<OpenJob> job = open_job(options.job);
+    if (!job) return tl::unexpected(job.error());
+    const job::Manifest& manifest = job->archive.manifest();
+    const Result<std::string> gcode = job->archive.file("job.gcode");
+    if (!gcode) return tl::unexpected(gcode.error());
+    const Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
+    if (!plan) return tl::unexpected(plan.error());
+
+    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
+    const auto images = [&](int layer, int material) { return image_of(job->archive, layer, material); };
+    host::PrintRecord record;
+    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record); !printed)
+        return tl::unexpected(printed.error());
+    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, images);
+    if (!report) return tl::unexpected(report.error());
+
+    const std::string json = twin::report_json(*report);
+    if (!options.report_file.empty()) {
+        if (Status written = write_file(options.report_file, json + "\n"); !written)
+            return tl::unexpected(written.error());
+    }
+    if (options.output.json)
+        fmt::print("{}\n", json);
+    else if (!options.output.quiet)
+        fmt::print("{} lines sent, {} exposures\n{}", record.lines_sent, record.exposures.size(),
+                   twin::report_text(*report));
+    return report->passed ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_print(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("print", "print a job on the virtual printer and compare what cured with the model");
+    command->add_option("job", options->job, "job file (.zip)")->required();
+    command->add_flag("--twin", options->twin, "print on the virtual printer")->required();
+    command->add_option("-o,--output", options->report_file, "file for the report (.json)");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant print gripper.zip --twin");
+    command->callback([options, &status] {
+        const Result<int> result = print_on_twin(*options);
+        status = result ? *result : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,129 @@
+// pliant simulate: runs the actuation program of a robot file and writes the result folder.
+#include "sim/simulate.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "report/results.hpp"
+#include "report/summary.hpp"
+#include "robot/build.hpp"
+#include "sim/fields.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string robot;
+    std::string folder;
+    int steps = 0;
+    std::vector<std::string> assignments;
+    Output output;
+};
+
+double peak_memory_MB() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// "neo-hookean, E 12 MPa, Poisson ratio 0.45": what the file says, for people.
+std::string law_text(const robot::MaterialSpec& material) {
+    return fmt::format("{}, E {:.6g} MPa, Poisson ratio {:.4g}", material::name(material.law),
+                       material.youngs_modulus_Pa / 1e6, material.poisson_ratio);
+}
+
+report::Simulation describe(const robot::Robot& robot, const sim::Model& model, const sim::Trajectory& trajectory) {
+    report::Simulation simulation{.robot = robot.name, .mesh = model.mesh(), .result = trajectory};
+    for (const robot::MaterialSpec& m : robot.materials) {
+        report::Material material{m.name, law_text(m), m.resin, m.density_kg_m3, {}};
+        if (m.colour) material.colour = report::Colour{(*m.colour)[0], (*m.colour)[1], (*m.colour)[2]};
+        simulation.materials.push_back(std::move(material));
+    }
+    for (const robot::BodySpec& body : robot.bodies) simulation.region_material.push_back(body.material);
+    simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
+    for (const sim::Step& step : trajectory.steps)
+        simulation.cable_points.push_back(sim::cable_points(model, step.positions));
+    simulation.tolerance = robot.program.tolerance;
+    simulation.peak_memory_MB = peak_memory_MB();
+    return simulation;
+}
+
+void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
+    const sim::Step& last = trajectory.steps.back();
+    fmt::print("{} nodes, {} {} tets, solver {}\n", model.node_count(), model.mesh().tet_count(),
+               model.mesh().order == 2 ? "quadratic" : "linear", trajectory.solver);
+    fmt::print("{} steps in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", trajectory.steps.size() - 1,
+               trajectory.solve_s, last.residual, last.min_J);
+    for (const auto& c : last.cables) {
+        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
+                   1e3 * c.length_m, c.tension_N);
+    }
+    for (const auto& s : last.supports) {
+        fmt::print("support {}: force ({:.4f}, {:.4f}, {:.4f}) N\n", s.name, s.force_N.x, s.force_N.y, s.force_N.z);
+    }
+    for (const auto& m : last.markers) {
+        fmt::print("marker {}: ({:.3f}, {:.3f}, {:.3f}) mm\n", m.name, 1e3 * m.position_m.x, 1e3 * m.position_m.y,
+                   1e3 * m.position_m.z);
+    }
+}
+
+Result<int> simulate(const Options& options) {
+    std::vector<std::string> assignments = options.assignments;
+    if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
+    const auto progress = terminal_progress(options.output);
+    Result<robot::Robot> robot = robot::load_robot(options.robot, assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
+    if (!mesh) return tl::unexpected(mesh.error());
+    Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
+    if (!model) return tl::unexpected(model.error());
+    const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
+    const report::Simulation simulation = describe(*robot, *model, trajectory);
+    if (!options.folder.empty()) {
+        const Status written = write_folder(options.folder, "summary.json", [&](const std::filesystem::path& folder) {
+            return report::write_results(folder, simulation, *progress);
+        });
+        if (!written) return tl::unexpected(written.error());
+    }
+    if (options.output.json)
+        fmt::print("{}\n", report::summary_json(simulation));
+    else if (!options.output.quiet)
+        print_summary(*model, trajectory);
+    if (!options.folder.empty() && !options.output.quiet && !options.output.json) {
+        fmt::print("results: {}, open report.html there\n", options.folder);
+    }
+    for (const std::string& warning : trajectory.warnings)
+        fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
+    if (trajectory.converged) return exit_done;
+    fmt::print(stderr, "{}: {}\n", options.robot, trajectory.message);
+    return exit_failed;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("simulate", "run the actuation program of a robot file");
+    command->add_option("robot", options->robot, "robot file (TOML)")->required();
+    command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
+    command->add_option("--steps", options->steps, "number of steps, instead of the file's")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--set", options->assignments,
+                     "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")
+        ->type_name("KEY=VALUE");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant simulate examples/cable_gripper/gripper.toml -o out --set mesh.order=1");
+    command->callback([options, &status] {
+        const Result<int> result = simulate(*options);
+        status = result ? *result : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

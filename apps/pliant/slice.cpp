@@ -1,0 +1,201 @@
+// pliant slice: layer images, plan and G-code of a robot for one printer, in one job file.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "core/units.hpp"
+#include "job/make_job.hpp"
+#include "machine/printer.hpp"
+#include "mesh/surface_file.hpp"
+#include "plan/check.hpp"
+#include "plan/plan.hpp"
+#include "robot/build.hpp"
+#include "slice/place.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::vector<std::string> inputs;
+    std::string printer;
+    std::string layer;
+    std::string job;
+    std::vector<std::string> assignments;
+    Output output;
+};
+
+/// What is to be printed: bodies in micrometres and the resin of each material.
+struct Drawing {
+    std::string name;
+    std::vector<slice::Body> bodies;
+    std::vector<std::pair<std::string, std::string>> resin_of_material;
+    std::vector<std::string> warnings;
+};
+
+Result<Drawing> read_robot(const Options& options, Progress& progress) {
+    const Result<robot::Robot> robot = robot::load_robot(options.inputs.front(), options.assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(*robot, progress);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    Drawing drawing{robot->name, {}, {}, {}};
+    for (robot::BodySurface& body : *surfaces) {
+        const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
+        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+    }
+    for (const robot::MaterialSpec& material : robot->materials)
+        drawing.resin_of_material.emplace_back(material.name, material.resin);
+    return drawing;
+}
+
+/// MATERIAL=FILE.stl, in millimetres; a material is printed in the resin of its name.
+Result<Drawing> read_surfaces(const Options& options) {
+    Drawing drawing;
+    for (const std::string& input : options.inputs) {
+        const std::size_t equals = input.find('=');
+        if (equals == std::string::npos || equals == 0) {
+            return input_error("{}: write a robot file (.toml) alone, or MATERIAL=FILE.stl for each body", input);
+        }
+        const std::string material = input.substr(0, equals);
+        const std::filesystem::path path = input.substr(equals + 1);
+        Result<mesh::SurfaceFile> surface = mesh::read_surface(path);
+        if (!surface) return tl::unexpected(surface.error());
+        drawing.warnings.insert(drawing.warnings.end(), surface->warnings.begin(), surface->warnings.end());
+        drawing.bodies.push_back({material, mesh::scaled(std::move(surface->mesh), 1e3), path.stem().string()});
+        drawing.resin_of_material.emplace_back(material, material);
+        if (drawing.name.empty()) drawing.name = path.stem().string();
+    }
+    return drawing;
+}
+
+Result<Drawing> read_drawing(const Options& options, Progress& progress) {
+    const bool robot =
+        options.inputs.size() == 1 && std::filesystem::path(options.inputs.front()).extension() == ".toml";
+    return robot ? read_robot(options, progress) : read_surfaces(options);
+}
+
+/// Exposures come from the printer file; for a resin that it does not know, the longest ones it has are taken.
+std::vector<job::Material> with_exposures(const Drawing& drawing, const machine::Printer& printer,
+                                          std::vector<std::string>& warnings) {
+    std::vector<job::Material> materials;
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        const auto same_name = [&](const job::Material& known) { return known.name == material; };
+        if (std::any_of(materials.begin(), materials.end(), same_name)) continue;
+        job::Material entry;
+        entry.name = material;
+        entry.resin = resin;
+        if (const machine::Resin* known = printer.find_resin(resin)) {
+            entry.exposure_s = known->exposure_s;
+            entry.bottom_exposure_s = known->bottom_exposure_s;
+        } else {
+            for (const machine::Resin& other : printer.resins) {
+                entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
+                entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
+            }
+            warnings.push_back(fmt::format(
+                "resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed", resin,
+                entry.exposure_s, entry.bottom_exposure_s));
+        }
+        materials.push_back(std::move(entry));
+    }
+    return materials;
+}
+
+Result<int> layer_height_um(const Options& options, const machine::Printer& printer) {
+    if (options.layer.empty()) return printer.layer_um;
+    const Result<double> height = parse_quantity(options.layer, Dimension::length);
+    if (!height) return input_error("--layer: {}", height.error().message);
+    const double um = std::round(*height * 1e6);
+    if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
+        return input_error("--layer {}: a whole number of micrometres from 1 to 1000 is needed", options.layer);
+    return static_cast<int>(um);
+}
+
+int bottom_layers(const machine::Printer& printer) {
+    int layers = 0;
+    for (const machine::Resin& resin : printer.resins) layers = std::max(layers, resin.bottom_layers);
+    return layers;
+}
+
+void print_summary(const Options& options, const job::Manifest& manifest, const plan::Plan& plan) {
+    if (options.output.quiet) return;
+    fmt::print("{}: {} layers of {} um, {} x {} px of {} um\n", options.job, manifest.layers.size(),
+               manifest.layers.empty() ? 0 : manifest.layers.front().thickness_um, manifest.width_px,
+               manifest.height_px, manifest.pixel_um);
+    for (const job::Material& material : manifest.materials) {
+        fmt::print("material {}: resin {}, {:.1f} mm^3\n", material.name, material.resin, material.model_volume_mm3);
+    }
+    for (const std::string& warning : plan.warnings) fmt::print("warning: {}\n", warning);
+    for (const std::string& warning : manifest.warnings) fmt::print("warning: {}\n", warning);
+    fmt::print("{} swaps, {} in all\n", plan.swaps, plan::clock_text(plan.seconds.total));
+}
+
+Status slice(const Options& options) {
+    const auto progress = terminal_progress(options.output);
+    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    if (!printer) return tl::unexpected(printer.error());
+    const Result<std::string> printer_text = read_file(options.printer);
+    if (!printer_text) return tl::unexpected(printer_text.error());
+    const Result<int> layer_um = layer_height_um(options, *printer);
+    if (!layer_um) return tl::unexpected(layer_um.error());
+    Result<Drawing> drawing = read_drawing(options, *progress);
+    if (!drawing) return tl::unexpected(drawing.error());
+
+    const machine::Projector& projector = printer->projector;
+    job::JobSettings settings;
+    settings.name = drawing->name;
+    settings.pliant_version = PLIANT_VERSION;
+    settings.bottom_layers = bottom_layers(*printer);
+    settings.slicing.raster = {projector.width_px, projector.height_px, projector.pixel_um, projector.mirror_x,
+                               projector.mirror_y};
+    settings.slicing.layer_um = *layer_um;
+    settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
+    const Result<std::vector<std::string>> placed = slice::place_on_platform(drawing->bodies, settings.slicing.raster);
+    if (!placed) return tl::unexpected(placed.error());
+    drawing->warnings.insert(drawing->warnings.end(), placed->begin(), placed->end());
+
+    Result<job::Writer> writer = job::Writer::create(options.job);
+    if (!writer) return tl::unexpected(writer.error());
+    Result<job::MadeJob> made = job::slice_to_job(drawing->bodies, settings, *writer, *progress);
+    if (!made) return tl::unexpected(made.error());
+    made->manifest.warnings.insert(made->manifest.warnings.begin(), drawing->warnings.begin(), drawing->warnings.end());
+    const Result<plan::Plan> plan = plan::make_plan(made->manifest, *printer);
+    if (!plan) return tl::unexpected(plan.error());
+    const std::string gcode = plan::write_gcode(*plan, made->manifest, *printer);
+    Status status = plan::check_gcode(gcode, *printer);
+    if (status) status = writer->add_file("printer.toml", *printer_text);
+    if (status) status = writer->add_file("plan.json", plan::plan_json(*plan));
+    if (status) status = writer->add_file("job.gcode", gcode);
+    if (status) status = writer->finish(made->manifest);
+    if (status) print_summary(options, made->manifest, *plan);
+    return status;
+}
+
+}  // namespace
+
+void add_slice(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
+    command->add_option("inputs", options->inputs, "a robot file, or MATERIAL=FILE.stl for each body (millimetres)")
+        ->required();
+    command->add_option("--printer", options->printer, "printer file (TOML)")->required();
+    command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();
+    command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
+    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
+        ->type_name("KEY=VALUE");
+    add_output_options(*command, options->output, false);
+    command->footer(
+        "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "
+        "gripper.zip");
+    command->callback([options, &status] {
+        const Status result = slice(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,175 @@
+#include "host/link.hpp"
+
+#include <doctest/doctest.h>
+
+#include "host/test_devices.hpp"
+
+using namespace pliant;
+using namespace pliant::host;
+using namespace pliant::host::test;
+
+namespace {
+
+/// Answers `first` to the first line that holds `part`, otherwise as a good Marlin.
+struct Once {
+    std::string part, first;
+    bool done = false;
+    std::string operator()(const std::string& line) {
+        if (done || line.find(part) == std::string::npos) return good_answer(line);
+        done = true;
+        return first;
+    }
+};
+
+struct Bench {
+    CountingClock clock;
+    ScriptedWire wire;
+    Link link;
+
+    explicit Bench(std::function<std::string(const std::string&)> answer, LinkOptions options = {})
+        : wire(clock, std::move(answer)), link(wire, clock, options) {}
+
+    std::string error_of_print() {
+        Status status = link.connect();
+        for (int i = 1; i <= 6 && status; ++i) status = link.send(fmt::format("G1 X{}", i));
+        if (status) status = link.fence();
+        return status ? "" : status.error().message;
+    }
+    int times_written(const std::string& part) const {
+        int n = 0;
+        for (const std::string& line : wire.written) n += line.find(part) != std::string::npos;
+        return n;
+    }
+};
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("lines are numbered and checksummed from M110 on") {
+    Bench b(good_answer);
+    CHECK(b.error_of_print() == "");
+    // xor of "N0 M110 N0" and of "N1 G1 X1", by hand.
+    CHECK(b.wire.written[0] == "N0 M110 N0*125");
+    CHECK(b.wire.written[1] == "N1 G1 X1*96");
+    CHECK(b.times_written("G1 ") == 6);
+    CHECK(b.link.lines_sent() == 8);
+    CHECK(b.link.resends() == 0);
+}
+
+TEST_CASE("a refused line is sent again from there, with or without the whole answer") {
+    for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // as it should be
+                               "Error:checksum mismatch, Last Line: 2\nResend: 3\n",      // without ok
+                               "Error:checksum mismatch, Last Line: 2\nok\n",             // without Resend
+                               "Resend: 3\nok\n"}) {
+        CAPTURE(answer);
+        Bench b(Once{"X3*", answer});
+        CHECK(b.error_of_print() == "");
+        CHECK(b.times_written("X3*") == 2);
+        CHECK(b.link.resends() >= 1);
+    }
+}
+
+TEST_CASE("a lost ok is found out by repeating the line; the answer counts as its ok") {
+    bool lost = false;
+    bool repeated = false;
+    Bench b(
+        [&](const std::string& line) -> std::string {
+            if (line.find("X3*") == std::string::npos) return good_answer(line);
+            if (!lost) return lost = true, "";
+            repeated = true;
+            return "Error:Line Number is not Last Line Number+1, Last Line: 3\nResend: 4\nok\n";
+        },
+        {1, 120, 3, 12, 0.2, 10});
+    CHECK(b.error_of_print() == "");
+    CHECK(repeated);
+    CHECK(b.times_written("X4*") == 1);
+}
+
+TEST_CASE("busy restarts the patience") {
+    int busy = 0;
+    CountingClock clock;
+    struct BusyWire final : Wire {
+        BusyWire(CountingClock& c, int& n) : clock(c), count(n) {}
+        Status write(std::string_view bytes) override {
+            blocked = bytes.find("M400") != std::string_view::npos;
+            pending += blocked ? "" : good_answer(std::string(bytes.substr(0, bytes.size() - 1)));
+            return {};
+        }
+        Result<std::string> read(double timeout_s) override {
+            if (!blocked || !pending.empty()) {
+                if (pending.empty()) clock.now_s += timeout_s;
+                return std::exchange(pending, {});
+            }
+            clock.now_s += 2;
+            if (++count < 30) return std::string("echo:busy: processing\n");
+            blocked = false;
+            return std::string("ok\n");
+        }
+        CountingClock& clock;
+        int& count;
+        bool blocked = false;
+        std::string pending = "start\n";
+    } wire(clock, busy);
+    Link link(wire, clock, {1, 120, 3, 12, 0.2, 2});
+    REQUIRE(link.connect());
+    CHECK(link.fence());
+    CHECK(busy == 30);
+    CHECK(link.resends() == 0);
+}
+
+TEST_CASE("what means that the machine is not where we think ends the print") {
+    CHECK(holds(Bench(Once{"X3*", "echo:Unknown command: \"G1 X3\"\nok\n"}).error_of_print(), "does not know"));
+    CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
+    CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
+    CHECK(holds(Bench(Once{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
+    CHECK(holds(Bench(Once{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
+}
+
+TEST_CASE("endless refusal and endless silence end") {
+    const auto refuse = [](const std::string& line) -> std::string {
+        return line.find("X3*") != std::string::npos ? "Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n"
+                                                     : good_answer(line);
+    };
+    CHECK(holds(Bench(refuse).error_of_print(), "too noisy"));
+    const auto deaf = [](const std::string& line) -> std::string {
+        return line.find("M110") != std::string::npos ? "ok\n" : "";
+    };
+    const std::string message = Bench(deaf).error_of_print();
+    CHECK((holds(message, "stopped answering") || holds(message, "too noisy")));
+    CHECK(holds(Bench([](const std::string&) { return std::string(); }).error_of_print(), "does not answer"));
+}
+
+TEST_CASE("garbage between the lines is passed over") {
+    Bench b([](const std::string& line) {
+        return "T:0 B:0\n\x01\xff\necho:busy: procesing\nResnd: 1\n//action:notification hi\n" +
+               (line.find("X3") != std::string::npos ? "ok\nok\n" : good_answer(line)) + std::string(5000, 'x') + "\n";
+    });
+    CHECK(b.error_of_print() == "");
+}
+
+TEST_CASE("the window holds lines and bytes back") {
+    // Nothing is answered: only what the window takes is written.
+    const auto deaf = [](const std::string& line) -> std::string {
+        return line.find("M110") != std::string::npos ? "ok\n" : "";
+    };
+    Bench lines(deaf, {2, 120, 3, 12, 0.2, 1});
+    CHECK_FALSE(lines.error_of_print().empty());
+    CHECK(lines.times_written("N2 ") > 0);
+    CHECK(lines.times_written("N3 ") == 0);
+    Bench bytes(deaf, {4, 25, 3, 12, 0.2, 1});  // "N1 G1 X1*96\n" has 12 bytes
+    CHECK_FALSE(bytes.error_of_print().empty());
+    CHECK(bytes.times_written("N2 ") > 0);
+    CHECK(bytes.times_written("N3 ") == 0);
+}
+
+TEST_CASE("a command that would not survive the wire is refused") {
+    Bench b(good_answer);
+    REQUIRE(b.link.connect());
+    CHECK_FALSE(b.link.send(""));
+    CHECK_FALSE(b.link.send("G1 X1\nG1 X2"));
+    CHECK_FALSE(b.link.send("G1 ; there"));
+    CHECK_FALSE(b.link.send(std::string(81, 'G')));
+}

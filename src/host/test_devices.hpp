@@ -1,0 +1,76 @@
+// Devices for tests: a wire whose other end is a function, a clock that only counts, a projector that remembers.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/devices.hpp"
+
+namespace pliant::host::test {
+
+class CountingClock final : public Clock {
+public:
+    [[nodiscard]] double now() const override { return now_s; }
+    void sleep(double seconds) override { now_s += seconds; }
+    double now_s = 0;
+};
+
+/// `answer` gets every written line and says what comes back. What it says before the first line: `start`.
+class ScriptedWire final : public Wire {
+public:
+    ScriptedWire(CountingClock& clock, std::function<std::string(const std::string&)> answer)
+        : clock_(clock), answer_(std::move(answer)) {}
+
+    Status write(std::string_view bytes) override {
+        for (const char c : bytes) {
+            if (c != '\n') {
+                line_ += c;
+                continue;
+            }
+            written.push_back(line_);
+            pending_ += answer_(line_);
+            line_.clear();
+        }
+        return {};
+    }
+    Result<std::string> read(double timeout_s) override {
+        if (pending_.empty()) clock_.now_s += timeout_s;
+        return std::exchange(pending_, {});
+    }
+
+    std::vector<std::string> written;
+
+private:
+    CountingClock& clock_;
+    std::function<std::string(const std::string&)> answer_;
+    std::string pending_ = "start\n";
+    std::string line_;
+};
+
+class RememberingProjector final : public Projector {
+public:
+    Status show(const job::Image& image) override {
+        lit = true;
+        shown.push_back(image);
+        return {};
+    }
+    Status black() override {
+        lit = false;
+        return {};
+    }
+    bool lit = false;
+    std::vector<job::Image> shown;
+};
+
+/// What a Marlin says to a good line: the echo of M118, and ok.
+inline std::string good_answer(const std::string& line) {
+    const std::size_t token = line.find("M118 E1 ");
+    if (token == std::string::npos) return "ok\n";
+    return fmt::format("echo:{}\nok\n", line.substr(token + 8, line.find('*') - token - 8));
+}
+
+}  // namespace pliant::host::test

@@ -1,0 +1,35 @@
+// From bodies to the images of a job.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "job/job.hpp"
+#include "slice/slicer.hpp"
+
+namespace pliant::job {
+
+struct JobSettings {
+    std::string name;
+    std::string pliant_version;
+    int bottom_layers = 0;
+    slice::Settings slicing;
+    /// Resin and exposures of every material that a body names; model_volume_mm3 and model_area_mm2 are filled in.
+    std::vector<Material> materials;
+};
+
+struct MadeJob {
+    Manifest manifest;  ///< materials in the order in which the bodies first name them; warnings of the slicer
+    slice::Summary summary;
+};
+
+/// Slices bodies that stand on the platform and adds their images to `writer`; the caller then adds printer.toml,
+/// plan.json and job.gcode, and calls writer.finish(manifest). Layers are cut and encoded in parallel, the archive does
+/// not depend on the number of threads. Errors: what slice::Slicer::prepare refuses, a material without settings, the
+/// writer's, cancellation.
+[[nodiscard]] Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings,
+                                           Writer& writer, Progress& progress);
+
+}  // namespace pliant::job

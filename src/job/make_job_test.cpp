@@ -1,0 +1,109 @@
+#include "job/make_job.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/files.hpp"
+#include "slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::job;
+using slice::test::box;
+namespace fs = std::filesystem;
+
+namespace {
+
+JobSettings settings() {
+    return {"halves",
+            "0.1.0",
+            2,
+            {{64, 48, 100}, 50, {}},
+            {{"soft one", "flex", -1, -1, 3, 9}, {"soft/one", "hard", 0, 0, 4, 12}, {"unused", "x", 0, 0, 1, 1}}};
+}
+
+const std::vector<slice::Body> halves{{"soft one", box({-1000, -1000, 0}, {50, 1000, 500}), ""},
+                                      {"soft/one", box({50, -1000, 0}, {1000, 1000, 1000}), ""},
+                                      {"soft one", box({-1000, -1000, 500}, {-500, 1000, 700}), ""}};
+
+struct TemporaryFolder {
+    fs::path path;
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "pliant_job_XXXXXX").string();
+        REQUIRE(mkdtemp(name.data()) != nullptr);
+        path = name;
+    }
+    ~TemporaryFolder() { fs::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE("two materials become a job with the right layers, areas and volumes") {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path / "job.zip";
+    auto writer = Writer::create(path);
+    REQUIRE(writer.has_value());
+    Progress progress;
+    const auto made = slice_to_job(halves, settings(), *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->add_file("plan.json", "{}").has_value());
+    REQUIRE(writer->finish(made->manifest).has_value());
+
+    const auto archive = Archive::open(path);
+    REQUIRE_MESSAGE(archive.has_value(), (archive ? "" : archive.error().message));
+    const Manifest& m = archive->manifest();
+    CHECK(m.name == "halves");
+    CHECK(m.bottom_layers == 2);
+    REQUIRE(m.materials.size() == 2);
+    CHECK(m.materials[0].resin == "flex");
+    CHECK(m.materials[1].bottom_exposure_s == 12);
+    CHECK(m.materials[0].model_volume_mm3 == doctest::Approx(1.05 * 2 * 0.5 + 0.5 * 2 * 0.2).epsilon(1e-12));
+    CHECK(m.materials[0].model_area_mm2 ==
+          doctest::Approx(2 * (1.05 * 2 + 1.05 * 0.5 + 2 * 0.5) + 2 * (0.5 * 2 + 0.5 * 0.2 + 2 * 0.2)).epsilon(1e-12));
+    CHECK(m.materials[1].model_volume_mm3 == doctest::Approx(0.95 * 2 * 1).epsilon(1e-12));
+    REQUIRE(m.layers.size() == 20);
+    CHECK(m.layers[19].z_um == 1000);
+    CHECK(m.layers[0].images.size() == 2);
+    CHECK(m.layers[13].images.size() == 2);
+    CHECK(m.layers[14].images.size() == 1);
+    // The interface runs through the middle of a column, which goes whole to the later material.
+    CHECK(m.layers[0].images[0].area_mm2 == doctest::Approx(2.0).epsilon(1e-12));
+    CHECK(m.layers[0].images[1].area_mm2 == doctest::Approx(2.0).epsilon(1e-12));
+    CHECK(m.layers[12].images[0].area_mm2 == doctest::Approx(1.0).epsilon(1e-12));
+    CHECK(m.layers[0].images[0].file == "layers/00000_soft_one.png");
+    CHECK(m.layers[0].images[0].file != m.layers[0].images[1].file);
+    const Image image = archive->image(m.layers[12].images[0].file).value();
+    CHECK(int{image.at(24, 22)} == 255);
+    CHECK(int{image.at(24, 26)} == 255);
+    CHECK(int{image.at(24, 27)} == 0);
+}
+
+TEST_CASE("the archive is the same every time") {
+    const TemporaryFolder folder;
+    std::vector<std::string> bytes;
+    for (const char* name : {"a.zip", "b.zip"}) {
+        auto writer = Writer::create(folder.path / name);
+        Progress progress;
+        const auto made = slice_to_job(halves, settings(), *writer, progress);
+        REQUIRE(made.has_value());
+        REQUIRE(writer->finish(made->manifest).has_value());
+        bytes.push_back(read_file(folder.path / name).value());
+    }
+    CHECK(bytes[0] == bytes[1]);
+}
+
+TEST_CASE("a material without settings, a bad body and cancellation stop the job") {
+    const TemporaryFolder folder;
+    auto writer = Writer::create(folder.path / "a.zip");
+    Progress progress;
+    JobSettings incomplete = settings();
+    incomplete.materials.resize(1);
+    CHECK(slice_to_job(halves, incomplete, *writer, progress).error().message ==
+          "material 'soft/one' has no resin and exposure");
+    CHECK(!slice_to_job({}, settings(), *writer, progress).has_value());
+    struct Cancel : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } cancel;
+    CHECK(slice_to_job(halves, settings(), *writer, cancel).error().cause == Cause::cancelled);
+}

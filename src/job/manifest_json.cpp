@@ -1,0 +1,169 @@
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "job/manifest.hpp"
+
+namespace pliant::job {
+namespace {
+
+using nlohmann::json;
+using Ordered = nlohmann::ordered_json;
+
+/// Reads keys of one object; the first problem is kept, everything after it returns harmless values.
+class Fields {
+public:
+    Fields(const json& object, std::string path, std::string& problem)
+        : object_(object), path_(std::move(path)), problem_(problem) {
+        if (!object.is_object()) complain("", "an object is needed");
+    }
+
+    std::string text(const char* key) {
+        const json* value = find(key);
+        if (value == nullptr) return {};
+        if (value->is_string()) return value->get<std::string>();
+        complain(key, "a text is needed");
+        return {};
+    }
+    int integer(const char* key) {
+        const json* value = find(key);
+        if (value == nullptr) return 0;
+        // Unsigned first: what does not fit 64 signed bits is kept as unsigned.
+        constexpr int most = std::numeric_limits<int>::max(), least = std::numeric_limits<int>::min();
+        if (value->is_number_unsigned() && value->get<std::uint64_t>() <= most) return value->get<int>();
+        if (value->is_number_integer() && !value->is_number_unsigned() && value->get<std::int64_t>() >= least)
+            return value->get<int>();
+        complain(key, "a whole number of at most 31 bits is needed");
+        return 0;
+    }
+    double number(const char* key) {
+        const json* value = find(key);
+        if (value == nullptr) return 0;
+        if (value->is_number()) return value->get<double>();
+        complain(key, "a number is needed");
+        return 0;
+    }
+    /// Calls `read(entry, path)` for the entries of an array until something is wrong.
+    template <class Read>
+    void each(const char* key, const Read& read) {
+        const json* value = find(key);
+        if (value == nullptr) return;
+        if (!value->is_array()) return complain(key, "an array is needed");
+        for (std::size_t i = 0; i < value->size() && problem_.empty(); ++i)
+            read((*value)[i], fmt::format("{}{}[{}]", path_, key, i));
+    }
+    void complain(std::string_view key, std::string_view text) {
+        if (problem_.empty()) problem_ = fmt::format("{}{}: {}", path_, key, text);
+    }
+
+private:
+    const json* find(const char* key) {
+        if (!problem_.empty()) return nullptr;
+        const auto found = object_.find(key);
+        if (found != object_.end()) return &*found;
+        complain(key, "is missing");
+        return nullptr;
+    }
+
+    const json& object_;
+    std::string path_;  ///< what messages put before a key
+    std::string& problem_;
+};
+
+Material read_material(const json& object, const std::string& path, std::string& problem) {
+    Fields f(object, path + ".", problem);
+    return {f.text("name"),
+            f.text("resin"),
+            f.number("model_volume_mm3"),
+            f.number("model_area_mm2"),
+            f.number("exposure_s"),
+            f.number("bottom_exposure_s")};
+}
+
+Layer read_layer(const json& object, const std::string& path, std::string& problem) {
+    Fields f(object, path + ".", problem);
+    Layer layer{f.integer("z_um"), f.integer("thickness_um"), {}};
+    f.each("images", [&](const json& entry, const std::string& entry_path) {
+        Fields g(entry, entry_path + ".", problem);
+        layer.images.push_back({g.integer("material"), g.text("file"), g.number("area_mm2")});
+    });
+    return layer;
+}
+
+Manifest read_manifest(const json& root, std::string& problem) {
+    Manifest m;
+    Fields f(root, "", problem);
+    if (f.integer("format") != manifest_format)
+        f.complain("format", fmt::format("only format {} is known", manifest_format));
+    m.name = f.text("name");
+    m.pliant_version = f.text("pliant_version");
+    m.width_px = f.integer("width_px");
+    m.height_px = f.integer("height_px");
+    m.pixel_um = f.number("pixel_um");
+    m.bottom_layers = f.integer("bottom_layers");
+    f.each("materials", [&](const json& entry, const std::string& path) {
+        m.materials.push_back(read_material(entry, path, problem));
+    });
+    f.each("layers",
+           [&](const json& entry, const std::string& path) { m.layers.push_back(read_layer(entry, path, problem)); });
+    f.each("warnings", [&](const json& entry, const std::string& path) {
+        if (entry.is_string()) return m.warnings.push_back(entry.get<std::string>());
+        Fields(root, path, problem).complain("", "a text is needed");
+    });
+    return m;
+}
+
+Result<json> parse(std::string_view text, std::string_view where) {
+    // Nothing in a manifest is nested deeper; without the limit a file of brackets would take sixty times its size.
+    constexpr int max_depth = 8;
+    bool too_deep = false;
+    const auto shallow = [&](int depth, json::parse_event_t, json&) {
+        too_deep = too_deep || depth > max_depth;
+        return depth <= max_depth;
+    };
+    try {
+        json root = json::parse(text, shallow);
+        if (too_deep) return input_error("{}: nested deeper than {} levels", where, max_depth);
+        return root;
+    } catch (const json::exception& e) {
+        return input_error("{}: {}", where, e.what());
+    }
+}
+
+Ordered layer_json(const Layer& layer) {
+    Ordered images = Ordered::array();
+    for (const LayerImage& i : layer.images)
+        images.push_back({{"material", i.material}, {"file", i.file}, {"area_mm2", i.area_mm2}});
+    return {{"z_um", layer.z_um}, {"thickness_um", layer.thickness_um}, {"images", std::move(images)}};
+}
+
+}  // namespace
+
+std::string to_json(const Manifest& m) {
+    Ordered root{{"format", manifest_format},       {"name", m.name},           {"pliant_version", m.pliant_version},
+                 {"width_px", m.width_px},          {"height_px", m.height_px}, {"pixel_um", m.pixel_um},
+                 {"bottom_layers", m.bottom_layers}};
+    Ordered& materials = root["materials"] = Ordered::array();
+    for (const Material& material : m.materials)
+        materials.push_back({{"name", material.name},
+                             {"resin", material.resin},
+                             {"model_volume_mm3", material.model_volume_mm3},
+                             {"model_area_mm2", material.model_area_mm2},
+                             {"exposure_s", material.exposure_s},
+                             {"bottom_exposure_s", material.bottom_exposure_s}});
+    root["warnings"] = m.warnings;
+    Ordered& layers = root["layers"] = Ordered::array();
+    for (const Layer& layer : m.layers) layers.push_back(layer_json(layer));
+    return root.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
+}
+
+Result<Manifest> manifest_from_json(std::string_view text, std::string_view where) {
+    const auto root = parse(text, where);
+    if (!root) return tl::unexpected(root.error());
+    std::string problem;
+    Manifest manifest = read_manifest(*root, problem);
+    if (!problem.empty()) return input_error("{}: {}", where, problem);
+    if (auto status = check(manifest, where); !status) return tl::unexpected(status.error());
+    return manifest;
+}
+
+}  // namespace pliant::job

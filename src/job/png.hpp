@@ -1,0 +1,29 @@
+// 8-bit grey PNG files in memory.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/error.hpp"
+#include "slice/image.hpp"
+
+namespace pliant::job {
+
+struct PngSize {
+    int width_px = 0;
+    int height_px = 0;
+};
+
+/// The number of bytes that hold a PNG's size and kind.
+inline constexpr std::size_t png_head_bytes = 29;
+
+[[nodiscard]] std::string encode_png(const slice::Image& image);
+
+/// Reads signature and header. Errors (prefixed with `where`): no PNG; not 8-bit grey without interlacing.
+[[nodiscard]] Result<PngSize> png_size(std::string_view head, std::string_view where);
+
+/// Decodes; the size must be `expected`, which the caller has found acceptable. Memory is taken only once the file is
+/// long enough to hold that many pixels at deflate's greatest ratio.
+[[nodiscard]] Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where);
+
+}  // namespace pliant::job

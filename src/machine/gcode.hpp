@@ -1,0 +1,79 @@
+// The machine's dialect of G-code: how a command is written and, strictly, read again. Marlin 2.x speaks it.
+//
+// Rules that the dialect keeps, because the wire may repeat or lose lines: absolute coordinates only, upper case, one
+// command a line, no line over `max_line_chars`. Light is no command: it is a directive for the host, a comment that
+// never goes to the wire:
+//
+//     ;@expose layer=12 material=1 seconds=2.500 image=layers/00012_soft.png
+//     ;@stop M107 P1          a command that the host sends if it must stop in the middle
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::machine {
+
+inline constexpr std::size_t max_line_chars = 94;  ///< Marlin cuts longer lines silently (MAX_CMD_SIZE 96)
+
+struct Word {
+    char letter = '?';
+    std::optional<double> value;  ///< none for a bare letter, as in `G28 X`
+};
+
+struct Command {
+    char letter = '?';  ///< 'G' or 'M'
+    int number = 0;
+    std::vector<Word> words;
+    std::string text;  ///< M118 only: the message behind its parameters
+
+    [[nodiscard]] bool is(char l, int n) const { return letter == l && number == n; }
+    [[nodiscard]] bool has(char l) const;
+    [[nodiscard]] std::optional<double> value(char l) const;  ///< of the word with that letter, if it has one
+};
+
+/// One command without line number, checksum or comment. Refuses lower case, letters twice, numbers that do not parse
+/// whole or are beyond 1e9, and control characters.
+[[nodiscard]] Result<Command> parse_command(std::string_view line);
+
+/// `line` without its comment and without blanks at both ends.
+[[nodiscard]] std::string_view strip_comment(std::string_view line);
+
+/// `G1` to `to`, naming only the axes that differ from `from`; "" if none does. `feed_mm_s` is along the path.
+[[nodiscard]] std::string write_move(const Printer& printer, const Position& from, const Position& to,
+                                     double feed_mm_s);
+[[nodiscard]] std::string write_home(const Printer& printer, Axis axis);
+[[nodiscard]] std::string write_dwell(double seconds);
+
+/// The target of a G0 or G1, axes that it does not name as in `from`. Fails for letters that are no axis.
+[[nodiscard]] Result<Position> move_target(const Printer& printer, const Command& command, const Position& from);
+
+/// The axis with that letter.
+[[nodiscard]] std::optional<Axis> axis_of_letter(const Printer& printer, char letter);
+
+/// What `;@expose` says.
+struct Expose {
+    int layer = 0;
+    int material = 0;  ///< index into the job's materials
+    double seconds = 0;
+    std::string image;  ///< name inside the job; may hold blanks, no control characters
+};
+
+struct Directive {
+    std::optional<Expose> expose;
+    std::optional<std::string> stop_command;
+};
+
+[[nodiscard]] std::string write_expose(const Expose& expose);
+[[nodiscard]] std::string write_stop(std::string_view command);
+
+/// Whether `line` is a directive (`;@...`).
+[[nodiscard]] bool is_directive(std::string_view line);
+/// Reads one; an unknown or incomplete directive is an error.
+[[nodiscard]] Result<Directive> parse_directive(std::string_view line);
+
+}  // namespace pliant::machine

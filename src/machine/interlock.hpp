@@ -1,0 +1,65 @@
+// What the machine must never do, as one state machine over its commands. The planner runs its own G-code through it
+// before anyone prints it, and the virtual printer refuses what it forbids.
+//
+//   - move or light anything before the axis is homed; move beyond an axis' travel
+//   - move the carriage while the platform or the part hangs in the vat (but for the shear stroke)
+//   - lower the platform into anything but the vat under it, or press the part on the vat's floor
+//   - move the tower while a vat is hooked or half in (but for the stroke of the hooks, carriage at the tower)
+//   - enter or leave the tower unless a slot stands level (with a vat) or the hooks are clear (without)
+//   - push a vat into a slot that is taken
+//   - light with no vat under the platform, while something moves, or move while the light is on
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/error.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::machine {
+
+/// Positions are those after the last accepted command. A value: a copy is a snapshot. The printer must outlive it.
+class Interlock {
+public:
+    /// Nothing homed, every vat in its slot, no part on the platform, axes at `start`.
+    explicit Interlock(const Printer& printer, const Position& start = {});
+
+    /// Each checks one command and carries it out on this state; a refused command changes nothing.
+    [[nodiscard]] Status home(Axis axis);
+    [[nodiscard]] Status move(const Position& to);
+    [[nodiscard]] Status light_on(bool moving);
+    void light_off() { light_ = false; }
+
+    /// The motors were stopped on the way: the axes are here, and must be homed again.
+    void stopped_at(const Position& position);
+
+    [[nodiscard]] const Position& position() const { return position_; }
+    [[nodiscard]] bool homed(Axis axis) const { return homed_[static_cast<std::size_t>(axis)]; }
+    /// Index into Printer::vats of the vat on the hooks.
+    [[nodiscard]] std::optional<int> hooked_vat() const { return hooked_vat_; }
+    /// Vat that has been pushed into a slot and let go, by index; nullopt for an empty slot (from 1).
+    [[nodiscard]] std::optional<int> vat_in_slot(int slot) const { return slots_[static_cast<std::size_t>(slot - 1)]; }
+    [[nodiscard]] int part_height_um() const { return part_height_um_; }
+
+private:
+    [[nodiscard]] Status check_travel(const Position& to) const;
+    [[nodiscard]] Status check_platform(const Position& to) const;
+    [[nodiscard]] Status check_tower(const Position& to) const;
+    [[nodiscard]] Status check_carriage(const Position& to) const;
+    [[nodiscard]] bool in_print_window(int carriage_um) const;
+    [[nodiscard]] std::optional<int> slot_in_hook_stroke(int tower_um) const;
+    [[nodiscard]] std::optional<int> level_slot(int tower_um) const;
+    [[nodiscard]] bool hooks_clear(int tower_um) const;
+    void take_or_leave_vat();
+
+    const Printer* printer_;
+    Position position_;
+    std::array<bool, axis_count> homed_{};
+    std::vector<std::optional<int>> slots_;
+    std::optional<int> hooked_vat_;
+    int part_height_um_ = 0;
+    bool light_ = false;
+};
+
+}  // namespace pliant::machine

@@ -1,0 +1,82 @@
+#include "machine/printer.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "core/files.hpp"
+
+using namespace pliant;
+using namespace pliant::machine;
+
+namespace {
+
+const std::filesystem::path tower_file = "examples/printers/tower.toml";
+
+std::string tower_text() {
+    return read_file(tower_file).value();
+}
+
+/// The message that the tower's file gives with `from` replaced by `to`; "" if it is still accepted.
+std::string message_with(const std::string& from, const std::string& to) {
+    std::string text = tower_text();
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    const auto printer = parse_printer(text, "p.toml");
+    return printer ? "" : printer.error().message;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
+    const auto printer = load_printer(tower_file);
+    REQUIRE_MESSAGE(printer, (printer ? "" : printer.error().message));
+    CHECK(printer->layer_um == 50);
+    CHECK(printer->axis(Axis::tower).letter == 'Y');
+    CHECK(printer->axis(Axis::platform).home_um() == 400000);
+    CHECK(printer->axis(Axis::carriage).home_um() == 0);
+    CHECK(printer->axis(Axis::carriage).speed_mm_s == doctest::Approx(15.2));
+    CHECK(printer->platform.width_um == 304800);
+    CHECK(printer->platform.depth_um == 152400);
+    CHECK(printer->tower.pitch_um == 203200);
+    CHECK(printer->level_um(1) == 30000);
+    CHECK(printer->level_um(4) == 30000 + 3 * 203200);
+    CHECK(printer->clear_um(10000) == 10000 + 82550 + 2000);
+    CHECK(printer->vat_shape.volume_ml == doctest::Approx(3834.573).epsilon(1e-6));
+    REQUIRE(printer->vats.size() == 4);
+    CHECK(printer->vats[1].resin == "rigid-flex");
+    CHECK(printer->vat_of_slot(5) == nullptr);
+    CHECK(printer->find_resin("semi-flex")->bottom_exposure_s == 12);
+    CHECK(printer->find_resin("water") == nullptr);
+    CHECK(printer->projector.pixel_um * printer->projector.width_px == doctest::Approx(304800));
+    CHECK(printer->pump.on == "M106 P1 S255");
+}
+
+TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
+    CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
+    CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:30: axis.tower.letter"));
+    CHECK(holds(message_with("slots = 8", "slots = 3"), "must be from 1 to 3"));
+    CHECK(holds(message_with("slot = 2", "slot = 1"), "1 holds a vat already"));
+    CHECK(holds(message_with("resin = \"tough\"", "resin = \"touhg\""), "no [resin.touhg] table"));
+    CHECK(holds(message_with("fill = \"700 ml\"", "fill = \"1 l\""), "overflows"));
+    CHECK(holds(message_with("\"400 mm\"", "\"390 mm\""), "axis.platform.travel"));
+    CHECK(holds(message_with("home = \"max\"", "home = \"min\""), "clear of the vat"));
+    CHECK(holds(message_with("\"1460 mm\"", "\"1400 mm\""), "the last slot"));
+    CHECK(holds(message_with("travel = \"29.5 mm\"", "travel = \"120 mm\""), "less than the tower's clearance"));
+    CHECK(holds(message_with("speed = \"40 mm/s\"", "speed = \"0 mm/s\""), "must be above 0"));
+    CHECK(holds(message_with("speed = \"40 mm/s\"", "speed = 40"), "has no unit"));
+    CHECK(holds(message_with("shear = \"2 mm\"", "sheer = \"2 mm\""), "sheer"));
+    CHECK(holds(message_with("on = \"M106 P1 S255\"", "on = \"G1 X300\""), "must be an M106"));
+    CHECK(holds(message_with("tower_position = \"355.6 mm\"", "tower_position = \"1e300 mm\""), "over 100 m"));
+}
+
+TEST_CASE("an empty file and a missing file are errors, not crashes") {
+    CHECK_FALSE(parse_printer("", "p.toml"));
+    CHECK_FALSE(parse_printer("vat = 3\naxis = \"x\"\nresin = [1]\n", "p.toml"));
+    CHECK_FALSE(load_printer("examples/printers/none.toml"));
+}

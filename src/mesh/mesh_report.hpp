@@ -1,0 +1,25 @@
+// What a person wants to know about a tet mesh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.hpp"
+
+namespace pliant::mesh {
+
+struct MeshReport {
+    int order = 1;
+    std::size_t points = 0;
+    std::size_t tets = 0;
+    Box3 box;
+    std::vector<std::string> region_names;
+    std::vector<double> region_volumes;  ///< in the mesh's unit, cubed
+    double worst_quality = 0;            ///< 6 sqrt(2) V / Lmax^3: 1 for a regular tet, 0 for a flat one
+    double median_quality = 0;
+};
+
+[[nodiscard]] MeshReport report_on(const TetMesh& mesh);
+[[nodiscard]] std::string report_text(const MeshReport& report);
+
+}  // namespace pliant::mesh

@@ -1,0 +1,42 @@
+// Bodies to one tetrahedral mesh, through Gmsh and Open CASCADE.
+#pragma once
+
+#include <span>
+#include <string>
+#include <variant>
+
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "mesh/solid.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "mesh/tri_mesh.hpp"
+
+namespace pliant::mesh {
+
+/// One body: a solid expression, or a closed surface. Lengths in one unit of the caller's choice.
+struct BodyGeometry {
+    std::string name;
+    std::variant<Solid, TriMesh> shape;
+};
+
+[[nodiscard]] Box3 bounds(const BodyGeometry& body);
+
+struct MeshSettings {
+    double size = 0;        ///< wanted edge length, above zero
+    int order = 2;          ///< 1 or 2; mid-edge nodes lie on curved surfaces where that turns no element inside out
+    double angle_deg = 30;  ///< edges of a surface file sharper than this are kept
+};
+
+/// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; bodies
+/// that overlap are an error with the volume. Surface files are meshed one by one and must stand apart from every other
+/// body. The same input gives the same mesh.
+[[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
+                                          Progress& progress);
+
+/// The closed surface of a solid; curved faces within about `tolerance`, flat ones exact.
+[[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
+
+/// Volume of a solid by its boundary representation.
+[[nodiscard]] Result<double> solid_volume(const Solid& solid);
+
+}  // namespace pliant::mesh

@@ -1,0 +1,63 @@
+// The plan of a job: which resin goes into which vat, in which order the vats are used, what that costs in time and
+// resin, and the G-code that does it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "job/job.hpp"
+#include "machine/printer.hpp"
+#include "plan/order.hpp"
+#include "plan/sequence.hpp"
+
+namespace pliant::plan {
+
+/// A vat that the job uses.
+struct VatUse {
+    int vat = 0;                 ///< index into Printer::vats
+    int slot = 0;                ///< where it lives in the tower, from 1
+    std::string resin;           ///< what it must be filled with
+    std::vector<int> materials;  ///< that are printed from it; indices into Manifest::materials
+    double resin_ml = 0;
+    bool refill = false;  ///< the printer file names another resin, or none, for it
+};
+
+struct Plan {
+    std::string job;
+    std::string printer;
+    int layers = 0;
+    int swaps = 0;                     ///< changes of vat; loading the first vat and putting the last one away are none
+    int swap_lower_bound = 0;          ///< the least number that any order of the vats would need
+    Seconds seconds;                   ///< total = swap + clean + expose + move
+    std::vector<VatUse> vats;          ///< in the order of the printer's vats
+    std::vector<int> vat_of_material;  ///< index into Printer::vats; -1 for a material that prints nothing
+    std::vector<VatList> order;        ///< for each layer the vats (indices into Printer::vats) in order
+    std::vector<std::string> warnings;
+};
+
+/// Plans `job` for `printer`. Each resin takes the vat that holds it; one that no vat holds takes the next free vat
+/// (empty ones first, then those whose resin the job does not need), with a warning. Errors (input): a job that was
+/// made for another projector, is taller than the machine builds, has more resins than there are vats, or whose layers
+/// are not in order.
+[[nodiscard]] Result<Plan> make_plan(const job::Manifest& job, const machine::Printer& printer,
+                                     OrderRule rule = OrderRule::thesis);
+
+/// The G-code of the plan; a pure function of its arguments, which must be those of make_plan. The axes are homed
+/// first; every coordinate is absolute; no command is over 94 characters. The tower must hold every vat at the start,
+/// and does again at the end.
+[[nodiscard]] std::string write_gcode(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
+
+/// The printer as it stands once its vats are filled as the plan asks; resins that its file does not know get the
+/// exposures of the job.
+[[nodiscard]] machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, machine::Printer printer);
+
+/// For programs: an object with at least layers, swaps, swap_lower_bound, seconds {total, swap, clean, expose, move},
+/// resin_ml (ml by slot), order (slots by layer), warnings.
+[[nodiscard]] std::string plan_json(const Plan& plan);
+/// For people: a table.
+[[nodiscard]] std::string plan_text(const Plan& plan);
+/// "1:02:03", rounded to seconds.
+[[nodiscard]] std::string clock_text(double seconds);
+
+}  // namespace pliant::plan

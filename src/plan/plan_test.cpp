@@ -1,0 +1,164 @@
+#include "plan/plan.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "plan/check.hpp"
+#include "plan/test_jobs.hpp"
+
+using namespace pliant;
+using namespace pliant::plan;
+
+namespace {
+
+const std::vector<std::string> two = {"semi-flex", "rigid-flex"};
+
+std::vector<std::vector<int>> repeated(const std::vector<int>& layer, std::size_t times) {
+    return std::vector<std::vector<int>>(times, layer);
+}
+
+Plan planned(const job::Manifest& job, const machine::Printer& printer) {
+    auto plan = make_plan(job, printer);
+    REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
+    return *plan;
+}
+
+std::string error_of(const job::Manifest& job, const machine::Printer& printer) {
+    const auto plan = make_plan(job, printer);
+    return plan ? "" : plan.error().message;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
+    const machine::Printer printer = test::tower();
+    const job::Manifest job = test::make_job(repeated({0, 1}, 200), two);
+    const Plan plan = planned(job, printer);
+    CHECK(plan.layers == 200);
+    CHECK(plan.swaps == 200);
+    CHECK(plan.swap_lower_bound == 200);
+    CHECK(plan.order[0] == VatList{0, 1});
+    CHECK(plan.order[1] == VatList{1, 0});
+    CHECK(plan.warnings.empty());
+    // 3 layers of 2 x 12 s, 197 of 2 x 2.5 s.
+    CHECK(plan.seconds.expose == doctest::Approx(3 * 24 + 197 * 5));
+    // 200 swaps and the final cleaning, 15 s each.
+    CHECK(plan.seconds.clean == doctest::Approx(201 * 15).epsilon(1e-3));
+    CHECK(plan.seconds.total ==
+          doctest::Approx(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move));
+    // 200 layers of 100 mm^2 x 50 um.
+    REQUIRE(plan.vats.size() == 2);
+    CHECK(plan.vats[0].resin_ml == doctest::Approx(1));
+    CHECK(plan.vats[1].resin_ml == doctest::Approx(1));
+}
+
+TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
+    machine::Printer printer = test::tower();
+    const job::Manifest job = test::make_job({{0, 1, 2}}, {"rubber", "semi-flex", "wax"});
+    Plan plan = planned(job, printer);
+    CHECK(plan.vat_of_material == std::vector<int>{1, 0, 2});
+    REQUIRE(plan.warnings.size() == 2);
+    CHECK(
+        holds(plan.warnings[0], "no vat holds \"rubber\": fill it into the vat of slot 2, which holds \"rigid-flex\""));
+    CHECK(plan.vats[1].refill);
+    CHECK_FALSE(plan.vats[0].refill);
+    printer.vats[3].resin = "";
+    plan = planned(job, printer);
+    CHECK(plan.vat_of_material == std::vector<int>{3, 0, 1});
+    CHECK(filled_printer(plan, job, printer).vats[3].resin == "rubber");
+    CHECK(filled_printer(plan, job, printer).find_resin("rubber")->exposure_s == 2.5);
+}
+
+TEST_CASE("materials of one resin share a vat and need no swap") {
+    const Plan plan = planned(test::make_job(repeated({0, 1}, 4), {"tough", "tough"}), test::tower());
+    CHECK(plan.swaps == 0);
+    CHECK(plan.vats.size() == 1);
+    CHECK(plan.vats[0].materials == std::vector<int>{0, 1});
+    CHECK(plan.order[0] == VatList{2});
+}
+
+TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, no exposure: errors") {
+    const machine::Printer printer = test::tower();
+    CHECK(holds(error_of(test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
+    job::Manifest job = test::make_job(repeated({0}, 3), two);
+    job.width_px = 100;
+    CHECK(holds(error_of(job, printer), "slice it again"));
+    job = test::make_job(repeated({0}, 3), two);
+    job.layers[2].z_um = 304801;
+    CHECK(holds(error_of(job, printer), "builds 304.80 mm"));
+    job.layers[2].z_um = 50;
+    CHECK(holds(error_of(job, printer), "layer 2 at 50 um does not lie above 100 um"));
+    job = test::make_job(repeated({0}, 3), two);
+    job.layers[1].images[0].material = 2;
+    CHECK(holds(error_of(job, printer), "prints material 2, there are 2"));
+    job.layers[1].images[0] = {0, "a\nG28", 1};
+    CHECK(holds(error_of(job, printer), "without a usable name"));
+    job = test::make_job(repeated({0}, 3), two);
+    job.materials[0].exposure_s = 0;
+    CHECK(holds(error_of(job, printer), "needs exposures"));
+}
+
+TEST_CASE("blank layers and resin that runs out are noticed") {
+    machine::Printer printer = test::tower();
+    printer.vats[0].fill_ml = 0.01;
+    const Plan plan = planned(test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
+    REQUIRE(plan.warnings.size() == 3);
+    CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
+    CHECK(holds(plan.warnings[1], "holds 0.0 ml"));
+    CHECK(holds(plan.warnings[2], "1 layers lie higher"));
+}
+
+TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image once behind a fence") {
+    const machine::Printer printer = test::tower();
+    const job::Manifest job =
+        test::make_job({{0, 1, 2}, {0, 2}, {}, {1}, {0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
+    const Plan plan = planned(job, printer);
+    const std::string text = write_gcode(plan, job, printer);
+    const Status checked = check_gcode(text, printer);
+    CHECK_MESSAGE(checked, (checked ? "" : checked.error().message));
+    CHECK_FALSE(holds(text, "G91"));
+    CHECK_FALSE(holds(text, "G92"));
+    std::size_t fences = 0;
+    for (std::size_t at = text.find(";@expose"); at != std::string::npos; at = text.find(";@expose", at + 1)) {
+        CHECK(text.substr(at - 5, 5) == "M400\n");
+        ++fences;
+    }
+    CHECK(fences == 9);
+    CHECK(holds(text, ";@expose layer=0 material=0 seconds=12.000 image=layers/0_m0.png"));
+    CHECK(holds(text, ";@expose layer=3 material=1 seconds=2.500 image=layers/3_m1.png"));
+    CHECK(holds(text, ";@stop M107 P1"));
+}
+
+TEST_CASE("an empty job homes and does nothing") {
+    const machine::Printer printer = test::tower();
+    const job::Manifest job = test::make_job({}, two);
+    const Plan plan = planned(job, printer);
+    CHECK(plan.swaps == 0);
+    CHECK(plan.seconds.swap == 0);
+    CHECK(check_gcode(write_gcode(plan, job, printer), printer));
+}
+
+TEST_CASE("the plan as JSON has the keys that programs read") {
+    const Plan plan = planned(test::make_job(repeated({0, 1}, 2), {"semi-flex", "wax"}), test::tower());
+    const auto json = nlohmann::json::parse(plan_json(plan));
+    CHECK(json["layers"] == 2);
+    CHECK(json["swaps"] == 2);
+    CHECK(json["swap_lower_bound"] == 2);
+    CHECK(json["order"] == nlohmann::json::parse("[[1, 2], [2, 1]]"));
+    CHECK(json["resin_ml"]["2"].get<double>() == doctest::Approx(0.01));
+    CHECK(json["warnings"].size() == 1);
+    for (const char* key : {"total", "swap", "clean", "expose", "move"}) CHECK(json["seconds"][key].is_number());
+}
+
+TEST_CASE("the plan as text shows times as h:mm:ss") {
+    CHECK(clock_text(3723.4) == "1:02:03");
+    CHECK(clock_text(0) == "0:00:00");
+    const std::string text = plan_text(planned(test::make_job(repeated({0, 1}, 2), two), test::tower()));
+    CHECK(holds(text, "no order needs fewer than 2"));
+    CHECK(holds(text, "slot 2"));
+}

@@ -1,0 +1,89 @@
+#include "plan/sequence.hpp"
+
+#include <cmath>
+
+#include "machine/motion.hpp"
+
+namespace pliant::plan {
+
+using machine::Axis;
+using machine::Position;
+
+void Sequence::spend(double seconds) {
+    seconds_.total += seconds;
+    switch (activity_) {
+        case Activity::swap:
+            seconds_.swap += seconds;
+            break;
+        case Activity::clean:
+            seconds_.clean += seconds;
+            break;
+        case Activity::expose:
+            seconds_.expose += seconds;
+            break;
+        case Activity::move:
+            seconds_.move += seconds;
+            break;
+    }
+}
+
+void Sequence::comment(std::string_view text) {
+    text_ += "; ";
+    text_ += text.substr(0, machine::max_line_chars - 2);
+    text_ += '\n';
+}
+
+void Sequence::command(std::string_view line) {
+    if (line.empty()) return;
+    text_ += line;
+    text_ += '\n';
+}
+
+void Sequence::home(Axis axis) {
+    const machine::AxisSpec& spec = printer_->axis(axis);
+    spend(machine::home_seconds(*printer_, axis, spec.homes_to_max ? spec.min_um : spec.max_um));
+    position_[axis] = spec.home_um();
+    command(machine::write_home(*printer_, axis));
+}
+
+void Sequence::move(Axis axis, int um, double feed_mm_s) {
+    Position to = position_;
+    to[axis] = um;
+    move_to(to, feed_mm_s);
+}
+
+void Sequence::move_to(const Position& to, double feed_mm_s) {
+    const machine::Profile profile = machine::profile(*printer_, position_, to, feed_mm_s);
+    if (profile.length_mm == 0) return;
+    spend(profile.seconds());
+    command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
+    position_ = to;
+}
+
+void Sequence::dwell(double seconds) {
+    const double whole_ms = std::round(seconds * 1000) / 1000;
+    if (whole_ms <= 0) return;
+    spend(whole_ms);
+    command(machine::write_dwell(whole_ms));
+}
+
+void Sequence::fence() {
+    command("M400");
+}
+
+void Sequence::switch_to(std::string_view line) {
+    if (line.empty()) return;
+    fence();
+    command(line);
+}
+
+void Sequence::expose(const machine::Expose& expose) {
+    const Activity before = activity_;
+    fence();
+    command(machine::write_expose(expose));
+    activity(Activity::expose);
+    spend(expose.seconds);
+    activity(before);
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,53 @@
+// Writes the machine's commands one after the other and keeps the books: where the axes are and what time is spent on
+// what. The planner's times and its G-code come from the same calls and cannot disagree.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "machine/gcode.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::plan {
+
+/// What a stretch of time counts as. Cleaning is the time that the pump runs; the rest of a change of vats is `swap`.
+enum class Activity { swap, clean, expose, move };
+
+struct Seconds {
+    double total = 0, swap = 0, clean = 0, expose = 0, move = 0;
+};
+
+/// The printer must outlive it.
+class Sequence {
+public:
+    explicit Sequence(const machine::Printer& printer) : printer_(&printer) {}
+
+    void activity(Activity activity) { activity_ = activity; }
+    void comment(std::string_view text);
+    void command(std::string_view line);  ///< one that takes no time; nothing if empty
+    /// Time as if from the far end of the travel: where the axes are is not known yet.
+    void home(machine::Axis axis);
+    void move(machine::Axis axis, int um, double feed_mm_s = 0);  ///< feed 0: as fast as the axis goes
+    void move_to(const machine::Position& to, double feed_mm_s = 0);
+    void dwell(double seconds);
+    void fence();  ///< everything before is done
+    /// Switches behind a fence and waits again: a switch travels with the move queue otherwise.
+    void switch_to(std::string_view command);
+    void expose(const machine::Expose& expose);
+
+    [[nodiscard]] const machine::Printer& printer() const { return *printer_; }
+    [[nodiscard]] const machine::Position& position() const { return position_; }
+    [[nodiscard]] const Seconds& seconds() const { return seconds_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    void spend(double seconds);
+
+    const machine::Printer* printer_;
+    machine::Position position_;
+    Activity activity_ = Activity::move;
+    Seconds seconds_;
+    std::string text_;
+};
+
+}  // namespace pliant::plan

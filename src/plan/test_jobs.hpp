@@ -1,0 +1,42 @@
+// Jobs made in memory, for tests: which materials print on which layer is all that a plan depends on.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "job/job.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::plan::test {
+
+/// 50 um layers; material m is called "m0", "m1", ... and printed in the resin that `resins` gives it.
+/// Every image covers 100 mm^2.
+inline job::Manifest make_job(const std::vector<std::vector<int>>& layers, const std::vector<std::string>& resins) {
+    job::Manifest job;
+    job.name = "job";
+    job.width_px = 1920;
+    job.height_px = 1080;
+    job.pixel_um = 158.75;
+    job.bottom_layers = 3;
+    for (std::size_t m = 0; m < resins.size(); ++m) {
+        job.materials.push_back({fmt::format("m{}", m), resins[m], 0, 0, 2.5, 12});
+    }
+    for (const auto& materials : layers) {
+        job::Layer layer;
+        layer.z_um = 50 * static_cast<int>(job.layers.size() + 1);
+        layer.thickness_um = 50;
+        for (const int m : materials) {
+            layer.images.push_back({m, fmt::format("layers/{}_m{}.png", job.layers.size(), m), 100});
+        }
+        job.layers.push_back(std::move(layer));
+    }
+    return job;
+}
+
+inline machine::Printer tower() {
+    return machine::load_printer("examples/printers/tower.toml").value();
+}
+
+}  // namespace pliant::plan::test

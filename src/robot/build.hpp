@@ -1,0 +1,28 @@
+// From a robot file to what the two wings take: a tet mesh and a model for the simulation, surfaces for the slicer.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "robot/robot.hpp"
+#include "sim/model.hpp"
+
+namespace pliant::robot {
+
+/// Meshes the bodies, or reads the mesh file. Metres; region i is body i. Errors name the body and its line.
+[[nodiscard]] Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress);
+
+/// Ties supports, loads, cables and markers to the mesh of build_mesh().
+[[nodiscard]] Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh);
+
+/// The closed surface of one body as drawn.
+struct BodySurface {
+    std::string body;
+    int material = 0;  ///< index into Robot::materials
+    mesh::TriMesh surface_m;
+};
+[[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);
+
+}  // namespace pliant::robot

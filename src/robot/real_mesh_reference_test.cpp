@@ -1,0 +1,86 @@
+// The cable finger of the SoftRobots examples (softrobots/README.md of the reference data), from rest to 50 mm of pull.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "robot/build.hpp"
+
+using namespace pliant;
+
+namespace {
+
+/// Supports, cable and material as that README gives them.
+std::string finger(const std::string& mesh, int order, int steps) {
+    const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
+    return fmt::format(R"(
+name = "cable finger"
+length_unit = "mm"
+[material.silicone]
+youngs_modulus = "600 kPa"
+poisson_ratio = 0.45
+density = "4052 kg/m^3"
+[mesh]
+file = "{}/softrobots/cable_finger/{}"
+order = {}
+[[body]]
+name = "finger"
+region = "all"
+material = "silicone"
+[[fixed]]
+name = "base"
+box = [[-15, 0, 0], [5, 10, 15]]
+[[cable]]
+name = "flexor"
+anchor = "first"
+points = [[0, 12.5, 2.5], [-17.5, 12.5, 2.5], [-32.5, 12.5, 2.5], [-47.5, 12.5, 2.5], [-62.5, 12.5, 2.5],
+  [-77.5, 12.5, 2.5], [-83.5, 12.5, 4.5], [-85.5, 12.5, 6.5], [-85.5, 12.5, 8.5], [-83.5, 12.5, 10.5],
+  [-77.5, 12.5, 12.5], [-62.5, 12.5, 12.5], [-47.5, 12.5, 12.5], [-32.5, 12.5, 12.5], [-17.5, 12.5, 12.5]]
+target = {{ shortening = "50 mm" }}
+[[marker]]
+name = "tip"
+box = [[-103.5, -1, -1], [-103.3, 16, 16]]
+[program]
+steps = {}
+)",
+                       folder, mesh, order, steps);
+}
+
+sim::Trajectory pull(const std::string& text, std::size_t fixed_corners) {
+    const auto robot = robot::parse_robot(text, "finger.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    auto mesh = robot::build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    const auto model = robot::build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    if (fixed_corners > 0) CHECK(model->description().supports[0].nodes.size() == fixed_corners);
+    return sim::run(*model, robot->program, silent);
+}
+
+void check_pull(const sim::Trajectory& result) {
+    REQUIRE_MESSAGE(result.converged, result.message);
+    double tension = 0;
+    for (const sim::Step& step : result.steps) {
+        CHECK(step.min_J > 0);
+        CHECK(step.residual <= 1e-4);
+        CHECK(step.cables[0].tension_N >= tension);  // pulling on never gets easier before the flanks meet
+        tension = step.cables[0].tension_N;
+    }
+    const sim::Step& last = result.steps.back();
+    CHECK(result.steps.front().cables[0].length_m == doctest::Approx(0.157806).epsilon(1e-5));
+    CHECK(last.cables[0].length_m == doctest::Approx(0.107806).epsilon(1e-5));
+    CHECK(last.markers[0].position_m.y > result.steps.front().markers[0].position_m.y + 0.03);  // bends towards +y
+}
+
+}  // namespace
+
+TEST_CASE("finger.vtk, linear and quadratic, 0 to 50 mm") {
+    check_pull(pull(finger("finger.vtk", 1, 25), 20));
+    check_pull(pull(finger("finger.vtk", 2, 25), 0));
+}
+
+TEST_CASE("finger_7k.vtk, linear, 0 to 50 mm") {
+    const sim::Trajectory result = pull(finger("finger_7k.vtk", 1, 25), 0);
+    check_pull(result);
+}

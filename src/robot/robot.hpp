@@ -1,0 +1,126 @@
+// The robot file as read: one plain value, validated, nothing built yet. docs/reference/robot.md describes every key.
+//
+// Coordinates are in the file's `length_unit` (`unit_m` metres); all other quantities are SI.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/vec3.hpp"
+#include "material/law.hpp"
+#include "mesh/solid.hpp"
+#include "sim/simulate.hpp"
+
+namespace pliant::robot {
+
+struct MaterialSpec {
+    std::string name;
+    material::Law law = material::NeoHookean{};
+    double youngs_modulus_Pa = 0;
+    double poisson_ratio = 0;
+    double density_kg_m3 = 0;
+    std::string resin;                            ///< the material's own name where the file says nothing
+    std::optional<std::array<double, 3>> colour;  ///< sRGB, each in [0, 1]
+};
+
+/// Geometry of a body: a solid expression, a surface file, or a region of the mesh file ("all": every region).
+struct SurfaceFile {
+    std::filesystem::path path;
+};
+struct MeshRegion {
+    std::string name;
+};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion>;
+
+struct BodySpec {
+    std::string name;
+    int material = 0;  ///< index into Robot::materials
+    Geometry geometry;
+    int line = 0;
+};
+
+struct MeshSpec {
+    double size = 0;  ///< in length units; 0: a twelfth of the longest side of the bodies' bounding box
+    std::optional<std::filesystem::path> file;
+    int order = 2;
+    int line = 0;
+};
+
+/// Which part of the robot is meant; in length units.
+struct BoxSelector {
+    Vec3 low, high;
+};
+struct PlaneSelector {
+    Vec3 point, normal;
+};
+struct SphereSelector {
+    Vec3 center;
+    double radius = 0;
+};
+struct SurfaceSelector {
+    std::filesystem::path path;
+};
+struct NodeSelector {
+    std::vector<int> nodes;
+};
+using Selector = std::variant<BoxSelector, PlaneSelector, SphereSelector, SurfaceSelector, NodeSelector>;
+
+struct FixedSpec {
+    std::string name;
+    Selector selector;
+    Vec3 move;  ///< length units, at the end of the program
+    int line = 0;
+};
+
+struct LoadSpec {
+    std::string name;
+    BoxSelector box;
+    Vec3 force_N;
+    int line = 0;
+};
+
+struct CableSpec {
+    enum class Anchor { none, first, last };
+    std::string name;
+    std::vector<Vec3> points;
+    Anchor anchor = Anchor::none;
+    bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
+    double eyelet_radius = 0;          ///< length units
+    sim::CableTarget target;
+    int line = 0;
+};
+
+struct MarkerSpec {
+    std::string name;
+    std::variant<Vec3, BoxSelector> place;
+    int line = 0;
+};
+
+struct Robot {
+    std::filesystem::path file;
+    std::string name;
+    double unit_m = 1e-3;
+    std::vector<MaterialSpec> materials;
+    std::vector<BodySpec> bodies;
+    MeshSpec mesh;
+    std::vector<FixedSpec> fixed;
+    std::vector<LoadSpec> loads;
+    std::vector<CableSpec> cables;
+    std::vector<MarkerSpec> markers;
+    Vec3 gravity_m_s2;
+    sim::Program program;
+};
+
+/// Reads and validates; `assignments` are `KEY=VALUE` as of `--set`. An error holds one line per problem, each with
+/// file and line.
+[[nodiscard]] Result<Robot> load_robot(const std::filesystem::path& file,
+                                       const std::vector<std::string>& assignments = {});
+[[nodiscard]] Result<Robot> parse_robot(std::string_view text, const std::filesystem::path& file,
+                                        const std::vector<std::string>& assignments = {});
+
+}  // namespace pliant::robot

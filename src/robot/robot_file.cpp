@@ -1,0 +1,401 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "core/config.hpp"
+#include "core/text.hpp"
+#include "robot/robot.hpp"
+
+namespace pliant::robot {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Problems;
+using config::Reader;
+
+/// Everything that the readers of single tables share.
+struct Context {
+    Robot& robot;
+    Problems& problems;
+    mesh::NamedShapes shapes;  ///< [shape.NAME]: solids that others may use
+};
+
+fs::path beside(const Context& context, const std::string& file) {
+    const fs::path path(file);
+    return path.is_absolute() ? path : context.robot.file.parent_path() / path;
+}
+
+void need_file(Reader& reader, std::string_view key, const fs::path& path) {
+    std::error_code code;
+    if (!fs::is_regular_file(path, code)) reader.problem(key, "there is no file " + path.string());
+}
+
+/// A name that is unique among its kind.
+std::string read_name(Reader& reader, std::set<std::string>& taken, std::string_view kind) {
+    const std::string name = reader.text("name");
+    if (name.empty()) return name;
+    if (!taken.insert(name).second) reader.problem("name", fmt::format("there are two {} named \"{}\"", kind, name));
+    return name;
+}
+
+std::optional<std::array<double, 3>> read_colour(Reader& reader) {
+    if (!reader.has("colour")) return (void)reader.raw("colour"), std::nullopt;
+    const std::string text = reader.text("colour");
+    std::array<double, 3> rgb{};
+    bool good = text.size() == 7 && text[0] == '#';
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        int value = 0;
+        const char* first = text.data() + 1 + 2 * i;
+        const auto [end, code] = std::from_chars(first, first + 2, value, 16);
+        good = code == std::errc() && end == first + 2;
+        rgb[i] = value / 255.0;
+    }
+    if (!good) reader.problem("colour", "write a colour as \"#rrggbb\"");
+    return rgb;
+}
+
+/// Law and elastic constants of one material.
+void read_law(Reader& reader, MaterialSpec& material) {
+    const std::string law = reader.choice("law", {"neo-hookean", "shape-blend", "st-venant-kirchhoff"}, "neo-hookean");
+    const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
+    const double E = material.youngs_modulus_Pa = reader.quantity("youngs_modulus", Dimension::pressure);
+    if (!(nu > -1 && nu < 0.5)) {
+        reader.problem("poisson_ratio",
+                       fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
+        return;
+    }
+    if (reader.has("youngs_modulus") && !(E > 0)) reader.problem("youngs_modulus", "must be above zero");
+    material.law = material::neo_hookean(E, nu);
+    if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
+    if (law != "shape-blend") return;
+    if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
+    material::ShapeBlend blend = material::shape_blend(E, nu);
+    if (reader.has("shape_parameter")) {
+        // The thesis' way: one weight for all materials, R_omega tells them apart.
+        const double R = reader.number("shape_parameter");
+        if (!(R >= 1))
+            reader.problem("shape_parameter", "R_omega is 1 (rigid) or more");
+        else
+            blend.a = 1 / R;
+    }
+    material.law = blend;
+}
+
+void read_materials(Reader& root, Context& context) {
+    for (auto& [name, reader] : root.named_tables("material")) {
+        MaterialSpec material;
+        material.name = name;
+        read_law(reader, material);
+        material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
+        if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
+        material.resin = reader.text("resin", name);
+        material.colour = read_colour(reader);
+        reader.finish();
+        context.robot.materials.push_back(std::move(material));
+    }
+    if (context.robot.materials.empty()) root.problem("", "there is no material; add a table [material.NAME]");
+}
+
+int find_material(Reader& reader, const Context& context) {
+    const std::string wanted = reader.text("material");
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < context.robot.materials.size(); ++i) {
+        names.push_back(context.robot.materials[i].name);
+        if (names.back() == wanted) return static_cast<int>(i);
+    }
+    if (reader.has("material") && !names.empty()) {
+        const std::string near = nearest_name(wanted, names);
+        reader.problem("material", near.empty()
+                                       ? fmt::format("no material \"{}\"; there is {}", wanted, join_names(names))
+                                       : fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
+    }
+    return 0;
+}
+
+Geometry read_geometry(Reader& reader, Context& context) {
+    const bool has_mesh_file = context.robot.mesh.file.has_value();
+    if (reader.has("region")) {
+        const std::string region = reader.text("region");
+        if (!has_mesh_file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
+        return MeshRegion{region};
+    }
+    if (has_mesh_file) {
+        reader.problem("", "with a mesh file a body names its region: region = \"...\" or region = \"all\"");
+        (void)reader.raw("geometry");
+        return MeshRegion{"all"};
+    }
+    const config::Value* geometry = reader.raw("geometry");
+    if (geometry == nullptr) {
+        reader.problem("",
+                       "\"geometry\" is missing; it is a file such as \"finger.stl\" or a shape such as { box = "
+                       "[[0,0,0],[1,1,1]] }");
+        return MeshRegion{"all"};
+    }
+    if (std::holds_alternative<std::string>(geometry->data)) {
+        const SurfaceFile surface{beside(context, std::get<std::string>(geometry->data))};
+        need_file(reader, "geometry", surface.path);
+        return surface;
+    }
+    return mesh::read_solid(*geometry, reader.path() + ".geometry", context.shapes, context.problems);
+}
+
+void read_bodies(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("body")) {
+        BodySpec body;
+        body.line = reader.line();
+        body.name = read_name(reader, taken, "bodies");
+        body.material = find_material(reader, context);
+        body.geometry = read_geometry(reader, context);
+        reader.finish();
+        context.robot.bodies.push_back(std::move(body));
+    }
+    if (context.robot.bodies.empty()) root.problem("", "there is no body; add [[body]]");
+}
+
+void read_mesh(Reader& root, Context& context) {
+    Reader reader = root.table("mesh", false);
+    MeshSpec& mesh = context.robot.mesh;
+    mesh.line = reader.line();
+    mesh.order = static_cast<int>(reader.integer("order", 2));
+    if (mesh.order != 1 && mesh.order != 2)
+        reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
+    if (reader.has("file")) {
+        mesh.file = beside(context, reader.text("file"));
+        need_file(reader, "file", *mesh.file);
+        if (reader.has("size")) reader.problem("size", "has no meaning beside a mesh file");
+    }
+    mesh.size = reader.quantity("size", Dimension::length, 0) / context.robot.unit_m;
+    if (reader.has("size") && !(mesh.size > 0)) reader.problem("size", "must be above zero");
+    reader.finish();
+}
+
+BoxSelector read_box(Reader& reader) {
+    const auto corners = reader.vectors("box");
+    if (corners.size() != 2) {
+        if (reader.has("box")) reader.problem("box", "needs two corners [[x, y, z], [x, y, z]]");
+        return {};
+    }
+    const auto& [a, b] = std::pair(corners[0], corners[1]);
+    if (a.x > b.x || a.y > b.y || a.z > b.z)
+        reader.problem("box", "the first corner must be the lower one on every axis");
+    return {a, b};
+}
+
+Selector read_selector(Reader& reader, const Context& context) {
+    constexpr std::string_view kinds[] = {"box", "plane", "sphere", "surface", "nodes"};
+    std::vector<std::string> given;
+    for (const std::string_view kind : kinds) {
+        if (reader.has(kind)) given.emplace_back(kind);
+    }
+    if (given.size() != 1) {
+        for (const std::string& kind : given) (void)reader.raw(kind);
+        reader.problem("", given.empty() ? std::string("says nothing to hold; add box, plane, sphere, surface or nodes")
+                                         : "takes only one of " + join_names(given));
+        return BoxSelector{};
+    }
+    if (given[0] == "box") return read_box(reader);
+    if (given[0] == "plane") {
+        Reader plane = reader.table("plane");
+        const PlaneSelector selector{plane.vector("point"), plane.vector("normal")};
+        if (plane.has("normal") && norm(selector.normal) == 0) plane.problem("normal", "must not be zero");
+        plane.finish();
+        return selector;
+    }
+    if (given[0] == "sphere") {
+        Reader sphere = reader.table("sphere");
+        const SphereSelector selector{sphere.vector("center"), sphere.number("radius")};
+        if (sphere.has("radius") && !(selector.radius > 0)) sphere.problem("radius", "must be above zero");
+        sphere.finish();
+        return selector;
+    }
+    if (given[0] == "surface") {
+        const SurfaceSelector selector{beside(context, reader.text("surface"))};
+        need_file(reader, "surface", selector.path);
+        return selector;
+    }
+    NodeSelector selector;
+    for (const double value : reader.numbers("nodes")) {
+        if (value < 0 || value != std::floor(value) || value > 2e9)
+            reader.problem("nodes", "holds a value that is no node number");
+        else
+            selector.nodes.push_back(static_cast<int>(value));
+    }
+    return selector;
+}
+
+void read_supports(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("fixed")) {
+        FixedSpec fixed;
+        fixed.line = reader.line();
+        fixed.name = read_name(reader, taken, "[[fixed]]");
+        fixed.selector = read_selector(reader, context);
+        fixed.move = reader.vector("move", Vec3{});
+        reader.finish();
+        context.robot.fixed.push_back(std::move(fixed));
+    }
+    if (context.robot.fixed.empty())
+        root.problem("", "nothing is fixed; add [[fixed]] with a box that holds one end of the robot");
+}
+
+void read_loads(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("load")) {
+        LoadSpec load;
+        load.line = reader.line();
+        load.name = read_name(reader, taken, "loads");
+        load.box = read_box(reader);
+        const auto force = reader.quantities("force", Dimension::force, 3);
+        if (!reader.has("force"))
+            reader.problem("", "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"]");
+        load.force_N = {force[0], force[1], force[2]};
+        reader.finish();
+        context.robot.loads.push_back(std::move(load));
+    }
+}
+
+sim::CableTarget read_target(Reader& cable) {
+    using Kind = sim::CableTarget::Kind;
+    Reader reader = cable.table("target");
+    sim::CableTarget target;
+    const int given = int{reader.has("length_ratio")} + int{reader.has("shortening")} + int{reader.has("tension")};
+    if (cable.has("target") && given != 1) reader.problem("", "takes one of length_ratio, shortening and tension");
+    if (reader.has("length_ratio")) {
+        target = {Kind::length_ratio, reader.number("length_ratio")};
+        if (!(target.value > 0 && target.value <= 1)) {
+            reader.problem("length_ratio",
+                           fmt::format("{} is not possible; a cable gets shorter: above 0, at most 1", target.value));
+        }
+    }
+    if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
+    if (reader.has("tension")) target = {Kind::tension_N, reader.quantity("tension", Dimension::force)};
+    if (target.value < 0) reader.problem("", "must not be negative: a cable can only pull");
+    for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
+    reader.finish();
+    return target;
+}
+
+void read_cables(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("cable")) {
+        CableSpec cable;
+        cable.line = reader.line();
+        cable.name = read_name(reader, taken, "cables");
+        cable.points = reader.vectors("points");
+        if (reader.has("points") && cable.points.size() < 2)
+            reader.problem("points", "a cable needs at least two points");
+        for (std::size_t i = 1; i < cable.points.size(); ++i) {
+            if (cable.points[i] == cable.points[i - 1])
+                reader.problem("points", fmt::format("points {} and {} are the same", i, i + 1));
+        }
+        const std::string anchor = reader.choice("anchor", {"none", "first", "last"}, "none");
+        cable.anchor = anchor == "first" ? CableSpec::Anchor::first
+                                         : (anchor == "last" ? CableSpec::Anchor::last : CableSpec::Anchor::none);
+        cable.guides_at_crossings = reader.choice("guides", {"points", "crossings"}, "points") == "crossings";
+        (void)reader.choice("model", {"length"}, "length");
+        cable.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
+        if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
+        cable.target = read_target(reader);
+        reader.finish();
+        context.robot.cables.push_back(std::move(cable));
+    }
+}
+
+void read_markers(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("marker")) {
+        MarkerSpec marker;
+        marker.line = reader.line();
+        marker.name = read_name(reader, taken, "markers");
+        if (reader.has("box")) {
+            marker.place = read_box(reader);
+            if (reader.has("point")) reader.problem("point", "give either point or box");
+            (void)reader.raw("point");
+        } else {
+            marker.place = reader.vector("point");
+            (void)reader.raw("box");
+        }
+        reader.finish();
+        context.robot.markers.push_back(std::move(marker));
+    }
+}
+
+void read_program(Reader& root, Context& context) {
+    Reader reader = root.table("program", false);
+    sim::Program& program = context.robot.program;
+    program.steps = static_cast<int>(std::clamp<std::int64_t>(reader.integer("steps", 30), -1, 1000000));
+    if (program.steps < 1 || program.steps > 100000) {
+        reader.problem("steps", "must be between 1 and 100000");
+        program.steps = 1;
+    }
+    program.tolerance = reader.number("tolerance", 1e-4);
+    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
+        reader.problem("tolerance", "must be between 1e-10 and 0.1");
+    context.robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
+    const std::string solver = reader.choice("solver", {"auto", "newton", "quasi-newton", "local-global"}, "auto");
+    program.solver = solver == "newton"         ? sim::Solver::newton
+                     : solver == "quasi-newton" ? sim::Solver::quasi_newton
+                     : solver == "local-global" ? sim::Solver::local_global
+                                                : sim::Solver::automatic;
+    program.iteration_limit =
+        static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
+    if (program.iteration_limit < 0)
+        reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
+    reader.finish();
+}
+
+Result<Robot> read_robot(config::Document document, const std::vector<std::string>& assignments) {
+    for (const std::string& assignment : assignments) {
+        if (Status status = config::set(document, assignment); !status) return tl::unexpected(status.error());
+    }
+    if (Status status = config::resolve_parameters(document); !status) return tl::unexpected(status.error());
+
+    Problems problems(document.file.string());
+    Reader root(document.root, problems);
+    Robot robot;
+    robot.file = document.file;
+    robot.name = root.text("name");
+    const std::string unit = root.text("length_unit");
+    if (const Result<double> factor = unit_factor(unit, Dimension::length))
+        robot.unit_m = *factor;
+    else if (root.has("length_unit"))
+        root.problem("length_unit", factor.error().message);
+
+    Context context{robot, problems, {}};
+    if (const config::Value* shapes = root.raw("shape"); shapes != nullptr) {
+        if (const auto* table = std::get_if<config::Table>(&shapes->data)) {
+            for (const auto& [name, value] : *table) context.shapes.emplace_back(name, &value);
+        } else {
+            root.problem("shape", "write [shape.NAME] for each shape");
+        }
+    }
+    read_materials(root, context);
+    read_mesh(root, context);
+    read_bodies(root, context);
+    read_supports(root, context);
+    read_loads(root, context);
+    read_cables(root, context);
+    read_markers(root, context);
+    read_program(root, context);
+    root.finish();
+    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
+    return robot;
+}
+
+}  // namespace
+
+Result<Robot> load_robot(const fs::path& file, const std::vector<std::string>& assignments) {
+    Result<config::Document> document = config::load(file);
+    if (!document) return tl::unexpected(document.error());
+    return read_robot(std::move(*document), assignments);
+}
+
+Result<Robot> parse_robot(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments) {
+    Result<config::Document> document = config::parse(text, file);
+    if (!document) return tl::unexpected(document.error());
+    return read_robot(std::move(*document), assignments);
+}
+
+}  // namespace pliant::robot

@@ -1,0 +1,103 @@
+#include "sim/attach.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace pliant::sim {
+namespace {
+
+constexpr std::size_t largest_patch = 64;
+
+/// Keeps the nearest nodes and an even sample of the others.
+void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& center) {
+    if (nodes.size() <= largest_patch) return;
+    std::sort(nodes.begin(), nodes.end(), [&](int a, int b) {
+        const double da = norm(points[a] - center);
+        const double db = norm(points[b] - center);
+        return da != db ? da < db : a < b;
+    });
+    std::vector<int> kept;
+    for (std::size_t k = 0; k < largest_patch; ++k) kept.push_back(nodes[k * (nodes.size() - 1) / (largest_patch - 1)]);
+    nodes = std::move(kept);
+}
+
+}  // namespace
+
+Attacher::Attacher(const mesh::TetMesh& mesh) : mesh_(&mesh), locator_(mesh), tet_start_(mesh.points.size() + 1, 0) {
+    for (const int node : mesh.nodes) ++tet_start_[static_cast<std::size_t>(node) + 1];
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) tet_start_[i + 1] += tet_start_[i];
+    tets_.resize(mesh.nodes.size());
+    std::vector<int> next(tet_start_.begin(), tet_start_.end() - 1);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        for (const int node : mesh.tet(t)) tets_[next[node]++] = static_cast<int>(t);
+    }
+}
+
+Result<mesh::TetLocator::Location> Attacher::locate(const Vec3& point, double tolerance) const {
+    const mesh::TetLocator::Location location = locator_.locate(point);
+    if (location.distance > tolerance) return input_error("{}", location.distance);
+    return location;
+}
+
+Result<Attachment> Attacher::carried_by_tet(const Vec3& point, double tolerance) const {
+    const auto location = locate(point, tolerance);
+    if (!location) return tl::unexpected(location.error());
+    const auto nodes = mesh_->tet(static_cast<std::size_t>(location->tet));
+    const auto weights = mesh::shape_functions(mesh_->order, location->barycentric);
+    Attachment attachment;
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+        if (weights[a] == 0) continue;
+        attachment.nodes.push_back(nodes[a]);
+        attachment.weights.push_back(weights[a]);
+    }
+    return attachment;
+}
+
+std::vector<int> Attacher::connected_nodes_within(int tet, const Vec3& point, double radius) const {
+    std::vector<int> found;
+    std::vector<bool> seen(mesh_->points.size(), false);
+    const auto visit = [&](int node) {
+        if (seen[node] || norm(mesh_->points[node] - point) >= radius) return;
+        seen[node] = true;
+        found.push_back(node);
+    };
+    for (const int node : mesh_->tet(static_cast<std::size_t>(tet))) visit(node);
+    for (std::size_t next = 0; next < found.size(); ++next) {
+        const int node = found[next];
+        for (int k = tet_start_[node]; k < tet_start_[node + 1]; ++k) {
+            for (const int other : mesh_->tet(static_cast<std::size_t>(tets_[k]))) visit(other);
+        }
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tolerance) const {
+    if (radius <= 0) return carried_by_tet(point, tolerance);
+    const auto location = locate(point, tolerance);
+    if (!location) return tl::unexpected(location.error());
+    double reach = radius;
+    for (const int node : mesh_->tet(static_cast<std::size_t>(location->tet))) {
+        reach = std::max(reach, 1.05 * norm(mesh_->points[node] - point));
+    }
+    std::vector<int> nodes = connected_nodes_within(location->tet, point, reach);
+    thin_out(nodes, mesh_->points, point);
+
+    Eigen::MatrixXd moments(nodes.size(), 4);
+    Eigen::VectorXd kernel(static_cast<Eigen::Index>(nodes.size()));
+    for (Eigen::Index i = 0; i < kernel.size(); ++i) {
+        const Vec3 offset = (mesh_->points[nodes[static_cast<std::size_t>(i)]] - point) / reach;
+        moments.row(i) << 1, offset.x, offset.y, offset.z;
+        const double fall = 1 - dot(offset, offset);
+        kernel[i] = fall * fall;
+    }
+    const Eigen::Matrix4d M = moments.transpose() * kernel.asDiagonal() * moments;
+    const Eigen::Vector4d a = M.ldlt().solve(Eigen::Vector4d::Unit(0));
+    const Eigen::VectorXd weights = kernel.asDiagonal() * (moments * a);
+    if (!weights.allFinite() || (moments.transpose() * weights - Eigen::Vector4d::Unit(0)).norm() > 1e-9) {
+        return carried_by_tet(point, tolerance);
+    }
+    return Attachment{std::move(nodes), {weights.data(), weights.data() + weights.size()}, {}};
+}
+
+}  // namespace pliant::sim

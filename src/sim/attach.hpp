@@ -1,0 +1,38 @@
+// Ties points of space to the mesh that carries them.
+#pragma once
+
+#include <vector>
+
+#include "core/error.hpp"
+#include "mesh/tet_locator.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "sim/model.hpp"
+
+namespace pliant::sim {
+
+/// Built once per mesh; the mesh must outlive it. Lengths are in the mesh's unit.
+class Attacher {
+public:
+    explicit Attacher(const mesh::TetMesh& mesh);
+
+    /// The point moves with the tet that holds it. An error gives the distance of a point that lies outside by more
+    /// than `tolerance`; within it, the nearest tet carries the point.
+    [[nodiscard]] Result<Attachment> carried_by_tet(const Vec3& point, double tolerance) const;
+
+    /// The point's motion is the mean motion of the material within `radius`, and a force on it spreads over that
+    /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas
+    /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and
+    /// uses at most 64 nodes.
+    [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
+
+private:
+    [[nodiscard]] Result<mesh::TetLocator::Location> locate(const Vec3& point, double tolerance) const;
+    [[nodiscard]] std::vector<int> connected_nodes_within(int tet, const Vec3& point, double radius) const;
+
+    const mesh::TetMesh* mesh_;
+    mesh::TetLocator locator_;
+    std::vector<int> tet_start_;  ///< (n + 1)
+    std::vector<int> tets_;       ///< tets of every node
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,276 @@
+// The solver on small problems with known answers.
+#include "sim/simulate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "sim/cable_path.hpp"
+#include "sim/elements.hpp"
+#include "sim/fields.hpp"
+#include "sim/loads.hpp"
+#include "sim/reference_problems.hpp"
+#include "sim/step_solver.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+
+namespace {
+
+constexpr double side = 0.01;
+
+/// A bar of 4 x 1 x 1 cm along x, clamped at x = 0.
+Description bar(int order, const material::Law& law = material::neo_hookean(1e6, 0.4)) {
+    Description d;
+    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
+    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
+    d.materials = {{"A", law, 1000}};
+    d.material_of_region = {0};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    d.markers = {
+        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }))}};
+    return d;
+}
+
+/// A cable along the upper side of the bar, through nodes of the mesh, from a point fixed in space.
+Cable flexor(const mesh::TetMesh& mesh, CableTarget target) {
+    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, target};
+    for (int k = 1; k <= 4; ++k) {
+        const auto nodes = reference::nodes_where(mesh, [&](Vec3 p) {
+            return norm(p - Vec3{k * side, side / 2, side}) < 1e-9;
+        });
+        REQUIRE(nodes.size() == 1);
+        cable.points.push_back({nodes, {1.0}, {}});
+    }
+    return cable;
+}
+
+Trajectory solve(Description d, Program program) {
+    auto model = Model::create(std::move(d));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    Progress silent;
+    return run(*model, program, silent);
+}
+
+}  // namespace
+
+TEST_CASE("uniaxial stretch of one linear element layer follows the closed form") {
+    // A cube that may contract sideways: P11 of neo-Hooke with the lateral stretch that makes P22 zero.
+    const double E = 1e6;
+    const double nu = 0.3;
+    const auto law = material::neo_hookean(E, nu);
+    const double stretch = 1.5;
+    double low = 0.5;
+    double high = 1.2;
+    for (int i = 0; i < 100; ++i) {
+        const double mid = 0.5 * (low + high);
+        (material::stress(law, Eigen::Vector3d(stretch, mid, mid).asDiagonal())(1, 1) > 0 ? high : low) = mid;
+    }
+    const double force = material::stress(law, Eigen::Vector3d(stretch, low, low).asDiagonal())(0, 0) * side * side;
+
+    // Symmetry planes by moving three faces as the closed form says would overconstrain; so all nodes of the two end
+    // faces follow the homogeneous answer, and the middle must find it.
+    for (const int order : {1, 2}) {
+        Description d = bar(order, law);
+        d.supports.clear();
+        for (std::size_t n = 0; n < d.mesh.points.size(); ++n) {
+            const Vec3 p = d.mesh.points[n];
+            const bool left = p.x < 1e-9;
+            if (!left && p.x < 4 * side - 1e-9) continue;
+            const Vec3 move{(stretch - 1) * p.x, (low - 1) * p.y, (low - 1) * p.z};
+            d.supports.push_back({(left ? "l" : "r") + std::to_string(n), {static_cast<int>(n)}, move});
+        }
+        const Trajectory result = solve(d, {.steps = 4, .tolerance = 1e-10});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        double pull = 0;
+        for (std::size_t s = 0; s < d.supports.size(); ++s) {
+            if (d.supports[s].name[0] == 'r') pull += result.steps.back().supports[s].force_N.x;
+        }
+        CHECK(pull == doctest::Approx(force).epsilon(1e-8));
+        CHECK(result.steps.back().min_J == doctest::Approx(stretch * low * low).epsilon(1e-8));
+    }
+}
+
+TEST_CASE("supports carry loads and gravity exactly") {
+    Description d = bar(2);
+    std::vector<mesh::Face> faces;
+    for (const mesh::Face& f : mesh::boundary_faces(d.mesh)) {
+        const auto& p = d.mesh.points;
+        if (p[f.nodes[0]].x + p[f.nodes[1]].x + p[f.nodes[2]].x > 12 * side - 1e-9) faces.push_back(f);
+    }
+    const SurfaceShares shares = surface_shares(d.mesh, faces);
+    d.loads = {{"tip", shares.nodes, shares.shares, {0.01, -0.02, 0.03}}};
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Trajectory result = solve(d, {.steps = 3, .tolerance = 1e-9});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    const Vec3 force = result.steps.back().supports[0].force_N;
+    const double weight = 1000 * 4 * side * side * side * 9.81;
+    CHECK(force.x == doctest::Approx(-0.01).epsilon(1e-6));
+    CHECK(force.y == doctest::Approx(0.02).epsilon(1e-6));
+    CHECK(force.z == doctest::Approx(-0.03 + weight).epsilon(1e-6));
+}
+
+TEST_CASE("every solver finds the same bent bar under a cable, and no step turns a tet inside out") {
+    std::vector<double> tensions;
+    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::local_global}) {
+        for (const int order : {1, 2}) {
+            Description d = bar(order);
+            d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+            const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-6, .solver = solver});
+            CAPTURE(result.solver);
+            REQUIRE_MESSAGE(result.converged, result.message);
+            for (const Step& step : result.steps) {
+                CHECK(step.residual <= 1e-6);
+                CHECK(step.min_J > 0);
+            }
+            CHECK(result.steps.back().cables[0].length_ratio == doctest::Approx(0.9).epsilon(1e-7));
+            tensions.push_back(result.steps.back().cables[0].tension_N);
+        }
+    }
+    for (std::size_t k = 2; k < tensions.size(); ++k)
+        CHECK(tensions[k] == doctest::Approx(tensions[k % 2]).epsilon(1e-4));
+    CHECK(tensions[0] > tensions[1]);  // linear tets lock
+}
+
+TEST_CASE("a given tension and the length it leads to belong together") {
+    Description by_length = bar(2);
+    by_length.cables = {flexor(by_length.mesh, {CableTarget::Kind::length_ratio, 0.92})};
+    const Step length_step = solve(by_length, {.steps = 4, .tolerance = 1e-8}).steps.back();
+    Description by_tension = bar(2);
+    by_tension.cables = {flexor(by_tension.mesh, {CableTarget::Kind::tension_N, length_step.cables[0].tension_N})};
+    const Step tension_step = solve(by_tension, {.steps = 4, .tolerance = 1e-8}).steps.back();
+    CHECK(tension_step.cables[0].length_ratio == doctest::Approx(0.92).epsilon(1e-6));
+    Description by_shortening = bar(2);
+    by_shortening.cables = {flexor(by_shortening.mesh, {CableTarget::Kind::shortening_m, 0.08 * 4 * side})};
+    const Step shortening_step = solve(by_shortening, {.steps = 4, .tolerance = 1e-8}).steps.back();
+    CHECK(shortening_step.cables[0].tension_N == doctest::Approx(length_step.cables[0].tension_N).epsilon(1e-6));
+}
+
+TEST_CASE("a cable only pulls: pushed towards it, the bar leaves it slack") {
+    Description d = bar(1);
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.99})};
+    d.supports.push_back(
+        {"tip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {-0.1 * 4 * side, 0, 0}});
+    const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-7});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().cables[0].tension_N == 0);
+    CHECK(result.steps.back().cables[0].length_ratio < 0.95);
+}
+
+TEST_CASE("two cables against each other: only those that are needed pull") {
+    Description d = bar(1);
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9}),
+                flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
+    d.cables[1].name = "idle";
+    const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-6});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().cables[0].tension_N > 0);
+    CHECK(result.steps.back().cables[1].tension_N == 0);
+}
+
+TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
+    Description d = bar(1, material::ShapeBlend{1e6, 1.0});
+    d.supports.push_back(
+        {"tip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {0, 0, 2 * side}});
+    auto model = Model::create(std::move(d));
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(*model);
+    const auto curvature = make_local_global(laplacian);
+    const Controls controls = system.controls(1);
+    State state = system.rest();
+    system.place_supports(controls, state.x);
+    system.add_free(laplacian.follow(system, state.x - system.rest().x), 1, state.x);
+    double energy = system.evaluate(state, controls).energy_J;
+    Progress silent;
+    for (int i = 0; i < 60; ++i) {
+        const StepOutcome outcome = solve_step(system, *curvature, controls, {1e-12, 1}, state, silent);
+        CHECK(outcome.evaluation.energy_J <= energy * (1 + 1e-12));
+        energy = outcome.evaluation.energy_J;
+    }
+}
+
+TEST_CASE("a program that cannot finish says where and keeps what converged") {
+    Description d = bar(1);
+    d.supports.push_back(
+        {"tip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {-5 * side, 0, 0}});
+    const Trajectory result = solve(d, {.steps = 10});
+    CHECK_FALSE(result.converged);
+    CHECK(result.message.find("stopped at step ") == 0);
+    CHECK(result.steps.size() > 1);
+    for (const Step& step : result.steps) CHECK(step.min_J > 0);
+}
+
+TEST_CASE("a step that does not converge in its iterations is halved") {
+    Description d = bar(1);
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.7})};
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 6});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().substeps > 1);
+}
+
+TEST_CASE("the same input gives the same bits") {
+    const auto once = [] {
+        Description d = bar(2);
+        d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+        return solve(std::move(d), {.steps = 3}).steps.back().positions;
+    };
+    const auto first = once();
+    const auto second = once();
+    CHECK(std::memcmp(first.data(), second.data(), first.size() * sizeof(Vec3)) == 0);
+}
+
+TEST_CASE("a cable's gradient and second gradient agree with differences") {
+    Description d = bar(1);
+    const Cable cable = flexor(d.mesh, {});
+    const auto model = Model::create(std::move(d));
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const CablePath path(cable, {system.rest().x.data(), static_cast<std::size_t>(3 * model->node_count())});
+    std::srand(4);
+    const Eigen::VectorXd x = system.rest().x + 1e-3 * Eigen::VectorXd::Random(system.rest().x.size());
+    const Eigen::VectorXd u = Eigen::VectorXd::Random(x.size());
+    const auto span_of = [](auto& v) { return std::span(v.data(), static_cast<std::size_t>(v.size())); };
+    const double h = 1e-6;
+    const Eigen::VectorXd plus = x + h * u;
+    const Eigen::VectorXd minus = x - h * u;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
+    path.add_gradient(span_of(x), 1.0, span_of(gradient));
+    CHECK(gradient.dot(u) ==
+          doctest::Approx((path.length(span_of(plus)) - path.length(span_of(minus))) / (2 * h)).epsilon(1e-7));
+}
+
+TEST_CASE("wrong models are refused with a reason") {
+    const auto message = [](Description d) {
+        const auto model = Model::create(std::move(d));
+        return model ? std::string() : model.error().message;
+    };
+    Description loose = bar(1);
+    loose.supports.clear();
+    CHECK(message(loose).find("nothing is fixed") != std::string::npos);
+    Description flat = bar(1);
+    for (Vec3& p : flat.mesh.points) p.z = 0;
+    CHECK(message(flat).find("flat or inside out") != std::string::npos);
+    Description twice = bar(1);
+    twice.supports.push_back({"again", {0}, {}});
+    CHECK(message(twice).find("share nodes") != std::string::npos);
+    Description missing = bar(1);
+    missing.cables = {{"c", {{{99999}, {1.0}, {}}, {{0}, {1.0}, {}}}, {}}};
+    CHECK(message(missing).find("99999") != std::string::npos);
+}
+
+TEST_CASE("fields of a uniform stretch") {
+    Description d = bar(2);
+    auto model = Model::create(std::move(d));
+    REQUIRE(model);
+    std::vector<Vec3> positions = model->mesh().points;
+    for (Vec3& p : positions) p = {1.2 * p.x, p.y, p.z};
+    const Fields fields = compute_fields(*model, positions);
+    for (std::size_t t = 0; t < fields.J.size(); ++t) {
+        CHECK(fields.J[t] == doctest::Approx(1.2));
+        CHECK(fields.max_stretch[t] == doctest::Approx(1.2));
+        CHECK(fields.von_mises_Pa[t] > 0);
+        CHECK(fields.energy_density_Pa[t] > 0);
+    }
+}

@@ -1,0 +1,22 @@
+#include "slice/body.hpp"
+
+namespace pliant::slice {
+
+Status check(const Raster& raster) {
+    constexpr int max_side_px = 65535;  // what the cells of a coverage map can address
+    if (raster.width_px < 1 || raster.height_px < 1 || raster.width_px > max_side_px || raster.height_px > max_side_px)
+        return input_error("raster of {} x {} pixels: each side must be 1 to {}", raster.width_px, raster.height_px,
+                           max_side_px);
+    if (static_cast<long long>(raster.width_px) * raster.height_px > (1LL << 28))
+        return input_error("raster of {} x {} pixels: more than 2^28 in all", raster.width_px, raster.height_px);
+    if (!(raster.pixel_um > 0 && raster.pixel_um <= 10000))
+        return input_error("pixel of {} um: must be above 0 and at most 10000 um", raster.pixel_um);
+    return {};
+}
+
+std::string describe(const Body& body, std::size_t index) {
+    if (!body.name.empty()) return fmt::format("body '{}' ({})", body.name, body.material);
+    return fmt::format("body {} ({})", index + 1, body.material);
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,37 @@
+// What the slicer is given: bodies on the platform, and the raster that they are drawn on.
+#pragma once
+
+#include <string>
+
+#include "core/error.hpp"
+#include "mesh/tri_mesh.hpp"
+
+namespace pliant::slice {
+
+/// A solid of one material. Points are in micrometres on the platform: z up, z = 0 is the platform, the image's centre
+/// is the origin of x and y.
+struct Body {
+    std::string material;
+    mesh::TriMesh surface_um;
+    std::string name;  ///< for messages; where empty, the body's number is used
+};
+
+/// The projector's picture on the platform. x runs to the right and row 0 lies at the greatest y, unless mirrored.
+struct Raster {
+    int width_px = 0;
+    int height_px = 0;
+    double pixel_um = 0;  ///< edge length of a (square) pixel
+    bool mirror_x = false;
+    bool mirror_y = false;
+
+    [[nodiscard]] double width_um() const { return width_px * pixel_um; }
+    [[nodiscard]] double height_um() const { return height_px * pixel_um; }
+};
+
+/// Refuses a raster of no pixels, of more than 2^28, or with a pixel that is not in (0, 10] mm.
+[[nodiscard]] Status check(const Raster& raster);
+
+/// "body 'finger' (soft)" or "body 3 (soft)", counted from 1.
+[[nodiscard]] std::string describe(const Body& body, std::size_t index);
+
+}  // namespace pliant::slice

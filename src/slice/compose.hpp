@@ -1,0 +1,45 @@
+// Who owns a pixel: from the coverage of all bodies to one image per material.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slice/coverage.hpp"
+#include "slice/image.hpp"
+
+namespace pliant::slice {
+
+struct ComposeRules {
+    bool anti_alias = true;
+    double threshold = 0.5;    ///< without anti-aliasing: pixels covered at least so much get full light
+    double close_gap_um = 20;  ///< see compose()
+};
+
+struct MaterialImage {
+    int material = 0;
+    Image image;
+    std::int64_t value_sum = 0;  ///< of all pixels, for the area
+};
+
+struct ComposedLayer {
+    std::vector<MaterialImage> images;  ///< ordered by material; blank ones are left out
+    std::vector<double> lost_px;        ///< (bodies), area that later bodies of other materials took from each, pixels
+    std::int64_t closed_gap_pixels = 0;
+};
+
+/// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.
+///
+/// A body covers |winding| of a pixel, at most 1 (the nonzero rule: overlapping shells of one body count once; exact
+/// except in pixels that the outlines of two overlapping shells share, where the sum is capped at 1). Where the bodies
+/// together cover more than the pixel they overlap, and later bodies are served first. The pixel then goes whole to the
+/// material with the largest share (the one with the latest body on a tie), at the light of all shares together: an
+/// interface between materials has neither a dark line nor a pixel in two images.
+///
+/// Where a gap of up to `close_gap_um` between different materials runs through a pixel or along its border, the pixel
+/// gets full light: one that misses at most that width and lies, in its row or its column, between two pixels of
+/// different materials, one of them full and the other missing no more than that either.
+[[nodiscard]] ComposedLayer compose(const std::vector<Cell>& cells, std::span<const int> material_of,
+                                    const Raster& raster, const ComposeRules& rules);
+
+}  // namespace pliant::slice

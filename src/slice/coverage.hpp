@@ -1,0 +1,47 @@
+// Exact area coverage of pixels by outlines, as sparse cells.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slice/body.hpp"
+#include "slice/section.hpp"
+
+namespace pliant::slice {
+
+/// What the outline of one body contributes to one pixel. With `cover` the signed height of outline inside the pixel
+/// (in pixels, positive where the body lies to its right) and `area` its signed area between the outline and
+/// the pixel's right side, the coverage of a pixel is: sum of `cover` of all cells to its left in the row, plus the sum
+/// of its own `area`. This is the accumulation rule of exact-area font rasterisers (R. Levien's font-rs,
+/// D. Turner's FreeType); cost: one cell per pixel that an outline passes through, whatever the area inside.
+struct Cell {
+    std::uint64_t key;  ///< row, column and body, so that cells sort in the order they are swept
+    double cover, area;
+
+    [[nodiscard]] int row() const { return static_cast<int>(key >> 48); }
+    [[nodiscard]] int column() const { return static_cast<int>((key >> 31) & 0x1FFFF); }
+    [[nodiscard]] int body() const { return static_cast<int>(key & 0x7FFFFFFF); }
+};
+
+/// Collects the cells of one layer.
+class CellBuffer {
+public:
+    explicit CellBuffer(const Raster& raster);
+
+    /// Adds outlines of a body, which must lie inside the raster but for rounding (they are clamped to it).
+    void add(int body, const std::vector<Segment>& segments);
+
+    /// All cells, ordered by row, then column, then body. Columns reach from 0 to width_px (the right border).
+    [[nodiscard]] const std::vector<Cell>& sorted();
+
+private:
+    void add_line(double u0, double v0, double u1, double v1);
+    void add_in_row(int row, double u0, double v0, double u1, double v1);
+    void add_cell(int row, int column, double cover, double area);
+
+    const Raster& raster_;
+    std::uint64_t body_ = 0;
+    std::vector<Cell> cells_;
+};
+
+}  // namespace pliant::slice

@@ -1,0 +1,55 @@
+#include "slice/place.hpp"
+
+#include <cmath>
+
+namespace pliant::slice {
+namespace {
+
+/// The box of the points that triangles use.
+Result<Box3> box_of(std::span<const Body> bodies) {
+    Box3 box;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const mesh::TriMesh& surface = bodies[i].surface_um;
+        const int count = static_cast<int>(surface.points.size());
+        for (const auto& triangle : surface.triangles) {
+            for (const int corner : triangle) {
+                if (corner < 0 || corner >= count)
+                    return input_error("{}: a triangle names point {}, there are {}", describe(bodies[i], i), corner,
+                                       count);
+                if (!is_finite(surface.points[corner]))
+                    return input_error("{}: point {} is not finite", describe(bodies[i], i), corner);
+                box.add(surface.points[corner]);
+            }
+        }
+    }
+    if (box.empty()) return input_error("there is no triangle to print");
+    return box;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> place_on_platform(std::span<Body> bodies, const Raster& raster) {
+    if (auto status = check(raster); !status) return tl::unexpected(status.error());
+    const auto box = box_of(bodies);
+    if (!box) return tl::unexpected(box.error());
+    const Vec3 size = box->size();
+    if (size.x > raster.width_um() + 1 || size.y > raster.height_um() + 1)
+        return input_error("the part measures {:.3f} x {:.3f} mm, the image only {:.3f} x {:.3f} mm", size.x / 1000,
+                           size.y / 1000, raster.width_um() / 1000, raster.height_um() / 1000);
+    std::vector<std::string> warnings;
+    const double far_um = std::fmax(norm(box->low), norm(box->high));
+    // Mesh files commonly keep 24 bits: say so where that is coarser than a tenth of a pixel.
+    const double spacing_um = std::exp2(std::floor(std::log2(far_um)) - 23);
+    if (far_um > 0 && spacing_um > raster.pixel_um / 10)
+        warnings.push_back(
+            fmt::format("the part was drawn {:.4g} mm from the origin, where a 32-bit mesh file can only keep steps of "
+                        "{:.3g} um; it was moved to the platform as it is",
+                        far_um / 1000, spacing_um));
+    const Vec3 shift{-box->center().x, -box->center().y, -box->low.z};
+    for (Body& body : bodies) {
+        for (Vec3& p : body.surface_um.points) p += shift;
+    }
+    return warnings;
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,48 @@
+#include "slice/repair.hpp"
+
+#include <cmath>
+
+#include "slice/holes.hpp"
+#include "slice/shells.hpp"
+
+namespace pliant::slice {
+namespace {
+
+int layer_at(std::int32_t z, int layer_um) {
+    return z < 0 ? 0 : static_cast<int>(z / (static_cast<std::int64_t>(layer_um) * grid_per_um));
+}
+
+std::string hole_warning(const Holes& holes, const std::string& label, int layer_um) {
+    return fmt::format("{}: {} hole{} ({} open edges, {:.3g} mm^2) closed in layers {} to {}", label, holes.count,
+                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, layer_at(holes.z_low, layer_um),
+                       layer_at(holes.z_high, layer_um));
+}
+
+}  // namespace
+
+Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, int layer_um) {
+    auto snapped = snap_to_grid(surface_um, label);
+    if (!snapped) return tl::unexpected(snapped.error());
+    Repaired result{std::move(*snapped), {}};
+    GridSurface& surface = result.surface;
+    if (surface.triangles.empty()) return input_error("{}: the surface has no triangle with an area", label);
+    const double area = area_mm2(surface);
+    if (const int turned = orient_consistently(surface); turned > 0)
+        result.warnings.push_back(
+            fmt::format("{}: {} triangles ran against their neighbours and were turned", label, turned));
+    const Holes holes = close_holes(surface);
+    if (holes.area_mm2 > 0.25 * area)
+        return input_error(
+            "{}: the surface is open: {:.4g} mm^2 are missing beside {:.4g} mm^2; a closed surface is needed", label,
+            holes.area_mm2, area);
+    if (holes.count > 0) result.warnings.push_back(hole_warning(holes, label, layer_um));
+    if (const int turned = turn_inverted_shells(surface); turned > 0)
+        result.warnings.push_back(
+            fmt::format("{}: {} shell{} inside out turned outwards", label, turned, turned == 1 ? "" : "s"));
+    // A solid thinner than a grid unit everywhere is a sheet that was drawn twice.
+    if (volume_mm3(surface) < 0.5e-3 / grid_per_um * area)
+        return input_error("{}: the surface encloses no volume; a closed surface is needed", label);
+    return result;
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,22 @@
+// From a surface as it comes to one that can be cut: closed, outwards, on the grid.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "slice/body.hpp"
+#include "slice/grid_surface.hpp"
+
+namespace pliant::slice {
+
+struct Repaired {
+    GridSurface surface;                ///< closed: every directed edge has its opposite
+    std::vector<std::string> warnings;  ///< each starts with `label`
+};
+
+/// Snaps, orients and closes. Holes up to a quarter of the surface are closed with a warning that names their layers
+/// (counted from 0, `layer_um` thick). Errors: what snap_to_grid refuses, a surface without triangles, one that is more
+/// open than that, one that encloses nothing.
+[[nodiscard]] Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, int layer_um);
+
+}  // namespace pliant::slice

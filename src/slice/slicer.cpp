@@ -1,0 +1,170 @@
+#include "slice/slicer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "slice/repair.hpp"
+
+namespace pliant::slice {
+namespace {
+
+Status check(const Settings& settings) {
+    if (auto status = check(settings.raster); !status) return status;
+    if (settings.layer_um < 1 || settings.layer_um > 10000)
+        return input_error("layer of {} um: must be 1 to 10000 um", settings.layer_um);
+    if (!(settings.rules.threshold > 0 && settings.rules.threshold <= 1))
+        return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
+    if (!(settings.rules.close_gap_um >= 0))
+        return input_error("gap of {} um to close: must not be negative", settings.rules.close_gap_um);
+    return {};
+}
+
+/// Bodies may pass the raster's border by what rounding does to them, no more.
+Status check_place(const Box3& box, const Raster& raster, const std::string& label) {
+    constexpr double rounding_um = 1;
+    const double x = raster.width_um() / 2, y = raster.height_um() / 2;
+    if (box.low.z < -rounding_um)
+        return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
+    if (box.low.x < -x - rounding_um || box.high.x > x + rounding_um || box.low.y < -y - rounding_um ||
+        box.high.y > y + rounding_um)
+        return input_error(
+            "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
+            "{:.3f} mm in y to both sides of the centre",
+            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, x / 1000, y / 1000);
+    return {};
+}
+
+Box3 used_box(const mesh::TriMesh& mesh) {
+    Box3 box;
+    for (const auto& triangle : mesh.triangles) {
+        for (const int corner : triangle) box.add(mesh.points[corner]);
+    }
+    return box;
+}
+
+std::string size_text(const Vec3& size) {
+    return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x / 1000, size.y / 1000, size.z / 1000);
+}
+
+}  // namespace
+
+Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& settings) {
+    if (auto status = check(settings); !status) return tl::unexpected(status.error());
+    Slicer slicer;
+    slicer.settings_ = settings;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const std::string label = describe(bodies[i], i);
+        auto repaired = repair(bodies[i].surface_um, label, settings.layer_um);
+        if (!repaired) return tl::unexpected(repaired.error());
+        if (auto status = check_place(used_box(bodies[i].surface_um), settings.raster, label); !status)
+            return tl::unexpected(status.error());
+        std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(slicer.warnings_));
+        slicer.labels_.push_back(label);
+        slicer.measures_.push_back({volume_mm3(repaired->surface), area_mm2(repaired->surface)});
+        slicer.add_body(bodies[i], std::move(repaired->surface));
+    }
+    if (slicer.layer_count_ == 0)
+        return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
+    return slicer;
+}
+
+void Slicer::add_body(const Body& body, GridSurface surface) {
+    const auto known = std::find(materials_.begin(), materials_.end(), body.material);
+    material_of_.push_back(static_cast<int>(known - materials_.begin()));
+    if (known == materials_.end()) materials_.push_back(body.material);
+    sectioners_.emplace_back(std::move(surface), settings_.layer_um);
+    layer_count_ = std::max(layer_count_, sectioners_.back().layer_count());
+    const Vec3 size = used_box(body.surface_um).size();
+    if (sectioners_.back().layer_count() == 0) {
+        warnings_.push_back(fmt::format("{}: {} lies between the middles of two layers of {} um and is not printed",
+                                        labels_.back(), size_text(size), settings_.layer_um));
+    } else if (std::fmin(size.x, size.y) < settings_.raster.pixel_um) {
+        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {} um", labels_.back(), size_text(size),
+                                        settings_.raster.pixel_um));
+    }
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    CellBuffer cells(settings_.raster);
+    std::vector<Segment> segments;
+    for (std::size_t b = 0; b < sectioners_.size(); ++b) {
+        segments.clear();
+        sectioners_[b].section(k, segments);
+        cells.add(static_cast<int>(b), segments);
+    }
+    return compose(cells.sorted(), material_of_, settings_.raster, settings_.rules);
+}
+
+Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}
+
+void Tally::add(int k, const SlicedLayer& layer) {
+    for (std::size_t b = 0; b < lost_px_.size(); ++b) lost_px_[b] += layer.lost_px[b];
+    closed_gap_pixels_ += layer.closed_gap_pixels;
+    if (layer.images.empty()) {
+        if (pending_empty_++ == 0 && empty_between_ == 0) first_empty_ = k;
+        return;
+    }
+    if (first_filled_ < 0) first_filled_ = k;
+    if (last_filled_ >= 0) empty_between_ += pending_empty_;
+    pending_empty_ = 0;
+    last_filled_ = k;
+}
+
+Summary Tally::summary() const {
+    const Settings& settings = slicer_.settings();
+    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings()};
+    const double voxel_mm3 = settings.raster.pixel_um * settings.raster.pixel_um * settings.layer_um / 1e9;
+    for (std::size_t b = 0; b < lost_px_.size(); ++b) {
+        const double lost_mm3 = lost_px_[b] * voxel_mm3;
+        if (lost_mm3 < voxel_mm3) continue;
+        summary.overlap_mm3 += lost_mm3;
+        summary.warnings.push_back(
+            fmt::format("{}: {:.4g} mm^3 overlap with later bodies of other materials, which keep them",
+                        slicer_.body_labels()[b], lost_mm3));
+    }
+    if (closed_gap_pixels_ > 0)
+        summary.warnings.push_back(fmt::format("gaps of at most {} um between materials closed in {} pixels",
+                                               settings.rules.close_gap_um, closed_gap_pixels_));
+    if (first_filled_ > 0)
+        summary.warnings.push_back(
+            fmt::format("layers 0 to {} are empty: nothing touches the platform", first_filled_ - 1));
+    if (empty_between_ > 0)
+        summary.warnings.push_back(
+            fmt::format("{} empty layers between printed ones, the first is layer {}: what is above will float",
+                        empty_between_, first_empty_));
+    return summary;
+}
+
+int batch_size(const Raster& raster) {
+    constexpr double budget_bytes = 64.0 * (1 << 20);
+    const double image_bytes = static_cast<double>(raster.width_px) * raster.height_px;
+    return std::clamp(static_cast<int>(budget_bytes / image_bytes), 2, 64);
+}
+
+Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
+                             const std::function<Status(int, int, const Image&)>& emit, Progress& progress) {
+    auto slicer = Slicer::prepare(bodies, settings);
+    if (!slicer) return tl::unexpected(slicer.error());
+    Tally tally(*slicer);
+    const int batch = batch_size(settings.raster), count = slicer->layer_count();
+    for (int first = 0; first < count; first += batch) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("slice", static_cast<double>(first) / count);
+        std::vector<SlicedLayer> layers(static_cast<std::size_t>(std::min(batch, count - first)));
+        parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t) {
+            layers[begin] = slicer->layer(first + static_cast<int>(begin));
+        });
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const int k = first + static_cast<int>(i);
+            tally.add(k, layers[i]);
+            for (const MaterialImage& m : layers[i].images) {
+                if (auto status = emit(k, m.material, m.image); !status) return tl::unexpected(status.error());
+            }
+        }
+    }
+    progress.advance("slice", 1);
+    return tally.summary();
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,107 @@
+// From bodies to per-material layer images.
+//
+//     auto warnings = place_on_platform(bodies, raster);             // centred, lowered to z = 0
+//     auto slicer = Slicer::prepare(bodies, {.raster = raster, .layer_um = 50});
+//     const SlicedLayer layer = slicer->layer(12);                    // from any thread
+//
+// or slice_bodies() for all layers in order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "slice/body.hpp"
+#include "slice/compose.hpp"
+#include "slice/image.hpp"
+#include "slice/section.hpp"
+
+namespace pliant::slice {
+
+struct Settings {
+    Raster raster;
+    int layer_um = 50;
+    ComposeRules rules;
+};
+
+/// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
+using SlicedLayer = ComposedLayer;
+
+/// Of a repaired body as drawn, before it became pixels.
+struct Measures {
+    double volume_mm3 = 0;
+    double area_mm2 = 0;
+};
+
+/// Repaired bodies, ready to be cut; immutable.
+class Slicer {
+public:
+    /// `bodies` in the order of priority: where bodies overlap, the later one keeps the place. Errors name the body:
+    /// what repair() refuses, bodies outside the raster or more than 1 um below the platform, nothing to print.
+    [[nodiscard]] static Result<Slicer> prepare(std::span<const Body> bodies, const Settings& settings);
+
+    [[nodiscard]] int layer_count() const { return layer_count_; }
+    [[nodiscard]] const Settings& settings() const { return settings_; }
+    /// In the order in which the bodies first name them.
+    [[nodiscard]] const std::vector<std::string>& materials() const { return materials_; }
+    /// What was repaired, and bodies too small to appear.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    /// As messages name them, "body 'finger' (soft)".
+    [[nodiscard]] const std::vector<std::string>& body_labels() const { return labels_; }
+
+    /// Per body.
+    [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
+
+    /// Layer k lies between k and k + 1 times the layer's thickness and is cut in its middle; 0 <= k < layer_count().
+    /// Safe to call from several threads. Cost: the pixels that outlines pass through, plus the images' memory.
+    [[nodiscard]] SlicedLayer layer(int k) const;
+
+private:
+    Slicer() = default;
+    void add_body(const Body& body, GridSurface surface);
+
+    Settings settings_;
+    std::vector<Sectioner> sectioners_;  ///< per body
+    std::vector<int> material_of_;       ///< per body
+    std::vector<Measures> measures_;     ///< per body
+    std::vector<std::string> materials_, labels_, warnings_;
+    int layer_count_ = 0;
+};
+
+struct Summary {
+    int layer_count = 0;
+    std::vector<std::string> materials;
+    double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
+    std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
+    std::vector<std::string> warnings;
+};
+
+/// Collects the remarks of all layers, added in order.
+class Tally {
+public:
+    explicit Tally(const Slicer& slicer);
+    void add(int k, const SlicedLayer& layer);
+    [[nodiscard]] Summary summary() const;
+
+private:
+    const Slicer& slicer_;
+    std::vector<double> lost_px_;
+    std::int64_t closed_gap_pixels_ = 0;
+    int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
+};
+
+/// How many layers to work on at once: enough for all cores, few enough for their images to stay within 64 MB.
+[[nodiscard]] int batch_size(const Raster& raster);
+
+/// Calls `emit(layer, material, image)` for every image that is not blank, by layer and then by material, from the
+/// calling thread; layers are made in parallel batches, never all in memory. Stops at the first error of `emit`, or
+/// when `progress` is cancelled.
+[[nodiscard]] Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
+                                           const std::function<Status(int layer, int material, const Image&)>& emit,
+                                           Progress& progress);
+
+}  // namespace pliant::slice

@@ -1,0 +1,76 @@
+#include "twin/line_reader.hpp"
+
+#include <charconv>
+#include <utility>
+
+namespace pliant::twin {
+namespace {
+
+constexpr std::size_t most_chars = 95;
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+/// The number at the beginning of `text`; what follows it is ignored, as strtol does. -1 if there is none.
+long leading_number(std::string_view text) {
+    long value = -1;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+}  // namespace
+
+int checksum(std::string_view text) {
+    int sum = 0;
+    for (const char c : text) sum ^= static_cast<unsigned char>(c);
+    return sum;
+}
+
+std::optional<ReceivedLine> LineReader::feed(char byte) {
+    if (byte == '\n' || byte == '\r') return finish();
+    if (byte == ';') comment_ = true;
+    if (byte == '\b') {
+        if (!line_.empty()) line_.pop_back();
+    } else if (!comment_ && line_.size() < most_chars) {
+        line_ += byte;
+    }
+    return std::nullopt;
+}
+
+std::optional<ReceivedLine> LineReader::finish() {
+    const std::string line = std::exchange(line_, {});
+    comment_ = false;
+    if (line.empty()) return std::nullopt;
+    return verify(trim(line));
+}
+
+ReceivedLine LineReader::verify(std::string_view line) {
+    ReceivedLine result;
+    const std::size_t star = line.rfind('*');
+    if (line.empty() || line.front() != 'N') {
+        result.command = trim(line.substr(0, star));
+        return result;
+    }
+    const std::size_t blank = line.find(' ');
+    const std::string_view body = blank == std::string_view::npos ? "" : line.substr(blank + 1);
+    const bool sets_number = body.substr(0, 4) == "M110";
+    const std::size_t second = sets_number ? body.find('N') : std::string_view::npos;
+    const long number = leading_number(second == std::string_view::npos ? line.substr(1) : body.substr(second + 1));
+    if (!sets_number && number != last_number_ + 1) {
+        result.error = "Line Number is not Last Line Number+1";
+    } else if (star == std::string_view::npos) {
+        result.error = "No Checksum with line number";
+    } else if (leading_number(line.substr(star + 1)) != checksum(line.substr(0, star))) {
+        result.error = "checksum mismatch";
+    } else {
+        last_number_ = number;
+        result.number = number;
+        result.command = trim(line.substr(blank + 1, star - blank - 1));
+    }
+    return result;
+}
+
+}  // namespace pliant::twin

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/inspect.hpp"
+
+namespace pliant::twin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double rounded(double value) {
+    return std::round(value * 1e6) / 1e6;
+}
+
+Json material_json(const MaterialReport& m) {
+    return {{"name", m.name},
+            {"resin", m.resin},
+            {"model_mm3", rounded(m.model_mm3)},
+            {"wanted_mm3", rounded(m.wanted_mm3)},
+            {"cured_mm3", rounded(m.cured_mm3)},
+            {"foreign_mm3", rounded(m.foreign_mm3)},
+            {"missing_mm3", rounded(m.missing_mm3)},
+            {"tolerance_mm3", rounded(m.tolerance_mm3)},
+            {"passed", m.passed}};
+}
+
+}  // namespace
+
+std::string report_json(const Report& r) {
+    Json materials = Json::array();
+    for (const MaterialReport& m : r.materials) materials.push_back(material_json(m));
+    Json resins = Json::array();
+    for (const ResinReport& resin : r.resins) {
+        resins.push_back(
+            {{"name", resin.name}, {"cured_mm3", rounded(resin.cured_mm3)}, {"left_ml", rounded(resin.left_ml)}});
+    }
+    const Json json = {{"passed", r.passed},
+                       {"reasons", r.reasons},
+                       {"materials", std::move(materials)},
+                       {"resins", std::move(resins)},
+                       {"layers", r.layers},
+                       {"missing_layers", r.missing_layers},
+                       {"stray_layers", r.stray_layers},
+                       {"wrong_thickness", r.wrong_thickness},
+                       {"wrong_pixels", r.wrong_pixels},
+                       {"pixels_lit_twice", r.pixels_lit_twice},
+                       {"swaps", r.log.swaps},
+                       {"short_cleanings", r.log.short_cleanings},
+                       {"exposures", r.log.exposures},
+                       {"violations", r.log.violations},
+                       {"bad_lines", r.log.bad_lines},
+                       {"resets", r.log.resets},
+                       {"clock_s", rounded(r.clock_s)}};
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string report_text(const Report& r) {
+    std::string text =
+        fmt::format("virtual print {}: {} layers, {} exposures, {} swaps, {:.0f} s on the machine's clock\n",
+                    r.passed ? "passed" : "FAILED", r.layers, r.log.exposures, r.log.swaps, r.clock_s);
+    for (const MaterialReport& m : r.materials) {
+        text += fmt::format("  {:<16}{:>12.3f} mm^3 cured {:>12.3f} drawn {:>10.3f} tolerance\n", m.name, m.cured_mm3,
+                            m.model_mm3, m.tolerance_mm3);
+    }
+    for (const ResinReport& resin : r.resins) {
+        if (resin.cured_mm3 > 0) text += fmt::format("  {:<16}{:>12.1f} ml left\n", resin.name, resin.left_ml);
+    }
+    for (const std::string& reason : r.reasons) text += fmt::format("  wrong: {}\n", reason);
+    return text;
+}
+
+}  // namespace pliant::twin
