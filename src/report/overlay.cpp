@@ -30,9 +30,9 @@ std::string metres_text(double metres) {
                          : fmt::format("{:g} m", metres);
 }
 
-/// The font, smaller where the text would not fit between the margins.
-Font fitting(const Canvas& canvas, const std::string& text, Font font) {
-    const double room = canvas.width() - 2 * margin, width = canvas.text_width(text, font);
+/// The font, smaller where the text would not fit into `room`.
+Font fitting(const Canvas& canvas, const std::string& text, double room, Font font) {
+    const double width = canvas.text_width(text, font);
     if (width > room) font.size *= room / width;
     return font;
 }
@@ -40,8 +40,16 @@ Font fitting(const Canvas& canvas, const std::string& text, Font font) {
 }  // namespace
 
 void draw_heading(Canvas& canvas, const std::string& title, const std::string& line) {
-    canvas.text({margin, 64}, title, fitting(canvas, title, {32, ink, Align::left, true}));
-    canvas.text({margin, 102}, line, fitting(canvas, line, {23, faint_ink}));
+    const double room = canvas.width() - 2 * margin;
+    canvas.text({margin, 64}, title, fitting(canvas, title, room, {32, ink, Align::left, true}));
+    canvas.text({margin, 102}, line, fitting(canvas, line, room, {23, faint_ink}));
+}
+
+void draw_panel_caption(Canvas& canvas, const Point2& corner, double width, const std::string& title,
+                        const std::string& line) {
+    const double room = width - 1.5 * margin;
+    canvas.text({corner.x + margin, corner.y + 32}, title, fitting(canvas, title, room, {23, ink, Align::left, true}));
+    canvas.text({corner.x + margin, corner.y + 62}, line, fitting(canvas, line, room, {21, faint_ink}));
 }
 
 void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string>>& entries) {

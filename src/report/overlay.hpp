@@ -13,6 +13,10 @@ namespace pliant::report {
 
 void draw_heading(Canvas& canvas, const std::string& title, const std::string& line);
 
+/// Two lines over a panel whose top left corner is `corner`, made to fit its width.
+void draw_panel_caption(Canvas& canvas, const Point2& corner, double width, const std::string& title,
+                        const std::string& line);
+
 /// Swatches with names from the bottom left.
 void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string>>& entries);
 

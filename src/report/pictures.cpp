@@ -1,5 +1,7 @@
 #include "report/pictures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,25 @@ constexpr std::array<double, 4> plain_margins = {0.06, 0.06, 0.12, 0.14};
 constexpr std::array<double, 4> bar_margins = {0.06, 0.16, 0.10, 0.14};
 constexpr Colour stage_backdrop = {0.955, 0.962, 0.970};
 constexpr std::size_t fitted_steps = 12;  // steps that the view must hold, beside rest
+
+std::string step_title(const Simulation& s, const sim::Step& step) {
+    return step.index == 0 ? "at rest" : fmt::format("step {} of {}", step.index, s.result.steps.back().index);
+}
+
+/// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
+std::string actuators_line(const sim::Step& step) {
+    constexpr std::size_t named = 2;
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < std::min(named, step.cables.size()); ++i) {
+        const auto& c = step.cables[i];
+        parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, c.tension_N));
+    }
+    for (std::size_t i = 0; i < std::min(named, step.chambers.size()); ++i) {
+        const auto& c = step.chambers[i];
+        parts.push_back(fmt::format("{} {:.4g} %, {:.3g} kPa", c.name, 100 * c.volume_ratio, 1e-3 * c.pressure_Pa));
+    }
+    return fmt::format("{}", fmt::join(parts, " · "));
+}
 
 /// What all pictures share.
 class Painter {
@@ -114,7 +135,7 @@ Result<Picture> Painter::rest() {
     const Camera camera = whole_camera(plain_margins);
     auto canvas = drawn(scene_of(0), camera);
     if (!canvas) return tl::unexpected(canvas.error());
-    draw_heading(*canvas, s_.robot, "at rest");
+    draw_heading(*canvas, s_.robot, step_line(s_, 0));
     draw_legend(*canvas, legend());
     draw_scale_bar(*canvas, camera, box_.center());
     return finished(*canvas, "rest.png", "At rest");
@@ -147,9 +168,9 @@ Result<Picture> Painter::stages() {
         const int x = static_cast<int>(i) % layout.columns * layout.panel_width_px;
         const int y = heading_px + static_cast<int>(i) / layout.columns * layout.panel_height_px;
         canvas.image(*image, x, y);
-        canvas.text({x / unit_px + 44, y / unit_px + 44},
-                    layout.steps[i] == 0 ? "at rest" : step_line(s_, layout.steps[i]),
-                    {layout.columns <= 2 ? 23.0 : 17.0, {0.30, 0.34, 0.40}});
+        const sim::Step& step = s_.result.steps[layout.steps[i]];
+        draw_panel_caption(canvas, {x / unit_px, y / unit_px}, layout.panel_width_px / unit_px, step_title(s_, step),
+                           actuators_line(step));
     }
     draw_heading(canvas, s_.robot, "");
     return finished(canvas, "stages.png", "On the way");
@@ -199,19 +220,8 @@ double nice_ceiling(double value) {
 }
 
 std::string step_line(const Simulation& s, std::size_t step) {
-    constexpr std::size_t named = 2;
-    const sim::Step& state = s.result.steps[step];
-    std::string line = fmt::format("step {} of {}", state.index, s.result.steps.back().index);
-    for (std::size_t i = 0; i < std::min(named, state.cables.size()); ++i) {
-        const auto& cable = state.cables[i];
-        line += fmt::format(" · {} {:.3g} %, {:.3g} N", cable.name, 100 * cable.length_ratio, cable.tension_N);
-    }
-    for (std::size_t i = 0; i < std::min(named, state.chambers.size()); ++i) {
-        const auto& chamber = state.chambers[i];
-        line += fmt::format(" · {} {:.4g} %, {:.3g} kPa", chamber.name, 100 * chamber.volume_ratio,
-                            1e-3 * chamber.pressure_Pa);
-    }
-    return line;
+    const std::string actuators = actuators_line(s.result.steps[step]);
+    return step_title(s, s.result.steps[step]) + (actuators.empty() ? "" : " · " + actuators);
 }
 
 Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, const PictureSize& size,

@@ -26,7 +26,7 @@ struct PictureSize {
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
                                                          const PictureSize& size, Progress& progress);
 
-/// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N".
+/// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N", or "at rest · ...".
 [[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value`; 1 for values that
