@@ -398,6 +398,53 @@ Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& 
     return {};
 }
 
+/// How many of these triangles look outwards, less those that look inwards, by the solid's own membership.
+int outward_votes(const Solid& solid, const TriMesh& surface, std::size_t first, double step) {
+    int votes = 0;
+    for (std::size_t t = first; t < surface.triangles.size(); ++t) {
+        const auto& [a, b, c] = surface.triangles[t];
+        const Vec3 normal = cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
+        if (norm(normal) == 0) continue;
+        const Vec3 middle = (surface.points[a] + surface.points[b] + surface.points[c]) / 3;
+        const Vec3 offset = (step / norm(normal)) * normal;
+        votes += (contains(solid, middle - offset) ? 1 : 0) - (contains(solid, middle + offset) ? 1 : 0);
+    }
+    return votes;
+}
+
+/// The triangles on the faces of `volumes`, turned outwards face by face (Open CASCADE's faces look either way).
+TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
+    Entities faces;
+    gmsh::model::getBoundary(volumes, faces, true, false, false);
+    TriMesh surface;
+    std::map<std::size_t, int> index;
+    const double step = 1e-6 * bounds(solid).diagonal();
+    for (const auto& [dimension, tag] : faces) {
+        std::vector<std::size_t> elements;
+        std::vector<std::size_t> nodes;
+        gmsh::model::mesh::getElementsByType(2, elements, nodes, std::abs(tag));
+        const std::size_t first = surface.triangles.size();
+        for (std::size_t t = 0; t < elements.size(); ++t) {
+            std::array<int, 3> triangle{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto [entry, fresh] =
+                    index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
+                triangle[k] = entry->second;
+                if (!fresh) continue;
+                std::vector<double> at;
+                std::vector<double> parameter;
+                gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
+                surface.points.push_back({at[0], at[1], at[2]});
+            }
+            surface.triangles.push_back(triangle);
+        }
+        if (outward_votes(solid, surface, first, step) >= 0) continue;
+        for (std::size_t t = first; t < surface.triangles.size(); ++t)
+            std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    }
+    return surface;
+}
+
 }  // namespace
 
 Box3 bounds(const BodyGeometry& body) {
@@ -456,32 +503,7 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         set_size(4 * reach);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", segments);
         gmsh::model::mesh::generate(2);
-        Entities faces;
-        gmsh::model::getBoundary(volumes, faces, true, true, false);
-        TriMesh surface;
-        std::map<std::size_t, int> index;
-        for (const auto& [dimension, signed_tag] : faces) {
-            std::vector<std::size_t> elements;
-            std::vector<std::size_t> nodes;
-            gmsh::model::mesh::getElementsByType(2, elements, nodes, std::abs(signed_tag));
-            for (std::size_t t = 0; t < elements.size(); ++t) {
-                std::array<int, 3> triangle{};
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const auto [entry, fresh] =
-                        index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
-                    if (fresh) {
-                        std::vector<double> at;
-                        std::vector<double> parameter;
-                        gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
-                        surface.points.push_back({at[0], at[1], at[2]});
-                    }
-                    triangle[k] = entry->second;
-                }
-                if (signed_tag < 0) std::swap(triangle[1], triangle[2]);
-                surface.triangles.push_back(triangle);
-            }
-        }
-        return surface;
+        return collect_surface(solid, volumes);
     });
 }
 

@@ -15,6 +15,7 @@ using config::Value;
 
 constexpr int max_depth = 32;
 constexpr int max_copies = 1000;
+constexpr int most_shapes = 20000;
 
 Solid make(decltype(SolidNode::shape) shape) {
     return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
@@ -236,7 +237,11 @@ private:
         CombinedSolid solid{operation, {}};
         for (std::size_t i = 0; i < parts->size(); ++i) {
             // A list in a list doubles with each level: the budget stops what nesting alone would not.
-            if (++read_shapes_ > 20000) break;
+            if (++read_shapes_ > most_shapes) {
+                if (read_shapes_ == most_shapes + 1)
+                    reader.problem(kind, fmt::format("too many shapes: more than {}", most_shapes));
+                break;
+            }
             solid.parts.push_back(read((*parts)[i], fmt::format("{}.{}[{}]", reader.path(), kind, i), depth + 1));
         }
         if (solid.parts.empty()) return placeholder();

@@ -51,6 +51,10 @@ Result<SurfaceFile> parse_binary(std::string_view bytes, const std::string& name
     const std::size_t present = (bytes.size() - header_bytes - 4) / facet_bytes;
     const std::size_t rest = (bytes.size() - header_bytes - 4) % facet_bytes;
     if (present == 0) return input_error("{}: holds no facets", name);
+    if (claimed != present && rest != 0) {
+        return input_error("{}: is not a complete STL file: it announces {} facets and has room for {}", name, claimed,
+                           present);
+    }
     SurfaceFile file;
     // The bytes are what is there; the count is only a claim.
     if (claimed != present) {

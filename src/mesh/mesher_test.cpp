@@ -1,0 +1,150 @@
+#include "mesh/mesher.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+#include "mesh/mesh_report.hpp"
+#include "mesh/surface_check.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+Solid solid(decltype(SolidNode::shape) shape) {
+    return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
+}
+
+Solid box(Vec3 low, Vec3 high) {
+    return solid(BoxSolid{low, high});
+}
+
+Solid without(Solid first, Solid second) {
+    return solid(CombinedSolid{CombinedSolid::Operation::subtract, {std::move(first), std::move(second)}});
+}
+
+/// A bar of 100 x 20 x 15 with `gaps` V notches of 1 to 10 mm width and 10 mm depth.
+Solid notched_bar(int gaps) {
+    const Solid notch = solid(PrismSolid{{{13.5, 5}, {14.5, 5}, {19, 15}, {9, 15}}, {0, 2, 1}, 0, 20});
+    return without(box({0, 0, 0}, {100, 20, 15}), solid(RepeatedSolid{notch, gaps, {14, 0, 0}}));
+}
+
+TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size, int order = 1) {
+    Progress silent;
+    Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = order}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    return *mesh;
+}
+
+std::string problem(const std::vector<BodyGeometry>& bodies, double size) {
+    Progress silent;
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = 1}, silent);
+    return mesh ? "" : mesh.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a notched bar keeps its volume and its sharp edges, for any number of notches") {
+    for (const int gaps : {1, 3, 6}) {
+        const TetMesh mesh = mesh_of({{"bar", notched_bar(gaps)}}, 5);
+        CHECK(volume(mesh) == doctest::Approx(100 * 20 * 15 - gaps * 20 * 10 * 5.5).epsilon(1e-9));
+        const MeshReport report = report_on(mesh);
+        CHECK(report.worst_quality > 0.05);
+        CHECK(report.median_quality > 0.25);
+        CHECK(report.box.size().x == doctest::Approx(100));
+    }
+}
+
+TEST_CASE("bodies that touch share the nodes of their common face") {
+    const TetMesh mesh =
+        mesh_of({{"left", box({0, 0, 0}, {10, 10, 10})}, {"right", box({10, 0, 0}, {20, 10, 10})}}, 4, 2);
+    CHECK(mesh.region_names == std::vector<std::string>{"left", "right"});
+    CHECK(volume(mesh, 0) == doctest::Approx(1000).epsilon(1e-9));
+    CHECK(volume(mesh, 1) == doctest::Approx(1000).epsilon(1e-9));
+    TriMesh outer{mesh.points, {}};
+    double area = 0;
+    for (const Face& face : boundary_faces(mesh)) {
+        outer.triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+        const auto& p = mesh.points;
+        area += 0.5 * norm(cross(p[face.nodes[1]] - p[face.nodes[0]], p[face.nodes[2]] - p[face.nodes[0]]));
+    }
+    CHECK(check_closed(outer));
+    CHECK(area == doctest::Approx(2 * 100 + 4 * 200));  // nothing of the common face is left outside
+}
+
+TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
+    const Solid ball = solid(SphereSolid{{1, 2, 3}, 5});
+    const double exact = 4.0 / 3 * std::numbers::pi * 125;
+    CHECK(*solid_volume(ball) == doctest::Approx(exact).epsilon(1e-6));
+    const double coarse = exact - volume(mesh_of({{"ball", ball}}, 3));
+    const double fine = exact - volume(mesh_of({{"ball", ball}}, 1));
+    CHECK(coarse > 0);
+    CHECK(fine < coarse / 3);
+    const TetMesh curved = mesh_of({{"ball", ball}}, 3, 2);
+    double farthest = 0;
+    for (const Face& face : boundary_faces(curved)) {
+        for (const int node : face.nodes)
+            farthest = std::max(farthest, std::fabs(norm(curved.points[node] - Vec3{1, 2, 3}) - 5));
+    }
+    CHECK(farthest < 1e-6);  // mid-edge nodes lie on the sphere too
+}
+
+TEST_CASE("rotation, translation and union by the kernel agree with membership") {
+    const Solid arm = solid(RotatedSolid{box({0, -1, -1}, {10, 1, 1}), {0, 0, 0}, {0, 0, 1}, std::numbers::pi / 2});
+    const Solid cross = solid(CombinedSolid{CombinedSolid::Operation::unite, {box({0, -1, -1}, {10, 1, 1}), arm}});
+    CHECK(*solid_volume(cross) == doctest::Approx(40 + 40 - 2));
+    const TetMesh mesh = mesh_of({{"cross", cross}}, 2);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        Vec3 centroid;
+        for (const int node : mesh.tet(t)) centroid += 0.25 * mesh.points[node];
+        CHECK(contains(cross, centroid));
+    }
+}
+
+TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
+    const Result<TriMesh> bar = tessellate(notched_bar(6), 0.01);
+    REQUIRE_MESSAGE(bar, (bar ? "" : bar.error().message));
+    CHECK(check_closed(*bar));
+    CHECK(signed_volume(*bar) == doctest::Approx(30000 - 6 * 1100).epsilon(1e-9));
+    const Result<TriMesh> ball = tessellate(solid(SphereSolid{{0, 0, 0}, 5}), 0.01);
+    REQUIRE(ball);
+    CHECK(check_closed(*ball));
+    CHECK(signed_volume(*ball) == doctest::Approx(4.0 / 3 * std::numbers::pi * 125).epsilon(5e-3));
+}
+
+TEST_CASE("a surface body is meshed anew to the wanted size") {
+    const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
+    REQUIRE(surface);
+    const TetMesh mesh = mesh_of({{"bar", *surface}}, 4);
+    CHECK(volume(mesh) == doctest::Approx(30000 - 3 * 1100).epsilon(1e-6));
+    CHECK(mesh.tet_count() > 1000);
+    CHECK(report_on(mesh).worst_quality > 0.02);
+}
+
+TEST_CASE("the same bodies give the same mesh, byte for byte") {
+    const std::vector<BodyGeometry> bodies = {{"a", notched_bar(2)}, {"b", box({100, 0, 0}, {110, 20, 15})}};
+    const TetMesh first = mesh_of(bodies, 5, 2);
+    const TetMesh second = mesh_of(bodies, 5, 2);
+    REQUIRE(first.points.size() == second.points.size());
+    CHECK(std::memcmp(first.points.data(), second.points.data(), first.points.size() * sizeof(Vec3)) == 0);
+    CHECK(first.nodes == second.nodes);
+}
+
+TEST_CASE("what cannot be meshed is refused with a reason") {
+    CHECK(problem({{"a", box({0, 0, 0}, {10, 10, 10})}, {"b", box({8, 0, 0}, {20, 10, 10})}}, 3)
+              .find("overlap in a volume of 200") != std::string::npos);
+    CHECK(problem({{"a", without(box({0, 0, 0}, {1, 1, 1}), box({-1, -1, -1}, {2, 2, 2}))}}, 1).find("is empty") !=
+          std::string::npos);
+    CHECK(problem({{"a", box({0, 0, 0}, {100, 100, 100})}}, 0.1).find("tetrahedra, more than") != std::string::npos);
+    TriMesh open = *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1);
+    open.triangles.pop_back();
+    CHECK(problem({{"a", open}}, 1).find("not closed") != std::string::npos);
+    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
+    CHECK(problem({{"a", cube}, {"b", box({10, 0, 0}, {20, 10, 10})}}, 4).find("touches or overlaps") !=
+          std::string::npos);
+}

@@ -1,0 +1,117 @@
+#include "mesh/tet_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cstdint>
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+TetMesh two_tets() {
+    TetMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
+    mesh.region = {0, 1};
+    mesh.region_names = {"0", "1"};
+    return mesh;
+}
+
+std::string problem(std::string_view text) {
+    const Result<TetMesh> mesh = parse_vtk(text, "a.vtk");
+    return mesh ? "" : mesh.error().message;
+}
+
+template <class Number>
+void put(std::string& bytes, Number value) {
+    std::array<char, sizeof(Number)> raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+    bytes.append(raw.rbegin(), raw.rend());  // big endian
+}
+
+const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+
+}  // namespace
+
+TEST_CASE("linear and quadratic meshes come back as they were written") {
+    for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
+        const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+        REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
+        CHECK(back->order == mesh.order);
+        CHECK(back->points.size() == mesh.points.size());
+        CHECK(volume(*back) == doctest::Approx(volume(mesh)));
+        CHECK(back->region == mesh.region);
+        CHECK(back->region_names == mesh.region_names);
+        for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+            for (std::size_t a = 0; a < mesh.tet(t).size(); ++a)
+                CHECK(back->points[back->tet(t)[a]] == mesh.points[mesh.tet(t)[a]]);
+        }
+    }
+}
+
+TEST_CASE("binary files, other cells, loose points and inside-out tets") {
+    std::string bytes = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n";
+    for (const Vec3& p : {Vec3{9, 9, 9}, Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{8, 8, 8}}) {
+        for (const double c : {p.x, p.y, p.z}) put(bytes, c);
+    }
+    bytes += "\nCELLS 3 11\n";
+    for (const std::int32_t i : {1, 0, 3, 1, 2, 3, 4, 1, 3, 2, 4}) put(bytes, i);  // vertex, triangle, inverted tet
+    bytes += "\nCELL_TYPES 3\n";
+    for (const std::int32_t type : {1, 5, 10}) put(bytes, type);
+    bytes += "\nCELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE default\n";
+    for (const std::int32_t value : {0, 0, 7}) put(bytes, value);
+    const Result<TetMesh> mesh = parse_vtk(bytes, "a.vtk");
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(mesh->points.size() == 4);
+    CHECK(mesh->tet_count() == 1);
+    CHECK(volume(*mesh) == doctest::Approx(1.0 / 6));
+    CHECK(mesh->region_names == std::vector<std::string>{"7"});
+}
+
+TEST_CASE("version 5 files keep offsets and connectivity apart") {
+    const std::string text =
+        "# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+        "METADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 "
+        "3\nCELL_TYPES 1\n10\n";
+    const Result<TetMesh> mesh = parse_vtk(text, "a.vtk");
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume(*mesh) == doctest::Approx(1.0 / 6));
+}
+
+TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges") {
+    TetMesh mesh = to_quadratic(two_tets());
+    // Mirror the order of one tet: corners 1 and 2, and the edges that follow them.
+    std::swap(mesh.nodes[1], mesh.nodes[2]);
+    std::swap(mesh.nodes[4], mesh.nodes[6]);
+    std::swap(mesh.nodes[8], mesh.nodes[9]);
+    const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+    REQUIRE(back);
+    for (std::size_t t = 0; t < back->tet_count(); ++t) {
+        const auto n = back->tet(t);
+        CHECK(signed_tet_volume(back->points[n[0]], back->points[n[1]], back->points[n[2]], back->points[n[3]]) > 0);
+        for (std::size_t e = 0; e < 6; ++e) {
+            const Vec3 middle = 0.5 * (back->points[n[edge_corners[e][0]]] + back->points[n[edge_corners[e][1]]]);
+            CHECK(norm(back->points[n[4 + e]] - middle) < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("broken files give a reason with the line, and claims are not believed") {
+    CHECK(problem("hello").find("not a legacy VTK file") != std::string::npos);
+    CHECK(problem(head).find("holds no tetrahedra") != std::string::npos);
+    CHECK(problem(head + "POINTS 4000000000000 double\n1 2 3\n").find("a.vtk:") == 0);
+    CHECK(problem(head + "POINTS 2 double\n0 0 0 1 0\n").find("ends") != std::string::npos);
+    CHECK(problem(head + "POINTS 1 double\n0 zero 0\n").find("\"zero\" is not a number") != std::string::npos);
+    CHECK(problem(head + "POINTS 1 double\n0 inf 0\n").find("not finite") != std::string::npos);
+    const std::string points = head + "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    CHECK(problem(points + "CELLS 1 5\n4 0 1 2 9\nCELL_TYPES 1\n10\n").find("names point 9") != std::string::npos);
+    CHECK(problem(points + "CELLS 1 5\n9 0 1 2 3\nCELL_TYPES 1\n10\n").find("runs past the end") != std::string::npos);
+    CHECK(problem(points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n").find("has 3 nodes") != std::string::npos);
+    CHECK(problem(points + "CELLS 1 5\n4 0 1 2 3\n").find("0 cell types") != std::string::npos);
+    CHECK(problem(points + "GARBAGE\n").find("\"GARBAGE\" is not understood") != std::string::npos);
+}
+
+TEST_CASE("an unknown kind of file to write is refused") {
+    CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk or .vtu") != std::string::npos);
+}
