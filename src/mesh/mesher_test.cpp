@@ -126,6 +126,61 @@ TEST_CASE("a surface body is meshed anew to the wanted size") {
     CHECK(report_on(mesh).worst_quality > 0.02);
 }
 
+TEST_CASE("the mesh size is judged by the material, not by the box around it") {
+    const Solid rod = box({0, 0, 0}, {500, 2, 2});
+    const Solid turned = solid(RotatedSolid{rod, {0, 0, 0}, {0, 0, 1}, 0.7});
+    const Solid tilted = solid(RotatedSolid{turned, {0, 0, 0}, {0, 1, 0}, 0.7});
+    CHECK(volume(mesh_of({{"rod", tilted}}, 2)) == doctest::Approx(2000).epsilon(1e-9));
+    // A thin sheet has little volume and many triangles.
+    CHECK(problem({{"sheet", box({0, 0, 0}, {500, 500, 1e-4})}}, 0.1).find("tetrahedra, more than") !=
+          std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("the message names the body that is touched, not the first one") {
+    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
+    const std::string text =
+        problem({{"far", box({50, 0, 0}, {60, 10, 10})}, {"near", box({10, 0, 0}, {20, 10, 10})}, {"stl", cube}}, 4);
+    CHECK(text.find("body \"stl\" touches or overlaps body \"near\"") == 0);
+}
+
+TEST_CASE("a caller that cancels gets no mesh") {
+    struct Cancelled : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
+}
+
+TEST_CASE("a surface body may have several shells and cavities") {
+    const Solid hollow = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
+    const Solid both = solid(CombinedSolid{CombinedSolid::Operation::unite, {hollow, box({20, 0, 0}, {30, 10, 10})}});
+    const Result<TriMesh> surface = tessellate(both, 0.1);
+    REQUIRE(surface);
+    const TetMesh mesh = mesh_of({{"a", *surface}}, 3, 2);
+    CHECK(mesh.order == 2);
+    CHECK(volume(mesh) == doctest::Approx(1000 - 64 + 1000).epsilon(1e-6));
+}
+
+TEST_CASE("a small hole keeps its round quadratic faces") {
+    const Solid hole = solid(CylinderSolid{{20, 10, -1}, {20, 10, 11}, 1.5});
+    const TetMesh mesh = mesh_of({{"plate", without(box({0, 0, 0}, {40, 20, 10}), hole)}}, 5, 2);
+    std::size_t on_wall = 0;
+    double farthest = 0;
+    for (const Face& face : boundary_faces(mesh)) {
+        const auto radius = [&](int node) { return std::hypot(mesh.points[node].x - 20, mesh.points[node].y - 10); };
+        if (radius(face.nodes[0]) > 1.6 || radius(face.nodes[1]) > 1.6 || radius(face.nodes[2]) > 1.6) continue;
+        ++on_wall;
+        for (const int node : face.nodes) farthest = std::max(farthest, std::fabs(radius(node) - 1.5));
+    }
+    CHECK(on_wall >= 8);
+    CHECK(farthest < 1e-6);
+}
+
 TEST_CASE("the same bodies give the same mesh, byte for byte") {
     const std::vector<BodyGeometry> bodies = {{"a", notched_bar(2)}, {"b", box({100, 0, 0}, {110, 20, 15})}};
     const TetMesh first = mesh_of(bodies, 5, 2);
@@ -147,4 +202,24 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
     CHECK(problem({{"a", cube}, {"b", box({10, 0, 0}, {20, 10, 10})}}, 4).find("touches or overlaps") !=
           std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("the message names the body that is touched, not the first one") {
+    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
+    const std::string text =
+        problem({{"far", box({50, 0, 0}, {60, 10, 10})}, {"near", box({10, 0, 0}, {20, 10, 10})}, {"stl", cube}}, 4);
+    CHECK(text.find("body \"stl\" touches or overlaps body \"near\"") == 0);
+}
+
+TEST_CASE("a caller that cancels gets no mesh") {
+    struct Cancelled : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
 }
