@@ -317,51 +317,87 @@ Result<TetMesh> mesh_enclosed(double size) {
     return generate({{volume, 0}}, 1);
 }
 
-/// How many of these triangles look outwards, less those that look inwards, by the solid's own membership.
-int outward_votes(const Solid& solid, const TriMesh& surface, std::size_t first, double step) {
-    int votes = 0;
-    for (std::size_t t = first; t < surface.triangles.size(); ++t) {
-        const auto& [a, b, c] = surface.triangles[t];
-        const Vec3 normal = cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
-        if (norm(normal) == 0) continue;
-        const Vec3 middle = (surface.points[a] + surface.points[b] + surface.points[c]) / 3;
-        const Vec3 offset = (step / norm(normal)) * normal;
-        votes += (contains(solid, middle - offset) ? 1 : 0) - (contains(solid, middle + offset) ? 1 : 0);
+/// The triangles of one face of the model, appended to `surface`; `index` maps Gmsh's nodes to points.
+void append_face(int face, TriMesh& surface, std::map<std::size_t, int>& index) {
+    std::vector<std::size_t> elements;
+    std::vector<std::size_t> nodes;
+    gmsh::model::mesh::getElementsByType(2, elements, nodes, face);
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+        std::array<int, 3> triangle{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [entry, fresh] = index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
+            triangle[k] = entry->second;
+            if (!fresh) continue;
+            std::vector<double> at;
+            std::vector<double> parameter;
+            gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
+            surface.points.push_back({at[0], at[1], at[2]});
+        }
+        surface.triangles.push_back(triangle);
     }
-    return votes;
+}
+
+/// 1 if triangle `t` on `face` looks out of the solid, -1 if into it, 0 if that cannot be told there. The question is
+/// put on the exact face: a chord's own middle lies on the same side of a curved face as both its neighbourhoods.
+int outward_vote(const Solid& solid, const TriMesh& surface, std::size_t t, int face, double step) {
+    const auto& [i, j, k] = surface.triangles[t];
+    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
+    const Vec3 middle = (a + b + c) / 3;
+    std::vector<double> on_face;
+    std::vector<double> parameter;
+    std::vector<double> normal;
+    gmsh::model::getClosestPoint(2, face, {middle.x, middle.y, middle.z}, on_face, parameter);
+    gmsh::model::getNormal(face, parameter, normal);
+    const Vec3 p{on_face[0], on_face[1], on_face[2]};
+    const Vec3 n{normal[0], normal[1], normal[2]};
+    const int along = static_cast<int>(contains(solid, p - step * n)) - static_cast<int>(contains(solid, p + step * n));
+    return dot(cross(b - a, c - a), n) > 0 ? along : -along;
 }
 
 /// The triangles on the faces of `volumes`, turned outwards face by face (Open CASCADE's faces look either way).
 TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
+    constexpr std::size_t voters = 9;
     Entities faces;
     gmsh::model::getBoundary(volumes, faces, true, false, false);
     TriMesh surface;
     std::map<std::size_t, int> index;
-    const double step = 1e-6 * bounds(solid).diagonal();
+    const double step = 1e-5 * bounds(solid).diagonal();
     for (const auto& [dimension, tag] : faces) {
-        std::vector<std::size_t> elements;
-        std::vector<std::size_t> nodes;
-        gmsh::model::mesh::getElementsByType(2, elements, nodes, std::abs(tag));
         const std::size_t first = surface.triangles.size();
-        for (std::size_t t = 0; t < elements.size(); ++t) {
-            std::array<int, 3> triangle{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto [entry, fresh] =
-                    index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
-                triangle[k] = entry->second;
-                if (!fresh) continue;
-                std::vector<double> at;
-                std::vector<double> parameter;
-                gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
-                surface.points.push_back({at[0], at[1], at[2]});
-            }
-            surface.triangles.push_back(triangle);
-        }
-        if (outward_votes(solid, surface, first, step) >= 0) continue;
+        append_face(std::abs(tag), surface, index);
+        const std::size_t count = surface.triangles.size() - first;
+        int votes = 0;
+        for (std::size_t v = 0; v < std::min(voters, count); ++v)
+            votes += outward_vote(solid, surface, first + v * count / std::min(voters, count), std::abs(tag), step);
+        if (votes >= 0) continue;
         for (std::size_t t = first; t < surface.triangles.size(); ++t)
             std::swap(surface.triangles[t][1], surface.triangles[t][2]);
     }
     return surface;
+}
+
+Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, int refinement) {
+    return in_session("meshing", [&]() -> Result<TetMesh> {
+        std::vector<Entities> volumes;
+        double volume = 0;
+        for (const NamedSolid& named : solids) {
+            volumes.push_back(BuildSolid::build(named.solid));
+            const double one = mass(volumes.back());
+            if (!(one > 0)) return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+            volume += one;
+        }
+        if (Status status = check_overlaps(solids, volumes); !status) return tl::unexpected(status.error());
+        const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        occ::synchronize();
+        Entities joined;
+        for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
+        if (Status status = check_tet_count(volume, surface_area(joined), size); !status)
+            return tl::unexpected(status.error());
+        set_size(size);
+        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
+        gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
+        return generate(solid_of_volume, order);
+    });
 }
 
 }  // namespace
@@ -383,27 +419,11 @@ Status check_tet_count(double volume, double area, double size) {
 }
 
 Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order) {
-    return in_session("meshing", [&]() -> Result<TetMesh> {
-        std::vector<Entities> volumes;
-        double volume = 0;
-        for (const NamedSolid& named : solids) {
-            volumes.push_back(BuildSolid::build(named.solid));
-            const double one = mass(volumes.back());
-            if (!(one > 0)) return input_error("body \"{}\" is empty: nothing is left of it", named.name);
-            volume += one;
-        }
-        if (Status status = check_overlaps(solids, volumes); !status) return tl::unexpected(status.error());
-        const std::map<int, int> solid_of_volume = join_volumes(volumes);
-        occ::synchronize();
-        Entities joined;
-        for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
-        if (Status status = check_tet_count(volume, surface_area(joined), size); !status)
-            return tl::unexpected(status.error());
-        set_size(size);
-        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8);
-        gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size);
-        return generate(solid_of_volume, order);
-    });
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, 1);
+    // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
+    for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
+        mesh = try_mesh_solids(solids, size, order, refinement);
+    return mesh;
 }
 
 Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg) {
@@ -429,14 +449,19 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         const Entities volumes = BuildSolid::build(solid);
         if (volumes.empty()) return input_error("is empty: nothing is left of it");
         occ::synchronize();
-        // Flat faces need no inner points; an arc of radius r within `tolerance` needs about 2 pi / sqrt(8 tolerance /
-        // r).
+        // Flat faces need no inner points; chords of an arc of radius r leave it by tolerance / 2 at 2 pi / sqrt(4
+        // tolerance / r) a turn. The other half is for triangles, which leave a ball farther than their edges do.
         const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
-        const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(8 * tolerance / reach), 24.0, 720.0);
+        const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / reach), 24.0, 2000.0);
         set_size(4 * reach);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", segments);
         gmsh::model::mesh::generate(2);
-        return collect_surface(solid, volumes);
+        TriMesh surface = collect_surface(solid, volumes);
+        const double exact = mass(volumes);
+        const double found = signed_volume(surface);
+        if (std::fabs(found - exact) > 4 * tolerance * surface_area(volumes) + 1e-6 * exact)
+            return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
+        return surface;
     });
 }
 

@@ -117,6 +117,33 @@ TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     CHECK(signed_volume(*ball) == doctest::Approx(4.0 / 3 * std::numbers::pi * 125).epsilon(5e-3));
 }
 
+TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance") {
+    const double pi = std::numbers::pi;
+    const Solid ball = solid(SphereSolid{{0, 0, 0}, 5});
+    const Solid rod = solid(CylinderSolid{{0, 0, -9}, {0, 0, 9}, 2});
+    const Solid cube = box({-10, -10, -10}, {10, 10, 10});
+    for (const auto& [cavity, gone] : {std::pair(ball, 4.0 / 3 * pi * 125), std::pair(rod, pi * 4 * 18)}) {
+        const Result<TriMesh> hollow = tessellate(without(cube, cavity), 0.01);
+        REQUIRE_MESSAGE(hollow, (hollow ? "" : hollow.error().message));
+        CHECK(check_closed(*hollow));
+        CHECK(signed_volume(*hollow) == doctest::Approx(8000 - gone).epsilon(1e-3));
+        CHECK(signed_volume(*tessellate(cavity, 0.01)) == doctest::Approx(gone).epsilon(1e-2));
+    }
+    double farthest = 0;
+    const TriMesh surface = *tessellate(ball, 0.01);
+    for (const auto& [a, b, c] : surface.triangles)
+        farthest = std::max(farthest, 5 - norm(surface.points[a] + surface.points[b] + surface.points[c]) / 3);
+    CHECK(farthest > 0);
+    CHECK(farthest < 0.01);
+}
+
+TEST_CASE("a wall thinner than the chords of its curve is followed more closely") {
+    const Solid tube =
+        without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));
+    const double exact = std::numbers::pi * (25 - 4.8 * 4.8) * 10;
+    CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == doctest::Approx(exact).epsilon(0.05));
+}
+
 TEST_CASE("a surface body is meshed anew to the wanted size") {
     const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
     REQUIRE(surface);
