@@ -113,7 +113,7 @@ void add_simulate(CLI::App& app, int& status) {
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
     command->add_option("--steps", options->steps, "number of steps, instead of the file's")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, 100000));
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

@@ -58,8 +58,11 @@ Status Problems::status() const {
     if (lines_.empty()) return {};
     auto sorted = lines_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    // More than a screenful helps nobody: with so much wrong it is the wrong file, or one slip near the top.
+    constexpr std::size_t most = 12;
     std::string text;
-    for (const auto& [line, message] : sorted) text += (text.empty() ? "" : "\n") + message;
+    for (std::size_t i = 0; i < std::min(sorted.size(), most); ++i) text += (i == 0 ? "" : "\n") + sorted[i].second;
+    if (sorted.size() > most) text += fmt::format("\n{}: and {} problems more", file_, sorted.size() - most);
     return tl::unexpected(Error{Cause::input, text});
 }
 
@@ -93,7 +96,7 @@ std::vector<std::string> Reader::keys() const {
 }
 
 void Reader::problem(std::string_view key, std::string_view text) {
-    problems_->add(line_of(key), key_path(key), text);
+    if (!missing_) problems_->add(line_of(key), key_path(key), text);
 }
 
 const Value* Reader::find(std::string_view key) {
@@ -276,7 +279,9 @@ std::string Reader::choice(std::string_view key, const std::vector<std::string>&
 Reader Reader::table(std::string_view key, bool required) {
     static const Value empty{};
     const Value* value = required ? find_required(key, "a table") : find(key);
-    return Reader(value != nullptr ? *value : empty, *problems_, key_path(key));
+    Reader reader(value != nullptr ? *value : empty, *problems_, key_path(key));
+    reader.missing_ = missing_ || (value == nullptr && required);
+    return reader;
 }
 
 std::vector<Reader> Reader::tables(std::string_view key) {

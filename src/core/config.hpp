@@ -53,7 +53,8 @@ struct Document {
 /// every text of the form "= formula" in the document by its value.
 [[nodiscard]] Status resolve_parameters(Document& document);
 
-/// Collects what is wrong with one file: `FILE:LINE: key: text`, one line each, in the order of the file.
+/// Collects what is wrong with one file: `FILE:LINE: key: text`, one line each, in the order of the file, at most a
+/// dozen.
 class Problems {
 public:
     explicit Problems(std::string file) : file_(std::move(file)) {}
@@ -123,6 +124,7 @@ private:
     const Value* table_;
     Problems* problems_;
     std::string path_;
+    bool missing_ = false;  ///< stands for a required table that is not there: that is the one problem to report
     std::shared_ptr<Marks> marks_;
 };
 

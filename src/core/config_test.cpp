@@ -128,3 +128,17 @@ TEST_CASE("parameters and formulas") {
     Document bad = document_of("[parameters]\na = \"= b + 1\"\n");
     CHECK(resolve_parameters(bad).error().message.find("test.toml:2:") == 0);
 }
+
+TEST_CASE("a missing table is one problem, not one for each of its keys, and long lists are cut") {
+    const Document document =
+        document_of("a = 1\nb = 1\nc = 1\nd = 1\ne = 1\nf = 1\ng = 1\nh = 1\ni = 1\nj = 1\nk = 1\nl = 1\nm = 1\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    Reader axis = root.table("axis").table("x");
+    (void)axis.text("letter");
+    (void)axis.number("speed");
+    axis.problem("speed", "must be above zero");
+    CHECK(message(problems) == "test.toml:1: \"axis\" is missing; it is a table");
+    root.finish();
+    CHECK(message(problems).find("test.toml: and 2 problems more") != std::string::npos);
+}

@@ -92,7 +92,7 @@ void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const
         canvas.text({x + width + 16, y + 8}, fmt::format("{:.4g}", top * i / ticks), {23, ink});
     }
     if (highest > top)
-        canvas.text({x + width, y0 + height + 48}, fmt::format("peak {:.3g}", highest), {21, faint_ink, Align::centre});
+        canvas.text({x + width, y0 + height + 48}, fmt::format("peak {:.4g}", highest), {21, faint_ink, Align::centre});
 }
 
 void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajectory& result) {

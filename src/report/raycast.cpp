@@ -15,6 +15,7 @@ constexpr int grid = 4;           // samples per pixel and direction
 constexpr int floor_cell_px = 4;  // the floor's soft shadow is computed at every fourth pixel
 constexpr double sky_strength = 0.64;
 constexpr double key_strength = 0.60;
+constexpr double bounced = 0.16;           // light that still reaches the bottom of a slit, off its walls
 constexpr double floor_sky_shadow = 0.42;  // darkening of the backdrop where no sky arrives
 constexpr double floor_key_shadow = 0.26;
 constexpr double floor_contrast = 0.04;
@@ -177,7 +178,8 @@ Light Renderer::patch_light(const Vec3& point, const Vec3& normal, const Vec3& g
 Colour Renderer::lit(const Colour& albedo, const Vec3& normal, const Vec3& direction, const Light& light) const {
     const Vec3 half = unit(lighting_.key_direction() - unit(direction));
     const double gloss = light.key > 0 ? 0.07 * std::pow(std::max(0.0, dot(normal, half)), 30) : 0.0;
-    const double full = sky_strength * light.sky + key_strength * light.key;
+    const double sky = bounced + (1 - bounced) * light.sky;
+    const double full = sky_strength * sky + key_strength * light.key;
     return (1 + scene_.shading * (full - 1)) * albedo + scene_.shading * gloss * Colour{1, 1, 1};
 }
 

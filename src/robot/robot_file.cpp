@@ -271,7 +271,9 @@ sim::CableTarget read_target(Reader& cable) {
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
     if (reader.has("tension")) target = {Kind::tension_N, reader.quantity("tension", Dimension::force)};
-    if (target.value < 0) reader.problem("", "must not be negative: a cable can only pull");
+    if (target.kind != Kind::length_ratio && target.value < 0) {
+        reader.problem("", "must not be negative: a cable can only pull");
+    }
     for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
     reader.finish();
     return target;

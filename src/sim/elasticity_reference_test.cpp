@@ -81,6 +81,26 @@ void check_bar_rows(const std::string& element, double tolerance, std::size_t ev
     CHECK(seen > 0);
 }
 
+/// The thesis' target shape with (E, nu) mapped to weight and blend, against an independent solver of the same model.
+void check_shape_blend(double nu, double material_ratio) {
+    for (const auto& row : reference::load_csv(reference::data_folder() + "/fem/calibration_R_omega_vs_ccx.csv")) {
+        if (row.at("law") != "NH" || std::stod(row.at("nu")) != nu || std::stod(row.at("Rm")) != material_ratio)
+            continue;
+        CAPTURE(nu);
+        CAPTURE(row.at("L1"));
+        reference::Row bar = {{"cells", "48x5x5"},  {"elem", "C3D4"},     {"law", "NH"},    {"nu", row.at("nu")},
+                              {"Rm", row.at("Rm")}, {"L1", row.at("L1")}, {"strain", "0.3"}};
+        Description d = two_material_bar(bar);
+        d.materials[0].law = material::shape_blend(12 * MPa * material_ratio, nu);
+        d.materials[1].law = material::shape_blend(12 * MPa, nu);
+        const auto model = model_of(std::move(d));
+        const Step last = solve(*model, 5, 1e-6).steps.back();
+        const double u = last.markers[0].position_m.x / mm - std::stod(row.at("L1"));
+        CHECK(u == doctest::Approx(std::stod(row.at("u_map_T"))).epsilon(1e-4));
+        CHECK(last.supports[1].force_N.x == doctest::Approx(std::stod(row.at("F_map_T"))).epsilon(1e-4));
+    }
+}
+
 void check_beam(const std::string& element, double nu, double tolerance) {
     const auto rows = reference::load_csv(reference::data_folder() + "/fem/ccx_beam_100x5x5.csv");
     bool found = false;
@@ -129,4 +149,10 @@ TEST_CASE("slender beam, quadratic tets: within 0.1 % for every Poisson ratio") 
 
 TEST_CASE("slender beam, linear tets: within 0.1 %") {
     for (const double nu : {0.3, 0.45, 0.49, 0.499}) check_beam("C3D4", nu, 1e-3);
+}
+
+TEST_CASE("two-material bar with the thesis' target shapes: an independent solver of the same model") {
+    check_shape_blend(0.3, 3.75);
+    check_shape_blend(0.45, 3.75);
+    check_shape_blend(0.45, 8);
 }

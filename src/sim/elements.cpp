@@ -17,6 +17,7 @@ using linalg::Matrix9;
 using linalg::Vector3;
 
 constexpr std::size_t tets_per_piece = 256;
+constexpr std::size_t max_tet_unknowns = 30;
 constexpr double gauss_a = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
 constexpr double gauss_b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
 
@@ -177,46 +178,63 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
     return total;
 }
 
+void Elements::tet_tangent(std::size_t tet, std::span<const double> x, bool project, double* K) const {
+    const auto width = static_cast<std::size_t>(3 * nodes_per_tet_);
+    std::fill(K, K + width * width, 0.0);
+    std::array<std::array<double, max_tet_unknowns>, 9> HB;  // column 3b + k: change of P with unknown k of node b
+    for (int q = 0; q < points_per_tet_; ++q) {
+        Matrix9 H = material::tangent(law(tet), deformation_gradient(tet, q, x));
+        H = project ? linalg::project_to_positive(H) : Matrix9(0.5 * (H + H.transpose()));
+        H *= point_volume(tet, q);
+        const double* g = gradients(tet, q);
+        for (std::size_t row = 0; row < 9; ++row) {
+            for (std::size_t b = 0; b < width / 3; ++b) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto at = [&](std::size_t l) {
+                        return H(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(3 * l + k));
+                    };
+                    HB[row][3 * b + k] = g[3 * b] * at(0) + g[3 * b + 1] * at(1) + g[3 * b + 2] * at(2);
+                }
+            }
+        }
+        for (std::size_t a = 0; a < width / 3; ++a) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                double* row = K + (3 * a + i) * width;
+                for (std::size_t column = 3 * a; column < width; ++column) {
+                    row[column] +=
+                        g[3 * a] * HB[i][column] + g[3 * a + 1] * HB[3 + i][column] + g[3 * a + 2] * HB[6 + i][column];
+                }
+            }
+        }
+    }
+}
+
 void Elements::add_tangent(std::span<const double> x, const std::vector<int>& free_index,
                            const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
     // Batches bound the memory of the element matrices; adding them in order keeps the result reproducible.
     constexpr std::size_t batch = 2048;
-    const int width = 3 * nodes_per_tet_;
-    const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(width);
+    const auto width = static_cast<std::size_t>(3 * nodes_per_tet_);
+    const std::size_t size = width * width;
     std::vector<double> matrices(std::min(batch, tet_count()) * size);
     for (std::size_t first = 0; first < tet_count(); first += batch) {
         const std::size_t count = std::min(batch, tet_count() - first);
         parallel_for(count, 32, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                Eigen::Map<Eigen::MatrixXd> K(matrices.data() + t * size, width, width);
-                K.setZero();
-                Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 30> B(9, width);
-                for (int q = 0; q < points_per_tet_; ++q) {
-                    const Matrix3 F = deformation_gradient(first + t, q, x);
-                    Matrix9 H = material::tangent(law(first + t), F);
-                    H = project ? linalg::project_to_positive(H) : Matrix9(0.5 * (H + H.transpose()));
-                    const double* g = gradients(first + t, q);
-                    B.setZero();
-                    for (int a = 0; a < nodes_per_tet_; ++a) {
-                        for (int j = 0; j < 3; ++j) {
-                            for (int i = 0; i < 3; ++i) B(3 * j + i, 3 * a + i) = g[3 * a + j];
-                        }
-                    }
-                    const Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 30> HB =
-                        point_volume(first + t, q) * (H * B);
-                    K.noalias() += B.transpose() * HB;
-                }
-            }
+            for (std::size_t t = begin; t < end; ++t) tet_tangent(first + t, x, project, matrices.data() + t * size);
         });
         for (std::size_t t = 0; t < count; ++t) {
-            const Eigen::Map<const Eigen::MatrixXd> K(matrices.data() + t * size, width, width);
+            const double* K = matrices.data() + t * size;
             const int* nodes = nodes_.data() + (first + t) * static_cast<std::size_t>(nodes_per_tet_);
-            for (int b = 0; b < nodes_per_tet_; ++b) {
+            for (std::size_t b = 0; b < width / 3; ++b) {
                 const int j = free_index[nodes[b]];
-                for (int a = 0; j >= 0 && a < nodes_per_tet_; ++a) {
+                for (std::size_t a = 0; j >= 0 && a < width / 3; ++a) {
                     const int i = free_index[nodes[a]];
                     if (i < j) continue;
-                    pattern.add_block(values, i, j, [&](int r, int c) { return K(3 * a + r, 3 * b + c); });
+                    // Only the upper triangle of K is filled.
+                    pattern.add_block(values, i, j, [&](int r, int c) {
+                        const std::size_t row = 3 * a + static_cast<std::size_t>(r);
+                        const std::size_t column = 3 * b + static_cast<std::size_t>(c);
+                        return a <= b ? K[row * width + column] : K[column * width + row];
+                    });
                 }
             }
         }

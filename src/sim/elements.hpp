@@ -63,6 +63,8 @@ private:
     }
     Status integrate_tet(const Description& description, std::size_t tet);
     void link_nodes(std::size_t node_count);
+    /// Upper triangle by blocks of 3, row by row, (3 nodes_per_tet)^2.
+    void tet_tangent(std::size_t tet, std::span<const double> x, bool project, double* K) const;
     Evaluation evaluate_tet(std::size_t tet, std::span<const double> x, double* forces) const;
 
     int nodes_per_tet_ = 4;

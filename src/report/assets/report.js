@@ -137,7 +137,9 @@ function element(name, attributes) {
 }
 
 function supportPlots() {
-    for (const name of Object.keys(data.rest.supports).slice(0, 6)) {
+    // Where cables and loads balance inside the robot, a support carries rounding errors only: nothing to plot.
+    const carries = (name) => states.some((s) => Math.hypot(...s.supports[name].force_N) > 1e-6);
+    for (const name of Object.keys(data.rest.supports).filter(carries).slice(0, 6)) {
         plot(`Force of support “${name}”`, "time", "N", ["x", "y", "z"],
              states.map((s) => [s.time, ...s.supports[name].force_N]));
     }

@@ -1,0 +1,64 @@
+// examples/cable_gripper with expected numbers. They are this program's own on this mesh (4 mm), to notice changes; how
+// the same solver stands against CalculiX is in src/sim/cable_reference_test.cpp.
+#include <doctest/doctest.h>
+
+#include "robot/build.hpp"
+
+using namespace pliant;
+
+namespace {
+
+sim::Trajectory run(const std::vector<std::string>& assignments) {
+    const auto robot = robot::load_robot("examples/cable_gripper/gripper.toml", assignments);
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    auto mesh = robot::build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    const auto model = robot::build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    sim::Trajectory result = sim::run(*model, robot->program, silent);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("the gripper curls as it did") {
+    const sim::Trajectory result = run({"mesh.size=\"4 mm\"", "program.steps=15"});
+    CHECK(result.warnings.empty());
+    const sim::Step& last = result.steps.back();
+    CHECK(last.cables[0].length_ratio == doctest::Approx(0.7).epsilon(1e-6));
+    CHECK(last.cables[0].tension_N == doctest::Approx(27.34).epsilon(5e-3));
+    CHECK(last.markers[1].position_m.x == doctest::Approx(34.05e-3).epsilon(5e-3));
+    CHECK(last.markers[1].position_m.z == doctest::Approx(45.40e-3).epsilon(5e-3));
+    // The cable is pulled out at the clamp: the support carries its tension, along the bar.
+    CHECK(last.supports[0].force_N.x == doctest::Approx(last.cables[0].tension_N).epsilon(1e-2));
+    // The soft half bends more than the hard one: the middle marker hardly moves.
+    CHECK(last.markers[0].position_m.z < 16e-3);
+    for (const sim::Step& step : result.steps) CHECK(step.min_J > 0.5);
+}
+
+TEST_CASE("both solvers of the thesis' family agree on the gripper") {
+    const std::vector<std::string> coarse = {"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=5",
+                                             "cable.flexor.target.length_ratio=0.9"};
+    std::vector<double> tension;
+    for (const char* solver : {"newton", "quasi-newton", "local-global"}) {
+        auto assignments = coarse;
+        assignments.push_back(std::string("program.solver=") + solver);
+        tension.push_back(run(assignments).steps.back().cables[0].tension_N);
+    }
+    CHECK(tension[1] == doctest::Approx(tension[0]).epsilon(2e-3));
+    CHECK(tension[2] == doctest::Approx(tension[0]).epsilon(2e-3));
+}
+
+TEST_CASE("the number of gaps is one parameter") {
+    const sim::Trajectory four = run({"parameters.gaps=4", "mesh.size=\"6 mm\"", "mesh.order=1", "program.steps=3",
+                                      "cable.flexor.target.length_ratio=0.9"});
+    CHECK(four.steps.back().cables[0].tension_N > 0);
+}
+
+TEST_CASE("pulled further than its gaps are wide, the gripper says so") {
+    const sim::Trajectory result = run({"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=50", "cable.flexor.target.length_ratio=0.5"});
+    REQUIRE(result.warnings.size() == 1);
+    CHECK(result.warnings[0].find("have met") != std::string::npos);
+}
