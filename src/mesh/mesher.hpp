@@ -23,17 +23,19 @@ struct BodyGeometry {
 
 struct MeshSettings {
     double size = 0;        ///< wanted edge length, above zero
-    int order = 2;          ///< 1 or 2; mid-edge nodes lie on curved surfaces where that turns no element inside out
+    int order = 2;          ///< 1 or 2; mid-edge nodes lie on the curved faces of solids where that folds no tet
     double angle_deg = 30;  ///< edges of a surface file sharper than this are kept
 };
 
 /// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; bodies
-/// that overlap are an error with the volume. Surface files are meshed one by one and must stand apart from every other
-/// body. The same input gives the same mesh.
+/// that overlap are an error with the volume. A surface may have several shells and cavities; it is meshed anew, its
+/// sharp edges kept, and must stand apart from every other body. The same input gives the same mesh. A mesh of more
+/// than 20 million tets is refused.
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
                                           Progress& progress);
 
-/// The closed surface of a solid; curved faces within about `tolerance`, flat ones exact.
+/// The closed surface of a solid; curved faces within `tolerance` (above zero) down to chords of
+/// 1/2000 of a turn, flat faces exact. Triangles look outwards.
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
 
 /// Volume of a solid by its boundary representation.

@@ -117,6 +117,33 @@ TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     CHECK(signed_volume(*ball) == doctest::Approx(4.0 / 3 * std::numbers::pi * 125).epsilon(5e-3));
 }
 
+TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance") {
+    const double pi = std::numbers::pi;
+    const Solid ball = solid(SphereSolid{{0, 0, 0}, 5});
+    const Solid rod = solid(CylinderSolid{{0, 0, -9}, {0, 0, 9}, 2});
+    const Solid cube = box({-10, -10, -10}, {10, 10, 10});
+    for (const auto& [cavity, gone] : {std::pair(ball, 4.0 / 3 * pi * 125), std::pair(rod, pi * 4 * 18)}) {
+        const Result<TriMesh> hollow = tessellate(without(cube, cavity), 0.01);
+        REQUIRE_MESSAGE(hollow, (hollow ? "" : hollow.error().message));
+        CHECK(check_closed(*hollow));
+        CHECK(signed_volume(*hollow) == doctest::Approx(8000 - gone).epsilon(1e-3));
+        CHECK(signed_volume(*tessellate(cavity, 0.01)) == doctest::Approx(gone).epsilon(1e-2));
+    }
+    double farthest = 0;
+    const TriMesh surface = *tessellate(ball, 0.01);
+    for (const auto& [a, b, c] : surface.triangles)
+        farthest = std::max(farthest, 5 - norm(surface.points[a] + surface.points[b] + surface.points[c]) / 3);
+    CHECK(farthest > 0);
+    CHECK(farthest < 0.01);
+}
+
+TEST_CASE("a wall thinner than the chords of its curve is followed more closely") {
+    const Solid tube =
+        without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));
+    const double exact = std::numbers::pi * (25 - 4.8 * 4.8) * 10;
+    CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == doctest::Approx(exact).epsilon(0.05));
+}
+
 TEST_CASE("a surface body is meshed anew to the wanted size") {
     const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
     REQUIRE(surface);
@@ -124,6 +151,61 @@ TEST_CASE("a surface body is meshed anew to the wanted size") {
     CHECK(volume(mesh) == doctest::Approx(30000 - 3 * 1100).epsilon(1e-6));
     CHECK(mesh.tet_count() > 1000);
     CHECK(report_on(mesh).worst_quality > 0.02);
+}
+
+TEST_CASE("the mesh size is judged by the material, not by the box around it") {
+    const Solid rod = box({0, 0, 0}, {500, 2, 2});
+    const Solid turned = solid(RotatedSolid{rod, {0, 0, 0}, {0, 0, 1}, 0.7});
+    const Solid tilted = solid(RotatedSolid{turned, {0, 0, 0}, {0, 1, 0}, 0.7});
+    CHECK(volume(mesh_of({{"rod", tilted}}, 2)) == doctest::Approx(2000).epsilon(1e-9));
+    // A thin sheet has little volume and many triangles.
+    CHECK(problem({{"sheet", box({0, 0, 0}, {500, 500, 1e-4})}}, 0.1).find("tetrahedra, more than") !=
+          std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("the message names the body that is touched, not the first one") {
+    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
+    const std::string text =
+        problem({{"far", box({50, 0, 0}, {60, 10, 10})}, {"near", box({10, 0, 0}, {20, 10, 10})}, {"stl", cube}}, 4);
+    CHECK(text.find("body \"stl\" touches or overlaps body \"near\"") == 0);
+}
+
+TEST_CASE("a caller that cancels gets no mesh") {
+    struct Cancelled : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
+}
+
+TEST_CASE("a surface body may have several shells and cavities") {
+    const Solid hollow = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
+    const Solid both = solid(CombinedSolid{CombinedSolid::Operation::unite, {hollow, box({20, 0, 0}, {30, 10, 10})}});
+    const Result<TriMesh> surface = tessellate(both, 0.1);
+    REQUIRE(surface);
+    const TetMesh mesh = mesh_of({{"a", *surface}}, 3, 2);
+    CHECK(mesh.order == 2);
+    CHECK(volume(mesh) == doctest::Approx(1000 - 64 + 1000).epsilon(1e-6));
+}
+
+TEST_CASE("a small hole keeps its round quadratic faces") {
+    const Solid hole = solid(CylinderSolid{{20, 10, -1}, {20, 10, 11}, 1.5});
+    const TetMesh mesh = mesh_of({{"plate", without(box({0, 0, 0}, {40, 20, 10}), hole)}}, 5, 2);
+    std::size_t on_wall = 0;
+    double farthest = 0;
+    for (const Face& face : boundary_faces(mesh)) {
+        const auto radius = [&](int node) { return std::hypot(mesh.points[node].x - 20, mesh.points[node].y - 10); };
+        if (radius(face.nodes[0]) > 1.6 || radius(face.nodes[1]) > 1.6 || radius(face.nodes[2]) > 1.6) continue;
+        ++on_wall;
+        for (const int node : face.nodes) farthest = std::max(farthest, std::fabs(radius(node) - 1.5));
+    }
+    CHECK(on_wall >= 8);
+    CHECK(farthest < 1e-6);
 }
 
 TEST_CASE("the same bodies give the same mesh, byte for byte") {
@@ -147,4 +229,24 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
     CHECK(problem({{"a", cube}, {"b", box({10, 0, 0}, {20, 10, 10})}}, 4).find("touches or overlaps") !=
           std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("the message names the body that is touched, not the first one") {
+    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
+    const std::string text =
+        problem({{"far", box({50, 0, 0}, {60, 10, 10})}, {"near", box({10, 0, 0}, {20, 10, 10})}, {"stl", cube}}, 4);
+    CHECK(text.find("body \"stl\" touches or overlaps body \"near\"") == 0);
+}
+
+TEST_CASE("a caller that cancels gets no mesh") {
+    struct Cancelled : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
 }

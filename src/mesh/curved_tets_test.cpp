@@ -1,0 +1,49 @@
+#include "mesh/curved_tets.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+/// Two tets on both sides of the face (1, 2, 3), quadratic and straight.
+TetMesh two_tets() {
+    TetMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
+    mesh.region = {0, 0};
+    mesh.region_names = {"a"};
+    return to_quadratic(mesh);
+}
+
+}  // namespace
+
+TEST_CASE("a straight tet has the same Jacobian everywhere") {
+    const TetMesh mesh = two_tets();
+    for (std::size_t t = 0; t < 2; ++t) CHECK(worst_scaled_jacobian(mesh, t) == doctest::Approx(1));
+}
+
+TEST_CASE("the Jacobian of a tet with one moved mid-edge node") {
+    TetMesh mesh = two_tets();
+    // Node 4 of tet 0 is the middle of its edge 0-1 along x. With x = b1 + 4 d b0 b1 the determinant is dx/db1 =
+    // 1 + 4 d (b0 - b1) where b0 = 1 - b1: between 1 - 4 d and 1 + 4 d.
+    mesh.points[mesh.nodes[4]].x += 0.1;
+    CHECK(worst_scaled_jacobian(mesh, 0) == doctest::Approx(1 - 0.4));
+    CHECK(worst_scaled_jacobian(mesh, 1) == doctest::Approx(1));
+    mesh.points[mesh.nodes[4]].x += 0.3;
+    CHECK(worst_scaled_jacobian(mesh, 0) == doctest::Approx(1 - 1.6));
+}
+
+TEST_CASE("only folded tets are straightened") {
+    TetMesh mesh = two_tets();
+    const int folded = mesh.nodes[4];
+    const int curved = mesh.nodes[10 + 7];  // on edge 0-3 of the second tet, away from the first
+    mesh.points[folded].x += 0.4;
+    mesh.points[curved] += Vec3{0.02, 0, 0};
+    const Vec3 kept = mesh.points[curved];
+    CHECK(straighten_folded_tets(mesh, 0.1) == 1);
+    CHECK(mesh.points[folded] == Vec3{0.5, 0, 0});
+    CHECK(mesh.points[curved] == kept);
+    CHECK(straighten_folded_tets(mesh, 0.1) == 0);
+}

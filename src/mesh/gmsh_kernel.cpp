@@ -1,0 +1,472 @@
+// The only file that includes gmsh.h. Gmsh keeps one global state: every use holds the lock of a Session.
+#include "mesh/gmsh_kernel.hpp"
+
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <numeric>
+
+#include "mesh/curved_tets.hpp"
+
+namespace pliant::mesh::kernel {
+namespace {
+
+namespace occ = gmsh::model::occ;
+using Entities = gmsh::vectorpair;  ///< (dimension, tag)
+
+/// A Gmsh model of its own, silent and reproducible.
+class Session {
+public:
+    Session() : lock_(mutex()) {
+        gmsh::initialize(0, nullptr, false);
+        gmsh::option::setNumber("General.Terminal", 0);
+        gmsh::option::setNumber("General.AbortOnError", 2);  // throw
+        gmsh::option::setNumber("General.NumThreads", 1);
+        gmsh::option::setNumber("Mesh.RandomSeed", 1);
+        gmsh::option::setNumber("Mesh.Algorithm", 6);    // frontal Delaunay on surfaces
+        gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay in volumes
+        gmsh::option::setNumber("Mesh.Optimize", 1);
+        gmsh::model::add("pliant");
+    }
+    ~Session() {
+        try {
+            gmsh::finalize();
+        } catch (...) {  // nothing is left to be done about it, and a destructor must not throw
+        }
+    }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+private:
+    static std::mutex& mutex() {
+        static std::mutex one;
+        return one;
+    }
+    std::lock_guard<std::mutex> lock_;
+};
+
+/// Runs `work` in a session; what Gmsh throws becomes an error.
+template <class Work>
+auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
+    try {
+        const Session session;
+        return work();
+    } catch (const std::string& text) {
+        return failure("{}: Gmsh says: {}", task, text);
+    } catch (const std::exception& error) {
+        return failure("{}: Gmsh says: {}", task, error.what());
+    } catch (...) {
+        return failure("{}: Gmsh failed without a reason", task);
+    }
+}
+
+/// Turns an expression into Open CASCADE volumes.
+struct BuildSolid {
+    Entities operator()(const BoxSolid& s) const {
+        const Vec3 d = s.high - s.low;
+        return {{3, occ::addBox(s.low.x, s.low.y, s.low.z, d.x, d.y, d.z)}};
+    }
+    Entities operator()(const SphereSolid& s) const {
+        return {{3, occ::addSphere(s.center.x, s.center.y, s.center.z, s.radius)}};
+    }
+    Entities operator()(const CylinderSolid& s) const {
+        const Vec3 d = s.to - s.from;
+        return {{3, occ::addCylinder(s.from.x, s.from.y, s.from.z, d.x, d.y, d.z, s.radius)}};
+    }
+    Entities operator()(const PrismSolid& s) const {
+        const auto axis = [&](std::size_t k) { return static_cast<std::size_t>(s.axes[k]); };
+        std::vector<int> points;
+        for (const auto& [u, v] : s.polygon) {
+            Vec3 p;
+            p[axis(0)] = u;
+            p[axis(1)] = v;
+            p[axis(2)] = s.from;
+            points.push_back(occ::addPoint(p.x, p.y, p.z));
+        }
+        std::vector<int> lines;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
+        const int face = occ::addPlaneSurface({occ::addCurveLoop(lines)});
+        Vec3 along;
+        along[axis(2)] = s.to - s.from;
+        Entities out;
+        occ::extrude({{2, face}}, along.x, along.y, along.z, out);
+        std::erase_if(out, [](const auto& entity) { return entity.first != 3; });
+        return out;
+    }
+    Entities operator()(const CombinedSolid& s) const {
+        Entities first = build(s.parts.front());
+        Entities others;
+        for (std::size_t i = 1; i < s.parts.size(); ++i) {
+            Entities part = build(s.parts[i]);
+            if (s.operation == CombinedSolid::Operation::intersect)
+                first = intersect(first, part);
+            else
+                others.insert(others.end(), part.begin(), part.end());
+        }
+        if (first.empty() || others.empty())
+            return first.empty() && s.operation == CombinedSolid::Operation::unite ? others : first;
+        Entities out;
+        std::vector<Entities> map;
+        if (s.operation == CombinedSolid::Operation::unite)
+            occ::fuse(first, others, out, map);
+        else
+            occ::cut(first, others, out, map);
+        return out;
+    }
+    Entities operator()(const TranslatedSolid& s) const {
+        Entities part = build(s.of);
+        if (!part.empty()) occ::translate(part, s.offset.x, s.offset.y, s.offset.z);
+        return part;
+    }
+    Entities operator()(const RotatedSolid& s) const {
+        Entities part = build(s.of);
+        if (!part.empty())
+            occ::rotate(part, s.center.x, s.center.y, s.center.z, s.axis.x, s.axis.y, s.axis.z, s.angle_rad);
+        return part;
+    }
+    Entities operator()(const RepeatedSolid& s) const {
+        const Entities first = build(s.of);
+        Entities copies;
+        for (int k = 1; k < s.count && !first.empty(); ++k) {
+            Entities copy;
+            occ::copy(first, copy);
+            occ::translate(copy, k * s.step.x, k * s.step.y, k * s.step.z);
+            copies.insert(copies.end(), copy.begin(), copy.end());
+        }
+        if (copies.empty()) return first;
+        Entities out;
+        std::vector<Entities> map;
+        occ::fuse(first, copies, out, map);
+        return out;
+    }
+
+    static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
+
+    static Entities intersect(const Entities& a, const Entities& b) {
+        Entities out;
+        std::vector<Entities> map;
+        if (!a.empty() && !b.empty()) occ::intersect(a, b, out, map);
+        return out;
+    }
+};
+
+double mass(const Entities& volumes) {
+    double sum = 0;
+    for (const auto& [dimension, tag] : volumes) {
+        double one = 0;
+        if (dimension == 3) occ::getMass(dimension, tag, one);
+        sum += one;
+    }
+    return sum;
+}
+
+bool boxes_meet(const Box3& a, const Box3& b, double margin) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (a.low[i] > b.high[i] + margin || b.low[i] > a.high[i] + margin) return false;
+    }
+    return true;
+}
+
+Status check_overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        for (std::size_t j = i + 1; j < solids.size(); ++j) {
+            if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid), 0)) continue;
+            Entities a;
+            Entities b;
+            occ::copy(volumes[i], a);
+            occ::copy(volumes[j], b);
+            const Entities common = BuildSolid::intersect(a, b);
+            const double overlap = mass(common);
+            if (!common.empty()) occ::remove(common, true);
+            if (overlap > 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) {
+                return input_error(
+                    "bodies \"{}\" and \"{}\" overlap in a volume of {:.6g} (in the file's unit, cubed); cut one from "
+                    "the other with difference",
+                    solids[i].name, solids[j].name, overlap);
+            }
+        }
+    }
+    return {};
+}
+
+/// Order of Gmsh's 10-node tet in ours: its last two mid-edge nodes are swapped.
+constexpr std::array<int, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+
+/// The tets of the current Gmsh model; `body_of_volume` gives regions.
+TetMesh collect_tets(const std::map<int, int>& body_of_volume, int order) {
+    std::vector<std::size_t> tags;
+    std::vector<double> coordinates;
+    std::vector<double> parameters;
+    gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
+    std::map<std::size_t, Vec3> position;
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+        position[tags[i]] = {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
+    }
+    TetMesh mesh;
+    mesh.order = order;
+    std::map<std::size_t, int> index;
+    const int type = order == 2 ? 11 : 4;
+    const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
+    for (const auto& [volume, body] : body_of_volume) {
+        std::vector<std::size_t> elements;
+        std::vector<std::size_t> nodes;
+        gmsh::model::mesh::getElementsByType(type, elements, nodes, volume);
+        for (std::size_t t = 0; t < elements.size(); ++t) {
+            for (std::size_t a = 0; a < width; ++a) {
+                const std::size_t tag = nodes[t * width + static_cast<std::size_t>(gmsh_order[a])];
+                const auto [entry, fresh] = index.try_emplace(tag, static_cast<int>(mesh.points.size()));
+                if (fresh) mesh.points.push_back(position[tag]);
+                mesh.nodes.push_back(entry->second);
+            }
+            mesh.region.push_back(body);
+        }
+    }
+    return mesh;
+}
+
+void set_size(double size) {
+    gmsh::option::setNumber("Mesh.MeshSizeMax", size);
+    gmsh::option::setNumber("Mesh.MeshSizeMin", 0);
+    gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
+    gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
+}
+
+/// Curved quadratic tets must keep this part of their straight Jacobian everywhere.
+constexpr double least_jacobian = 0.1;
+
+Result<TetMesh> generate(const std::map<int, int>& body_of_volume, int order) {
+    gmsh::model::mesh::generate(3);
+    if (order == 2) gmsh::model::mesh::setOrder(2);
+    TetMesh mesh = collect_tets(body_of_volume, order);
+    if (mesh.tet_count() == 0) return failure("no tetrahedra came out");
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto n = mesh.tet(t);
+        if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) > 0) continue;
+        const Vec3& p = mesh.points[n[0]];
+        return failure("a tetrahedron at ({:.6g}, {:.6g}, {:.6g}) came out flat; try another mesh size", p.x, p.y, p.z);
+    }
+    if (order == 2) straighten_folded_tets(mesh, least_jacobian);
+    return mesh;
+}
+
+double surface_area(const Entities& volumes) {
+    Entities faces;
+    gmsh::model::getBoundary(volumes, faces, false, false, false);
+    double sum = 0;
+    for (const auto& [dimension, tag] : faces) {
+        double one = 0;
+        occ::getMass(dimension, tag, one);
+        sum += one;
+    }
+    return sum;
+}
+
+/// Joins the solids where they touch, so that the pieces share their common faces; gives the solid of every volume.
+std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
+    Entities all;
+    std::vector<int> owner;
+    for (std::size_t s = 0; s < volumes.size(); ++s) {
+        all.insert(all.end(), volumes[s].begin(), volumes[s].end());
+        owner.insert(owner.end(), volumes[s].size(), static_cast<int>(s));
+    }
+    if (all.size() == 1) return {{all.front().second, 0}};
+    Entities out;
+    std::vector<Entities> parts;
+    occ::fragment({all.front()}, Entities(all.begin() + 1, all.end()), out, parts);
+    std::map<int, int> solid_of_volume;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        for (const auto& [dimension, tag] : parts[i]) {
+            if (dimension == 3) solid_of_volume[tag] = owner[i];
+        }
+    }
+    return solid_of_volume;
+}
+
+/// The surface as one discrete entity of the model.
+int add_triangles(const TriMesh& surface) {
+    const int entity = gmsh::model::addDiscreteEntity(2);
+    std::vector<std::size_t> tags(surface.points.size());
+    std::iota(tags.begin(), tags.end(), std::size_t{1});
+    std::vector<double> coordinates;
+    for (const Vec3& p : surface.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+    gmsh::model::mesh::addNodes(2, entity, tags, coordinates);
+    std::vector<std::size_t> elements(surface.triangles.size());
+    std::iota(elements.begin(), elements.end(), std::size_t{1});
+    std::vector<std::size_t> nodes;
+    for (const auto& triangle : surface.triangles) {
+        for (const int n : triangle) nodes.push_back(static_cast<std::size_t>(n) + 1);
+    }
+    gmsh::model::mesh::addElementsByType(entity, 2, elements, nodes);
+    return entity;
+}
+
+/// Meshes what the model's surfaces enclose.
+Result<TetMesh> mesh_enclosed(double size) {
+    Entities faces;
+    gmsh::model::getEntities(faces, 2);
+    std::vector<int> loop;
+    for (const auto& [dimension, tag] : faces) loop.push_back(tag);
+    const int volume = gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(loop)});
+    gmsh::model::geo::synchronize();
+    set_size(size);
+    return generate({{volume, 0}}, 1);
+}
+
+/// The triangles of one face of the model, appended to `surface`; `index` maps Gmsh's nodes to points.
+void append_face(int face, TriMesh& surface, std::map<std::size_t, int>& index) {
+    std::vector<std::size_t> elements;
+    std::vector<std::size_t> nodes;
+    gmsh::model::mesh::getElementsByType(2, elements, nodes, face);
+    for (std::size_t t = 0; t < elements.size(); ++t) {
+        std::array<int, 3> triangle{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [entry, fresh] = index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
+            triangle[k] = entry->second;
+            if (!fresh) continue;
+            std::vector<double> at;
+            std::vector<double> parameter;
+            gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
+            surface.points.push_back({at[0], at[1], at[2]});
+        }
+        surface.triangles.push_back(triangle);
+    }
+}
+
+/// 1 if triangle `t` on `face` looks out of the solid, -1 if into it, 0 if that cannot be told there. The question is
+/// put on the exact face: a chord's own middle lies on the same side of a curved face as both its neighbourhoods.
+int outward_vote(const Solid& solid, const TriMesh& surface, std::size_t t, int face, double step) {
+    const auto& [i, j, k] = surface.triangles[t];
+    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
+    const Vec3 middle = (a + b + c) / 3;
+    std::vector<double> on_face;
+    std::vector<double> parameter;
+    std::vector<double> normal;
+    gmsh::model::getClosestPoint(2, face, {middle.x, middle.y, middle.z}, on_face, parameter);
+    gmsh::model::getNormal(face, parameter, normal);
+    const Vec3 p{on_face[0], on_face[1], on_face[2]};
+    const Vec3 n{normal[0], normal[1], normal[2]};
+    const int along = static_cast<int>(contains(solid, p - step * n)) - static_cast<int>(contains(solid, p + step * n));
+    return dot(cross(b - a, c - a), n) > 0 ? along : -along;
+}
+
+/// The triangles on the faces of `volumes`, turned outwards face by face (Open CASCADE's faces look either way).
+TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
+    constexpr std::size_t voters = 9;
+    Entities faces;
+    gmsh::model::getBoundary(volumes, faces, true, false, false);
+    TriMesh surface;
+    std::map<std::size_t, int> index;
+    const double step = 1e-5 * bounds(solid).diagonal();
+    for (const auto& [dimension, tag] : faces) {
+        const std::size_t first = surface.triangles.size();
+        append_face(std::abs(tag), surface, index);
+        const std::size_t count = surface.triangles.size() - first;
+        int votes = 0;
+        for (std::size_t v = 0; v < std::min(voters, count); ++v)
+            votes += outward_vote(solid, surface, first + v * count / std::min(voters, count), std::abs(tag), step);
+        if (votes >= 0) continue;
+        for (std::size_t t = first; t < surface.triangles.size(); ++t)
+            std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    }
+    return surface;
+}
+
+Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, int refinement) {
+    return in_session("meshing", [&]() -> Result<TetMesh> {
+        std::vector<Entities> volumes;
+        double volume = 0;
+        for (const NamedSolid& named : solids) {
+            volumes.push_back(BuildSolid::build(named.solid));
+            const double one = mass(volumes.back());
+            if (!(one > 0)) return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+            volume += one;
+        }
+        if (Status status = check_overlaps(solids, volumes); !status) return tl::unexpected(status.error());
+        const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        occ::synchronize();
+        Entities joined;
+        for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
+        if (Status status = check_tet_count(volume, surface_area(joined), size); !status)
+            return tl::unexpected(status.error());
+        set_size(size);
+        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
+        gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
+        return generate(solid_of_volume, order);
+    });
+}
+
+}  // namespace
+
+Status check_tet_count(double volume, double area, double size) {
+    constexpr double per_cube = 8.5;  // regular tets of edge 1 in a cube of edge 1
+    constexpr double per_square =
+        2.3;  // regular triangles of edge 1 in a square of edge 1: thin bodies are all surface
+    constexpr double most = 20e6;
+    const auto estimate = [&](double edge) {
+        return per_cube * volume / (edge * edge * edge) + per_square * area / (edge * edge);
+    };
+    if (estimate(size) <= most) return {};
+    double enough = size;
+    while (estimate(enough) > most) enough *= 1.1;
+    return input_error(
+        "a mesh size of {:.6g} gives about {:.2g} tetrahedra, more than the {:.2g} allowed; take {:.3g} or more", size,
+        estimate(size), most, enough);
+}
+
+Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order) {
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, 1);
+    // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
+    for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
+        mesh = try_mesh_solids(solids, size, order, refinement);
+    return mesh;
+}
+
+Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg) {
+    const auto anew = [&]() -> Result<TetMesh> {
+        add_triangles(surface);
+        gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
+        gmsh::model::mesh::createGeometry();
+        return mesh_enclosed(size);
+    };
+    const auto as_drawn = [&]() -> Result<TetMesh> {
+        add_triangles(surface);
+        return mesh_enclosed(size);
+    };
+    Result<TetMesh> mesh = in_session("meshing", anew);
+    if (!mesh) mesh = in_session("meshing", as_drawn);
+    if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
+    return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
+                       mesh.error().message);
+}
+
+Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
+    return in_session("tessellating", [&]() -> Result<TriMesh> {
+        const Entities volumes = BuildSolid::build(solid);
+        if (volumes.empty()) return input_error("is empty: nothing is left of it");
+        occ::synchronize();
+        // Flat faces need no inner points; chords of an arc of radius r leave it by tolerance / 2 at 2 pi / sqrt(4
+        // tolerance / r) a turn. The other half is for triangles, which leave a ball farther than their edges do.
+        const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
+        const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / reach), 24.0, 2000.0);
+        set_size(4 * reach);
+        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", segments);
+        gmsh::model::mesh::generate(2);
+        TriMesh surface = collect_surface(solid, volumes);
+        const double exact = mass(volumes);
+        const double found = signed_volume(surface);
+        if (std::fabs(found - exact) > 4 * tolerance * surface_area(volumes) + 1e-6 * exact)
+            return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
+        return surface;
+    });
+}
+
+Result<double> solid_volume(const Solid& solid) {
+    return in_session("measuring", [&]() -> Result<double> { return mass(BuildSolid::build(solid)); });
+}
+
+}  // namespace pliant::mesh::kernel

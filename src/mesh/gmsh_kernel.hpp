@@ -1,0 +1,35 @@
+// What this folder asks of Gmsh and Open CASCADE; use mesher.hpp from outside. Gmsh keeps one global state: all calls
+// wait for each other, and each begins with an empty model.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/error.hpp"
+#include "mesh/solid.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "mesh/tri_mesh.hpp"
+
+namespace pliant::mesh::kernel {
+
+struct NamedSolid {
+    std::string name;
+    Solid solid;
+};
+
+/// One conforming mesh; region i is solid i, without region names. An empty solid, solids that overlap and a size that
+/// gives too many tets are errors.
+[[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order);
+
+/// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
+/// than `angle_deg` stay. A surface that cannot be parametrised keeps its own triangles.
+[[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg);
+
+/// See mesher.hpp.
+[[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
+[[nodiscard]] Result<double> solid_volume(const Solid& solid);
+
+/// Refuses a mesh of more than 20 million tets, by a body's volume and its surface's area.
+[[nodiscard]] Status check_tet_count(double volume, double area, double size);
+
+}  // namespace pliant::mesh::kernel

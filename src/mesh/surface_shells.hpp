@@ -1,0 +1,21 @@
+// The closed shells of a surface: outer ones, and the cavities inside them.
+#pragma once
+
+#include <vector>
+
+#include "core/error.hpp"
+#include "mesh/tri_mesh.hpp"
+
+namespace pliant::mesh {
+
+/// Solid pieces of a closed surface (precondition: check_closed()): each result is one outer shell with the cavities
+/// inside it, points compacted; in the order of the outer shells' first triangles. A cavity outside every outer shell,
+/// an outer shell inside the material of another, or more than 1000 shells are errors. Shells that cross each other
+/// are not looked for.
+[[nodiscard]] Result<std::vector<TriMesh>> solid_pieces(const TriMesh& surface);
+
+/// How often a closed surface winds around a point off the surface: 1 inside, 0 outside (sum of solid angles / 4 pi;
+/// van Oosterom and Strackee 1983). Cost: all triangles.
+[[nodiscard]] double winding_number(const TriMesh& surface, const Vec3& point);
+
+}  // namespace pliant::mesh
