@@ -1,6 +1,5 @@
 # Every library that Pliant links, from the Debian packages of packages.txt. Licences: LICENSES.md.
 find_package(Threads REQUIRED)
-find_package(OpenMP REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)

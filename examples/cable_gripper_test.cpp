@@ -58,7 +58,8 @@ TEST_CASE("the number of gaps is one parameter") {
 }
 
 TEST_CASE("pulled further than its gaps are wide, the gripper says so") {
-    const sim::Trajectory result = run({"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=50", "cable.flexor.target.length_ratio=0.5"});
+    const sim::Trajectory result =
+        run({"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=50", "cable.flexor.target.length_ratio=0.5"});
     REQUIRE(result.warnings.size() == 1);
     CHECK(result.warnings[0].find("have met") != std::string::npos);
 }

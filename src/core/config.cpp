@@ -58,6 +58,7 @@ Status Problems::status() const {
     if (lines_.empty()) return {};
     auto sorted = lines_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     // More than a screenful helps nobody: with so much wrong it is the wrong file, or one slip near the top.
     constexpr std::size_t most = 12;
     std::string text;

@@ -1,11 +1,16 @@
 #include "linalg/cholesky.hpp"
 
 #include <cholmod.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+
+// Of libgomp, which CHOLMOD is linked with; declared here because other compilers ship another OpenMP and its header.
+extern "C" {
+int omp_get_max_active_levels(void);
+void omp_set_max_active_levels(int);
+}
 
 namespace pliant::linalg {
 

@@ -67,6 +67,8 @@ std::string heading(const Simulation& s) {
         html_escaped(result.solver.empty() ? "the solver" : result.solver), grouped(s.mesh.points.size()),
         grouped(s.mesh.tet_count()), s.mesh.order == 2 ? "quadratic" : "linear", seconds(result.solve_s));
     if (!result.message.empty()) out += "<p class=\"message\">" + html_escaped(result.message) + "</p>\n";
+    for (const std::string& warning : result.warnings)
+        out += "<p class=\"message\">" + html_escaped(warning) + "</p>\n";
     return out;
 }
 

@@ -47,6 +47,7 @@ TEST_CASE("names from a robot file are text, whatever they hold") {
         step.supports[0].name = evil;
     }
     robot.result.message = evil;
+    robot.result.warnings = {evil};
     Simulation s = robot.simulation();
     s.robot = evil;
     s.materials[0].name = s.materials[0].law = s.materials[0].resin = evil;

@@ -59,7 +59,7 @@ std::string summary_json(const Simulation& s, int indent) {
                 {"nodes", s.mesh.points.size()}, {"tets", s.mesh.tet_count()},
                 {"order", s.mesh.order},         {"solver", s.result.solver},
                 {"tolerance", s.tolerance},      {"converged", s.result.converged},
-                {"message", s.result.message}};
+                {"message", s.result.message},   {"warnings", s.result.warnings}};
     out["rest"] = step_json(s.result.steps.front());
     out["steps"] = Json::array();
     for (std::size_t i = 1; i < s.result.steps.size(); ++i) out["steps"].push_back(step_json(s.result.steps[i]));

@@ -23,6 +23,7 @@ TEST_CASE("summary.json has the keys and values that the design promises") {
     CHECK(j["solver"] == "newton");
     CHECK(j["converged"] == true);
     CHECK(j["message"] == "");
+    CHECK(j["warnings"].empty());
     CHECK(j["peak_memory_MB"] == 123.5);
     CHECK(j["timing"]["setup_ms"] == 250);
     CHECK(j["timing"]["solve_ms"] == 500);

@@ -1,0 +1,9 @@
+// Robot files: TOML, parameters and formulas, shapes, units; files that they name do not exist.
+#include "robot/robot.hpp"
+
+#include "input.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    (void)pliant::robot::parse_robot(as_text(data, size), "fuzz.toml", {"program.steps=2"});
+    return 0;
+}

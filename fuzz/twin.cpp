@@ -1,0 +1,28 @@
+// The virtual printer under arbitrary bytes on its wire, for an hour of its own time.
+#include "twin/twin.hpp"
+
+#include <algorithm>
+
+#include "input.hpp"
+#include "machine/printer.hpp"
+
+namespace {
+
+const pliant::machine::Printer& printer() {
+    static const auto loaded = pliant::machine::load_printer("examples/printers/tower.toml");
+    if (!loaded) __builtin_trap();  // run from the root of the repository
+    return *loaded;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    pliant::twin::Twin twin(printer());
+    for (std::size_t at = 0; at < size; at += 64) {
+        twin.receive(as_text(data + at, std::min<std::size_t>(64, size - at)));
+        twin.advance_to(twin.now() + 10);
+        (void)twin.take_output();
+    }
+    twin.advance_to(twin.now() + 3600);
+    return 0;
+}
