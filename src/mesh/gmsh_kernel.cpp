@@ -64,6 +64,13 @@ auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
     }
 }
 
+bool boxes_meet(const Box3& a, const Box3& b, double margin) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (a.low[i] > b.high[i] + margin || b.low[i] > a.high[i] + margin) return false;
+    }
+    return true;
+}
+
 /// Turns an expression into Open CASCADE volumes.
 struct BuildSolid {
     Entities operator()(const BoxSolid& s) const {
@@ -138,11 +145,21 @@ struct BuildSolid {
             occ::translate(copy, k * s.step.x, k * s.step.y, k * s.step.z);
             copies.insert(copies.end(), copy.begin(), copy.end());
         }
-        if (copies.empty()) return first;
+        if (copies.empty() || stands_apart(s)) {
+            copies.insert(copies.begin(), first.begin(), first.end());
+            return copies;
+        }
         Entities out;
         std::vector<Entities> map;
         occ::fuse(first, copies, out, map);
         return out;
+    }
+
+    /// True if the copies surely do not meet: joining many of them takes long, minutes for 1000.
+    static bool stands_apart(const RepeatedSolid& s) {
+        const Box3 box = bounds(s.of);
+        const double gap = 1e-6 * box.diagonal();
+        return !boxes_meet(box, {box.low + s.step, box.high + s.step}, gap);
     }
 
     static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
@@ -163,13 +180,6 @@ double mass(const Entities& volumes) {
         sum += one;
     }
     return sum;
-}
-
-bool boxes_meet(const Box3& a, const Box3& b, double margin) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (a.low[i] > b.high[i] + margin || b.low[i] > a.high[i] + margin) return false;
-    }
-    return true;
 }
 
 Status check_overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {

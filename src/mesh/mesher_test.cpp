@@ -106,6 +106,17 @@ TEST_CASE("rotation, translation and union by the kernel agree with membership")
     }
 }
 
+TEST_CASE("repeated copies are united whether they overlap, touch or stand apart") {
+    for (const auto& [step, exact] : {std::pair(0.5, 3.5), std::pair(1.0, 6.0), std::pair(1.5, 6.0)}) {
+        const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 6, {step, 0, 0}});
+        CHECK(*solid_volume(row) == doctest::Approx(exact));
+        const Solid rest = without(box({-1, -1, -1}, {11, 2, 2}), row);
+        CHECK(*solid_volume(rest) == doctest::Approx(108 - exact));
+    }
+    const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 3, {1, 0, 0}});
+    CHECK(volume(mesh_of({{"row", row}}, 1)) == doctest::Approx(3));
+}
+
 TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     const Result<TriMesh> bar = tessellate(notched_bar(6), 0.01);
     REQUIRE_MESSAGE(bar, (bar ? "" : bar.error().message));

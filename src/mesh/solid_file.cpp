@@ -16,6 +16,8 @@ using config::Value;
 constexpr int max_depth = 32;
 constexpr int max_copies = 1000;
 constexpr int most_shapes = 20000;
+constexpr double most_primitives = 2000;  // Open CASCADE takes minutes for so many on one face
+constexpr double farthest = 1e9;          // beyond, lengths lose their fine digits
 
 Solid make(decltype(SolidNode::shape) shape) {
     return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
@@ -26,15 +28,50 @@ Solid placeholder() {
     return make(BoxSolid{{0, 0, 0}, {1, 1, 1}});
 }
 
-bool segments_cross(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c,
-                    const std::array<double, 2>& d) {
-    const auto side = [](const auto& p, const auto& q, const auto& r) {
-        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-    };
-    return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
+using Corner = std::array<double, 2>;
+
+/// Twice the area of the triangle p, q, r; positive if r lies to the left of p -> q.
+double side(const Corner& p, const Corner& q, const Corner& r) {
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-double signed_area(const std::vector<std::array<double, 2>>& polygon) {
+bool on_segment(const Corner& p, const Corner& q, const Corner& r) {
+    return side(p, q, r) == 0 && std::min(p[0], q[0]) <= r[0] && r[0] <= std::max(p[0], q[0]) &&
+           std::min(p[1], q[1]) <= r[1] && r[1] <= std::max(p[1], q[1]);
+}
+
+/// True if the segments a-b and c-d cross or touch.
+bool segments_meet(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
+    if (on_segment(a, b, c) || on_segment(a, b, d) || on_segment(c, d, a) || on_segment(c, d, b)) return true;
+    const auto apart = [](double x, double y) { return (x > 0 && y > 0) || (x < 0 && y < 0); };
+    return !apart(side(a, b, c), side(a, b, d)) && !apart(side(c, d, a), side(c, d, b));
+}
+
+/// What keeps the polygon from being the simple outline of an area, or "".
+std::string polygon_fault(const std::vector<Corner>& polygon) {
+    const std::size_t n = polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (polygon[i] == polygon[(i + 1) % n]) return fmt::format("corner {} is repeated", i + 1);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        const Corner& a = polygon[i];
+        const Corner& b = polygon[(i + 1) % n];
+        const Corner& c = polygon[(i + 2) % n];
+        const double ahead = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]);
+        if (side(a, b, c) == 0 && ahead < 0)
+            return fmt::format("the polygon turns back on itself at corner {}", (i + 1) % n + 1);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 2; j < n; ++j) {
+            if ((j + 1) % n == i) continue;
+            if (segments_meet(polygon[i], polygon[(i + 1) % n], polygon[j], polygon[(j + 1) % n]))
+                return fmt::format("the polygon crosses or touches itself: edge {} and edge {}", i + 1, j + 1);
+        }
+    }
+    return "";
+}
+
+double signed_area(const std::vector<Corner>& polygon) {
     double sum = 0;
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
         sum += polygon[j][0] * polygon[i][1] - polygon[i][0] * polygon[j][1];
@@ -47,6 +84,7 @@ public:
     SolidReader(const NamedShapes& shapes, Problems& problems) : shapes_(shapes), problems_(problems) {}
 
     Solid read(const Value& value, const std::string& path, int depth) {
+        if (given_up_) return placeholder();
         if (!std::holds_alternative<config::Table>(value.data)) {
             problems_.add(value.line, path, "a shape is a table such as { box = [[0,0,0],[1,1,1]] }");
             return placeholder();
@@ -69,6 +107,7 @@ public:
             return placeholder();
         }
         if (depth > max_depth) {
+            given_up_ = true;  // one message says it all; a doubling shape would give thousands
             reader.problem("", "shapes nested too deep, or a shape that uses itself");
             return placeholder();
         }
@@ -159,29 +198,19 @@ private:
     }
 
     static Solid checked_prism(Reader& reader, PrismSolid prism) {
-        const std::size_t n = prism.polygon.size();
-        if (n > 2000) {
+        if (prism.polygon.size() > 2000) {
             reader.problem("prism", "has more than 2000 corners; draw such a part as STL or STEP");
             return placeholder();
         }
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = i + 2; j < n; ++j) {
-                if (!segments_cross(prism.polygon[i], prism.polygon[(i + 1) % n], prism.polygon[j],
-                                    prism.polygon[(j + 1) % n]))
-                    continue;
-                reader.problem("prism", fmt::format("the polygon crosses itself: edge {} and edge {}", i + 1, j + 1));
-                return placeholder();
-            }
+        if (const std::string fault = polygon_fault(prism.polygon); !fault.empty()) {
+            reader.problem("prism", fault);
+            return placeholder();
         }
         if (!(prism.to > prism.from)) {
             if (reader.has("from") && reader.has("to")) reader.problem("to", "must be above \"from\"");
             return placeholder();
         }
         const double area = signed_area(prism.polygon);
-        if (area == 0) {
-            reader.problem("prism", "the polygon has no area");
-            return placeholder();
-        }
         if (area < 0) std::reverse(prism.polygon.begin(), prism.polygon.end());
         return make(std::move(prism));
     }
@@ -237,11 +266,11 @@ private:
         CombinedSolid solid{operation, {}};
         for (std::size_t i = 0; i < parts->size(); ++i) {
             // A list in a list doubles with each level: the budget stops what nesting alone would not.
-            if (++read_shapes_ > most_shapes) {
-                if (read_shapes_ == most_shapes + 1)
-                    reader.problem(kind, fmt::format("too many shapes: more than {}", most_shapes));
-                break;
+            if (++read_shapes_ > most_shapes && !given_up_) {
+                given_up_ = true;
+                reader.problem(kind, fmt::format("too many shapes: more than {}", most_shapes));
             }
+            if (given_up_) break;
             solid.parts.push_back(read((*parts)[i], fmt::format("{}.{}[{}]", reader.path(), kind, i), depth + 1));
         }
         if (solid.parts.empty()) return placeholder();
@@ -251,13 +280,51 @@ private:
     const NamedShapes& shapes_;
     Problems& problems_;
     int read_shapes_ = 0;
+    bool given_up_ = false;
 };
+
+/// Primitive shapes after all copies are made; stops counting soon after `most`.
+double primitive_count(const Solid& solid, double most);
+
+struct PrimitiveCount {
+    double most;
+    double operator()(const CombinedSolid& s) const {
+        double sum = 0;
+        for (const Solid& part : s.parts) {
+            if (sum <= most) sum += primitive_count(part, most);
+        }
+        return sum;
+    }
+    double operator()(const TranslatedSolid& s) const { return primitive_count(s.of, most); }
+    double operator()(const RotatedSolid& s) const { return primitive_count(s.of, most); }
+    double operator()(const RepeatedSolid& s) const { return s.count * primitive_count(s.of, most); }
+    template <class Primitive>
+    double operator()(const Primitive&) const {
+        return 1;
+    }
+};
+
+double primitive_count(const Solid& solid, double most) {
+    return std::visit(PrimitiveCount{most}, solid->shape);
+}
 
 }  // namespace
 
 Solid read_solid(const config::Value& value, const std::string& path, const NamedShapes& shapes,
                  config::Problems& problems) {
-    return SolidReader(shapes, problems).read(value, path, 0);
+    Solid solid = SolidReader(shapes, problems).read(value, path, 0);
+    if (const double count = primitive_count(solid, most_primitives); count > most_primitives) {
+        problems.add(value.line, path,
+                     fmt::format("repeats come to {} shapes in all; {} are possible", count, most_primitives));
+        return placeholder();
+    }
+    const Box3 box = bounds(solid);
+    for (const Vec3& corner : {box.low, box.high}) {
+        if (is_finite(corner) && norm(corner) <= farthest) continue;
+        problems.add(value.line, path, fmt::format("reaches beyond {:.0e} length units", farthest));
+        return placeholder();
+    }
+    return solid;
 }
 
 }  // namespace pliant::mesh

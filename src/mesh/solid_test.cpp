@@ -70,10 +70,73 @@ TEST_CASE("a shape that uses itself, or that doubles at every level, ends in a m
         read("{ use = \"a\" }", solid, "[shape.a]\nunion = [{ use = \"a\" }, { use = \"a\" }]\n").find("uses itself") !=
         std::string::npos);
     std::string shapes = "[shape.s0]\nbox = [[0,0,0],[1,1,1]]\n";
-    for (int i = 1; i < 30; ++i) {
+    for (int i = 1; i < 16; ++i) {
         const std::string before = std::to_string(i - 1);
         shapes += "[shape.s" + std::to_string(i) + "]\nunion = [{ use = \"s" + before + "\" }, { use = \"s" + before +
                   "\" }]\n";
     }
-    CHECK(read("{ use = \"s29\" }", solid, shapes).find("too many shapes") != std::string::npos);
+    CHECK(read("{ use = \"s15\" }", solid, shapes).find("too many shapes") != std::string::npos);
+}
+
+TEST_CASE("a shape that makes no sense is a problem with its line and key") {
+    struct Row {
+        const char *text, *problem;
+    };
+    for (const Row& row : {
+             Row{"{ box = [[0,0,0],[1,0,1]] }", "r.toml:1: geometry.box: the second corner must be above"},
+             Row{"{ box = [[0,0,0]] }", "needs two corners"},
+             Row{"{ sphere = { center = [0,0,0], radius = 0 } }", "geometry.sphere.radius: must be above zero"},
+             Row{"{ sphere = { center = [0,0,0], radius = 1, colour = 2 } }", "colour"},
+             Row{"{ cylinder = { from = [0,0,0], to = [0,0,0], radius = 1 } }", "is the same point as \"from\""},
+             Row{"{ cylinder = { from = [0,0,0], to = [0,0,1], radius = -1 } }", "must be above zero"},
+             Row{"{ prism = [[0,0],[1,0]], from = 0, to = 1 }", "at least three corners"},
+             Row{"{ prism = [[0,0],[1,0],[1]], from = 0, to = 1 }", "at least three corners"},
+             Row{"{ prism = [[0,0],[1,0],[0,1]], from = 1, to = 1 }", "geometry.to: must be above \"from\""},
+             Row{"{ prism = [[0,0],[1,0],[0,1]], plane = \"zx\", from = 0, to = 1 }", "geometry.plane"},
+             Row{"{ prism = [[0,0],[2,2],[2,0],[0,2]], from = 0, to = 1 }",
+                 "crosses or touches itself: edge 1 and edge 3"},
+             Row{"{ prism = [[0,0],[4,0],[4,4],[2,0],[0,4]], from = 0, to = 1 }", "crosses or touches itself"},
+             Row{"{ prism = [[0,0],[1,0],[1,0],[0,1]], from = 0, to = 1 }", "corner 2 is repeated"},
+             Row{"{ prism = [[0,0],[1,0],[0,1],[0,0]], from = 0, to = 1 }", "corner 4 is repeated"},
+             Row{"{ prism = [[0,0],[1,0],[2,0]], from = 0, to = 1 }", "turns back on itself"},
+             Row{"{ union = [] }", "geometry.union: needs a list of shapes"},
+             Row{"{ union = [{ sphere = { center = [0,0,0], radius = -1 } }] }", "geometry.union[0].sphere.radius"},
+             Row{"{ translate = [1,0,0] }", "\"of\" is missing"},
+             Row{"{ rotate = 90, axis = [0,0,0], of = { box = [[0,0,0],[1,1,1]] } }",
+                 "geometry.axis: must not be zero"},
+             Row{"{ repeat = 0, step = [1,0,0], of = { box = [[0,0,0],[1,1,1]] } }", "1 to 1000 are possible"},
+             Row{"{ repeat = 1001, step = [1,0,0], of = { box = [[0,0,0],[1,1,1]] } }", "1 to 1000 are possible"},
+             Row{"{ bx = [[0,0,0],[1,1,1]] }", "did you mean \"box\"?"},
+             Row{"{ box = [[0,0,0],[1,1,1]], sphere = { center = [0,0,0], radius = 1 } }", "two shapes at once"},
+             Row{"{ box = [[0,0,0],[1,1,1e300]] }", "reaches beyond 1e+09"},
+             Row{"3", "a shape is a table"},
+         }) {
+        CAPTURE(row.text);
+        Solid solid;
+        const std::string problem = read(row.text, solid);
+        CAPTURE(problem);
+        CHECK(problem.find(row.problem) != std::string::npos);
+        CHECK(solid != nullptr);
+    }
+}
+
+TEST_CASE("a name that is missing suggests the nearest") {
+    Solid solid;
+    CHECK(read("{ use = \"cub\" }", solid, "[shape.cube]\nbox = [[0,0,0],[1,1,1]]\n").find("did you mean \"cube\"?") !=
+          std::string::npos);
+}
+
+TEST_CASE("outlines that only look odd are fine") {
+    Solid solid;
+    CHECK(read("{ prism = [[0,0],[1,0],[2,0],[2,1],[0,1]], from = 0, to = 1 }", solid).empty());  // corner on an edge
+    CHECK(read("{ prism = [[0,0],[0,1],[1,1],[1,0]], from = 0, to = 1 }", solid).empty());        // clockwise
+    CHECK(read("{ prism = [[0,0],[4,0],[4,4],[2,1],[0,4]], from = 0, to = 1 }", solid).empty());  // not convex
+}
+
+TEST_CASE("copies of copies of copies are counted before they are made") {
+    Solid solid;
+    const std::string thousand = "{ repeat = 1000, step = [2,0,0], of = ";
+    CHECK(read(thousand + "{ box = [[0,0,0],[1,1,1]] } }", solid).empty());
+    CHECK(read(thousand + thousand + thousand + "{ box = [[0,0,0],[1,1,1]] } } } }", solid)
+              .find("repeats come to 1000000000 shapes") != std::string::npos);
 }
