@@ -136,11 +136,11 @@ private:
     Result<std::vector<double>> read_numbers(std::size_t count, const std::string& type) {
         const std::size_t width = width_of(type);
         if (width == 0) return error("unknown data type \"" + type.substr(0, 40) + "\"");
+        if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
+        if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
         const std::size_t left = bytes_.size() - at_;
         std::vector<double> numbers;
         if (binary_) {
-            if (at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
-            if (at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
             if (count > left / width) return error(fmt::format("{} values are announced, the file ends before", count));
             numbers.reserve(count);
             for (std::size_t i = 0; i < count; ++i, at_ += width) numbers.push_back(decode(type, width, at_));
