@@ -76,7 +76,8 @@ void add_mesh(CLI::App& app, int& status) {
     command->add_option("files", options->files, "a robot file with -o, or mesh files (.vtk, .stl, ...)")->required();
     command->add_option("-o,--output", options->output_file, "mesh file to write: .vtk or .vtu, in the robot's unit");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
-        ->type_name("KEY=VALUE");
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant mesh examples/cable_gripper/gripper.toml -o gripper.vtk");
     command->callback([options, &status] {

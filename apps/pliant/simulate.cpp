@@ -117,7 +117,8 @@ void add_simulate(CLI::App& app, int& status) {
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")
-        ->type_name("KEY=VALUE");
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant simulate examples/cable_gripper/gripper.toml -o out --set mesh.order=1");
     command->callback([options, &status] {

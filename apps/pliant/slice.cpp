@@ -187,7 +187,8 @@ void add_slice(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();
     command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
-        ->type_name("KEY=VALUE");
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     add_output_options(*command, options->output, false);
     command->footer(
         "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "

@@ -45,8 +45,8 @@ struct Document {
 [[nodiscard]] Result<Document> load(const std::filesystem::path& file);
 
 /// `KEY=VALUE` of the command line: KEY is a dotted path (`cable.flexor.target.length_ratio`; entries of an array of
-/// tables are found by their `name` or by their index from 0), VALUE is TOML or, failing that, plain text. The last
-/// part of the path may be new.
+/// tables are found by their `name` or by their index from 0), VALUE is TOML or, failing that, plain text. Tables
+/// and keys that are not there yet are added.
 [[nodiscard]] Status set(Document& document, std::string_view assignment);
 
 /// Evaluates `[parameters]` in order (numbers, or text "= formula" over earlier ones), removes that table, and replaces

@@ -205,8 +205,10 @@ Status set(Document& document, std::string_view assignment) {
         const std::string_view part = key.substr(begin, end - begin);
         Value* child = find_child(*node, part);
         if (child == nullptr) {
+            // A table that the file leaves out may still be meant, as in program.steps; a slip shows when nobody reads
+            // it.
             auto* table = std::get_if<Table>(&node->data);
-            if (table == nullptr || end != key.size() || part.empty()) {
+            if (table == nullptr || part.empty()) {
                 const auto names = child_names(*node);
                 const std::string near = nearest_name(part, names);
                 return input_error("--set {}: there is no \"{}\" in {}{}", key, part, document.file.string(),

@@ -108,6 +108,7 @@ TEST_CASE("--set changes a value anywhere, and explains what it cannot find") {
     CHECK(root.tables("cable").at(0).table("target").number("length_ratio") == 0.9);
     CHECK(set(document, "cable.flexxor.target=1").error().message.find("did you mean \"flexor\"?") !=
           std::string::npos);
+    REQUIRE(set(document, "new.table.key=1"));
     CHECK_FALSE(set(document, "steps"));
     CHECK_FALSE(set(document, "program..steps=1"));
 }

@@ -41,7 +41,7 @@ Surface triangles_on_nodes(const mesh::TetMesh& mesh, std::span<const int> regio
     static constexpr std::array<std::array<int, 3>, 4> quarters = {{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
     const auto [solid, origin] = solid_part(mesh, region_material);
     Surface surface;
-    const auto add = [&](std::array<int, 3> triangle, int tet) {
+    const auto add = [&, &solid = solid, &origin = origin](std::array<int, 3> triangle, int tet) {
         surface.triangles.push_back(triangle);
         surface.tet.push_back(origin[static_cast<std::size_t>(tet)]);
         const int region = solid.region[static_cast<std::size_t>(tet)];

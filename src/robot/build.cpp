@@ -53,7 +53,11 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
     settings.order = robot.mesh.order;
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     if (!mesh) {
-        const int line = robot.bodies.empty() ? 0 : robot.bodies.front().line;
+        // The mesher names bodies; the line is that of the last one it names.
+        int line = robot.bodies.front().line;
+        for (const BodySpec& body : robot.bodies) {
+            if (mesh.error().message.find('"' + body.name + '"') != std::string::npos) line = body.line;
+        }
         return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
     }
     return mesh;

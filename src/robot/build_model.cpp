@@ -224,7 +224,8 @@ private:
             if (!attachment) {
                 const bool end = k == 0 || k + 1 == points.size();
                 problem(spec.line, "cable", spec.name,
-                        fmt::format("point {} at {} lies outside every body{}", k + 1, show(points[k]),
+                        fmt::format("{} {} at {} lies outside every body{}",
+                                    spec.guides_at_crossings ? "guide point" : "point", k + 1, show(points[k]),
                                     end ? "; anchor = \"first\" or \"last\" fixes an end in space" : ""));
                 continue;
             }

@@ -45,7 +45,7 @@ struct BodySpec {
 };
 
 struct MeshSpec {
-    double size = 0;  ///< in length units; 0: a twelfth of the longest side of the bodies' bounding box
+    double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
     std::optional<std::filesystem::path> file;
     int order = 2;
     int line = 0;

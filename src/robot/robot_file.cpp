@@ -59,7 +59,9 @@ std::optional<std::array<double, 3>> read_colour(Reader& reader) {
 void read_law(Reader& reader, MaterialSpec& material) {
     const std::string law = reader.choice("law", {"neo-hookean", "shape-blend", "st-venant-kirchhoff"}, "neo-hookean");
     const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
-    const double E = material.youngs_modulus_Pa = reader.quantity("youngs_modulus", Dimension::pressure);
+    const double E = material.youngs_modulus_Pa = reader.has("youngs_modulus")
+                                                      ? reader.quantity("youngs_modulus", Dimension::pressure, 1)
+                                                      : reader.quantity("youngs_modulus", Dimension::pressure);
     if (!(nu > -1 && nu < 0.5)) {
         reader.problem("poisson_ratio",
                        fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
@@ -166,7 +168,8 @@ void read_mesh(Reader& root, Context& context) {
         need_file(reader, "file", *mesh.file);
         if (reader.has("size")) reader.problem("size", "has no meaning beside a mesh file");
     }
-    mesh.size = reader.quantity("size", Dimension::length, 0) / context.robot.unit_m;
+    if (reader.has("size")) mesh.size = reader.quantity("size", Dimension::length, 1) / context.robot.unit_m;
+    (void)reader.raw("size");
     if (reader.has("size") && !(mesh.size > 0)) reader.problem("size", "must be above zero");
     reader.finish();
 }

@@ -110,6 +110,13 @@ TEST_CASE("--set changes the number of gaps and the target") {
     CHECK(robot->cables[0].target.value == 0.9);
 }
 
+TEST_CASE("--set reaches tables that the file leaves out") {
+    const Result<Robot> robot = parse_robot(with("[program]\nsteps = 3\n", ""), "bar.toml", {"program.steps=7"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.steps == 7);
+    CHECK(problem(good, {"progam.steps=7"}) == "bar.toml: progam: nobody reads this key; did you mean \"program\"?");
+}
+
 TEST_CASE("slips in the text are named with their line") {
     check_problem(with("geometry = { box", "geometri = { box"),
                   "bar.toml:23: body[1].geometri: nobody reads this key; did you mean \"geometry\"?");
@@ -135,7 +142,7 @@ TEST_CASE("shapes that make no sense are refused") {
                   "radius: must be above zero");
     check_problem(
         with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ prism = [[0,0],[1,1],[1,0],[0,1]], from = 0, to = 1 }"),
-        "crosses itself");
+        "crosses or touches itself");
     check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }",
                        "{ difference = [{ box = [[20,0,0],[40,10,10]] }, { box = [[0,-1,-1],[50,11,11]] }] }"),
                   "empty");
@@ -144,7 +151,8 @@ TEST_CASE("shapes that make no sense are refused") {
 }
 
 TEST_CASE("what does not fit the robot is refused with its line") {
-    check_problem(with("geometry = { box = [[20,", "geometry = { box = [[18,"), "overlap in a volume of 200");
+    check_problem(with("geometry = { box = [[20,", "geometry = { box = [[18,"),
+                  "bar.toml:20: body: bodies \"left\" and \"right\" overlap in a volume of 200");
     check_problem(with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40, 5, 30]]"),
                   "lies outside every body");
     check_problem(with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[-9, 0, 0], [-5, 10, 10]]"),

@@ -134,6 +134,29 @@ TEST_CASE("every solver finds the same bent bar under a cable, and no step turns
     CHECK(tensions[0] > tensions[1]);  // linear tets lock
 }
 
+TEST_CASE("the thesis' shape blend bends under a cable and under a load, with both of its solvers") {
+    std::vector<double> tensions;
+    for (const Solver solver : {Solver::quasi_newton, Solver::local_global}) {
+        for (const int order : {1, 2}) {
+            Description d = bar(order, material::shape_blend(1e6, 0.3));
+            d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
+            const Trajectory pulled = solve(d, {.steps = 4, .tolerance = 1e-4, .solver = solver});
+            CAPTURE(pulled.solver);
+            REQUIRE_MESSAGE(pulled.converged, pulled.message);
+            tensions.push_back(pulled.steps.back().cables[0].tension_N);
+            d.cables.clear();
+            const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+            d.loads = {
+                {"tip", tip, std::vector<double>(tip.size(), 1.0 / static_cast<double>(tip.size())), {0, 0, 0.2}}};
+            const Trajectory pushed = solve(d, {.steps = 2, .tolerance = 1e-4, .solver = solver});
+            REQUIRE_MESSAGE(pushed.converged, pushed.message);
+            CHECK(pushed.steps.back().markers[0].position_m.z > 0.5 * side);
+        }
+    }
+    CHECK(tensions[2] == doctest::Approx(tensions[0]).epsilon(1e-2));
+    CHECK(tensions[3] == doctest::Approx(tensions[1]).epsilon(1e-2));
+}
+
 TEST_CASE("a given tension and the length it leads to belong together") {
     Description by_length = bar(2);
     by_length.cables = {flexor(by_length.mesh, {CableTarget::Kind::length_ratio, 0.92})};

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "sim/elements.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 /// The excess length may be no larger than this share of the tolerance: the tension follows it closely.
 constexpr double excess_share = 0.01;
 constexpr double smallest_step = 1e-7;
+constexpr std::size_t error_memory = 10;
 
 struct Direction {
     Eigen::VectorXd dx;       ///< (3 free)
@@ -149,12 +151,20 @@ private:
             const bool lower = conservative_ && slope < 0 &&
                                merit.value_J <= start.value_J + 1e-4 * alpha * slope + system_.energy_rounding_J();
             Evaluation evaluation = system_.evaluate(next, controls_);
-            const bool nearer = evaluation.error() < (conservative_ ? 0.5 : 1 - 1e-3 * alpha) * evaluation_.error();
+            const bool nearer = conservative_ ? evaluation.error() < 0.5 * evaluation_.error()
+                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
             if (!lower && !nearer) continue;
             accept(std::move(next), std::move(evaluation), direction, alpha);
             return true;
         }
         return false;
+    }
+
+    /// Without an energy only the error can guide. It is a ratio of forces and rises where a cable begins to pull, so
+    /// it may rise for a while: not above the largest of the last steps, nor at first above what any loaded body has
+    /// (the non-monotone search of Grippo, Lampariello and Lucidi 1986).
+    [[nodiscard]] double allowed_error() const {
+        return errors_.size() < error_memory ? 2 : *std::max_element(errors_.begin(), errors_.end());
     }
 
     /// A metre of excess must cost more than any tension that holds it, or the merit would prefer long cables.
@@ -171,6 +181,8 @@ private:
         curvature_.learn(alpha * direction.dx, system_.restrict_to_free(evaluation.out_of_balance - old_force));
         state_ = std::move(next);
         evaluation_ = std::move(evaluation);
+        errors_.push_back(evaluation_.error());
+        if (errors_.size() > error_memory) errors_.pop_front();
     }
 
     /// Out-of-balance force of the present positions at other tensions: only the cables' part changes.
@@ -192,6 +204,7 @@ private:
     std::vector<Eigen::Index> driven_;  ///< cables driven by length
     bool conservative_ = true;
     double price_ = 0;
+    std::deque<double> errors_;  ///< of the last steps
 };
 
 }  // namespace
