@@ -17,6 +17,7 @@ struct MeshReport {
     std::vector<double> region_volumes;  ///< in the mesh's unit, cubed
     double worst_quality = 0;            ///< 6 sqrt(2) V / Lmax^3: 1 for a regular tet, 0 for a flat one
     double median_quality = 0;
+    double min_dihedral_deg = 0;  ///< smallest angle between two faces of a tet: 70.5 for a regular tet
 };
 
 [[nodiscard]] MeshReport report_on(const TetMesh& mesh);

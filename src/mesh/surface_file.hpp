@@ -16,11 +16,23 @@ struct SurfaceFile {
     std::vector<std::string> warnings;  ///< what was odd but could be read
 };
 
-/// STL, ASCII or binary. Errors name the file and the line, or the facet.
+/// STL, OBJ or PLY. Errors name the file and the line, or the facet. Memory follows what the file holds, not what it
+/// claims.
 [[nodiscard]] Result<SurfaceFile> read_surface(const std::filesystem::path& path);
+[[nodiscard]] Result<SurfaceFile> parse_surface(std::string_view bytes, const std::string& name);
+
+/// ASCII or binary.
 [[nodiscard]] Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name);
 
-/// Binary STL with `points * factor`; coordinates are stored as 32-bit floats.
+/// Vertices and faces of a Wavefront OBJ file; all else in it is passed over. Faces of more than three corners are cut
+/// into triangles from their first corner and so should be convex.
+[[nodiscard]] Result<SurfaceFile> parse_obj(std::string_view bytes, const std::string& name);
+
+/// PLY, ASCII or binary of either byte order: element "vertex" with x, y, z and element "face" with vertex_indices (or
+/// vertex_index). Faces as for parse_obj().
+[[nodiscard]] Result<SurfaceFile> parse_ply(std::string_view bytes, const std::string& name);
+
+/// Binary STL; coordinates are stored as 32-bit floats.
 [[nodiscard]] Status write_stl(const std::filesystem::path& path, const TriMesh& mesh);
 
 }  // namespace pliant::mesh

@@ -2,378 +2,58 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <map>
-#include <optional>
-#include <set>
-
 #include "core/files.hpp"
 #include "mesh/vtu_writer.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-constexpr int vtk_tetra = 10;
-constexpr int vtk_quadratic_tetra = 24;
+constexpr std::string_view vtk_mark = "# vtk";
+constexpr std::string_view msh_mark = "$MeshFormat";
 
-/// Reads a legacy VTK file front to back: words, and arrays that are text or big-endian bytes.
-class VtkReader {
-public:
-    VtkReader(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
+bool looks_like_vtu(std::string_view bytes) {
+    const std::string_view head = bytes.substr(0, 4096);
+    return head.find("<VTKFile") != std::string_view::npos;
+}
 
-    Result<TetMesh> read() {
-        if (Status status = read_header(); !status) return tl::unexpected(status.error());
-        for (std::string word = next_word(); !word.empty(); word = next_word()) {
-            Status status;
-            if (word == "POINTS")
-                status = read_points();
-            else if (word == "CELLS")
-                status = read_cells();
-            else if (word == "CELL_TYPES")
-                status = read_types();
-            else if (word == "CELL_DATA")
-                data_of_cells_ = true, status = read_count(data_count_);
-            else if (word == "POINT_DATA")
-                data_of_cells_ = false, status = read_count(data_count_);
-            else if (word == "SCALARS")
-                status = read_scalars();
-            else if (word == "FIELD")
-                status = read_field();
-            else if (word == "VECTORS" || word == "NORMALS")
-                status = skip_array(3);
-            else if (word == "TENSORS")
-                status = skip_array(9);
-            else if (word == "METADATA")
-                skip_metadata();
-            else
-                return error("\"" + word.substr(0, 40) + "\" is not understood");
-            if (!status) return tl::unexpected(status.error());
-        }
-        return assemble();
+bool looks_like_tets(std::string_view bytes) {
+    return bytes.starts_with(vtk_mark) || bytes.starts_with(msh_mark) || looks_like_vtu(bytes);
+}
+
+/// Names in legacy VTK files hold one word a line: all but letters, digits and a few signs become %XX.
+std::string percent_encoded(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        const bool plain = c > ' ' && c < 127 && c != '%' && c != '"';
+        out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
-
-private:
-    tl::unexpected<Error> error(const std::string& text) const { return input_error("{}:{}: {}", name_, line(), text); }
-    [[nodiscard]] int line() const {
-        return 1 +
-               static_cast<int>(std::count(
-                   bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, bytes_.size())), '\n'));
-    }
-
-    std::string_view next_line() {
-        const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-        std::string_view text = bytes_.substr(at_, end - at_);
-        at_ = std::min(end + 1, bytes_.size());
-        if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
-        return text;
-    }
-
-    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
-
-    std::string next_word() {
-        while (at_ < bytes_.size() && is_blank(bytes_[at_])) ++at_;
-        const std::size_t begin = at_;
-        while (at_ < bytes_.size() && !is_blank(bytes_[at_])) ++at_;
-        return std::string(bytes_.substr(begin, at_ - begin));
-    }
-
-    Status read_header() {
-        if (!next_line().starts_with("# vtk DataFile Version"))
-            return input_error("{}: is not a legacy VTK file", name_);
-        next_line();  // title
-        std::string_view encoding = next_line();
-        while (!encoding.empty() && is_blank(encoding.back())) encoding.remove_suffix(1);
-        if (encoding == "BINARY")
-            binary_ = true;
-        else if (encoding != "ASCII")
-            return error("the third line must be ASCII or BINARY");
-        if (next_word() != "DATASET" || next_word() != "UNSTRUCTURED_GRID")
-            return error("only DATASET UNSTRUCTURED_GRID holds tetrahedra");
-        return {};
-    }
-
-    Status read_count(std::size_t& count) {
-        const std::string word = next_word();
-        const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), count);
-        if (code == std::errc() && end == word.data() + word.size()) return {};
-        return error("a count is needed instead of \"" + word.substr(0, 40) + "\"");
-    }
-
-    static std::size_t width_of(const std::string& type) {
-        static const std::map<std::string, std::size_t> widths = {
-            {"float", 4},        {"double", 8},        {"int", 4},         {"unsigned_int", 4}, {"long", 8},
-            {"vtktypeint64", 8}, {"unsigned_long", 8}, {"vtkIdType", 8},   {"short", 2},        {"unsigned_short", 2},
-            {"char", 1},         {"unsigned_char", 1}, {"vtktypeint32", 4}};
-        const auto found = widths.find(type);
-        return found == widths.end() ? 0 : found->second;
-    }
-
-    double decode(const std::string& type, std::size_t width, std::size_t at) const {
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < width; ++i) bits = (bits << 8) | static_cast<unsigned char>(bytes_[at + i]);
-        if (type == "float") return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-        if (type == "double") return std::bit_cast<double>(bits);
-        if (type.starts_with("unsigned")) return static_cast<double>(bits);
-        const std::uint64_t sign = std::uint64_t{1} << (8 * width - 1);
-        return static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
-    }
-
-    /// `count` numbers of a type; memory follows what the file holds, not what it claims.
-    Result<std::vector<double>> read_numbers(std::size_t count, const std::string& type) {
-        const std::size_t width = width_of(type);
-        if (width == 0) return error("unknown data type \"" + type.substr(0, 40) + "\"");
-        const std::size_t left = bytes_.size() - at_;
-        std::vector<double> numbers;
-        if (binary_) {
-            if (at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
-            if (at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
-            if (count > left / width) return error(fmt::format("{} values are announced, the file ends before", count));
-            numbers.reserve(count);
-            for (std::size_t i = 0; i < count; ++i, at_ += width) numbers.push_back(decode(type, width, at_));
-            return numbers;
-        }
-        if (count > left / 2 + 1) return error(fmt::format("{} values are announced, the file ends before", count));
-        numbers.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::string word = next_word();
-            const char* begin = word.data() + (!word.empty() && word.front() == '+' ? 1 : 0);
-            double value = 0;
-            const auto [end, code] = std::from_chars(begin, word.data() + word.size(), value);
-            if (word.empty() || code != std::errc() || end != word.data() + word.size()) {
-                return error(word.empty() ? "the file ends in the middle of an array"
-                                          : "\"" + word.substr(0, 40) + "\" is not a number");
-            }
-            numbers.push_back(value);
-        }
-        return numbers;
-    }
-
-    Status read_points() {
-        std::size_t count = 0;
-        if (Status status = read_count(count); !status) return status;
-        const std::string type = next_word();
-        if (count > bytes_.size()) return error("more points are announced than the file can hold");
-        const Result<std::vector<double>> numbers = read_numbers(3 * count, type);
-        if (!numbers) return tl::unexpected(numbers.error());
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vec3 p{(*numbers)[3 * i], (*numbers)[3 * i + 1], (*numbers)[3 * i + 2]};
-            if (!is_finite(p)) return error(fmt::format("point {} is not finite", i));
-            points_.push_back(p);
-        }
-        return {};
-    }
-
-    /// Up to version 4: "CELLS n size", each cell its node count and nodes. From 5: offsets and connectivity apart.
-    Status read_cells() {
-        std::size_t count = 0;
-        std::size_t size = 0;
-        if (Status status = read_count(count); !status) return status;
-        if (Status status = read_count(size); !status) return status;
-        const std::size_t mark = at_;
-        if (next_word() == "OFFSETS") return read_offset_cells(count, size);
-        at_ = mark;
-        const Result<std::vector<double>> list = read_numbers(size, "int");
-        if (!list) return tl::unexpected(list.error());
-        std::size_t at = 0;
-        for (std::size_t c = 0; c < count; ++c) {
-            const double nodes = at < size ? (*list)[at] : -1;
-            if (!(nodes >= 0 && nodes <= static_cast<double>(size - at - 1)))
-                return error(fmt::format("cell {} runs past the end of the list", c));
-            cells_.emplace_back(
-                list->begin() + static_cast<std::ptrdiff_t>(at + 1),
-                list->begin() + static_cast<std::ptrdiff_t>(at + 1) + static_cast<std::ptrdiff_t>(nodes));
-            at += 1 + static_cast<std::size_t>(nodes);
-        }
-        return {};
-    }
-
-    Status read_offset_cells(std::size_t offsets, std::size_t size) {
-        const std::string offset_type = next_word();
-        const Result<std::vector<double>> starts = read_numbers(offsets, offset_type);
-        if (!starts) return tl::unexpected(starts.error());
-        if (next_word() != "CONNECTIVITY") return error("CONNECTIVITY is needed after OFFSETS");
-        const std::string type = next_word();
-        const Result<std::vector<double>> list = read_numbers(size, type);
-        if (!list) return tl::unexpected(list.error());
-        for (std::size_t c = 0; c + 1 < offsets; ++c) {
-            const double begin = (*starts)[c];
-            const double end = (*starts)[c + 1];
-            if (!(begin >= 0 && end >= begin && end <= static_cast<double>(size)))
-                return error(fmt::format("cell {} runs past the end of the list", c));
-            cells_.emplace_back(list->begin() + static_cast<std::ptrdiff_t>(begin),
-                                list->begin() + static_cast<std::ptrdiff_t>(end));
-        }
-        return {};
-    }
-
-    Status read_types() {
-        std::size_t count = 0;
-        if (Status status = read_count(count); !status) return status;
-        const Result<std::vector<double>> numbers = read_numbers(count, "int");
-        if (!numbers) return tl::unexpected(numbers.error());
-        types_ = *numbers;
-        return {};
-    }
-
-    void keep_region(const std::string& name, std::vector<double> values) {
-        static const std::set<std::string> names = {"region", "material", "medit:ref", "gmsh:physical"};
-        const bool whole = std::all_of(values.begin(), values.end(),
-                                       [](double v) { return v == std::floor(v) && std::fabs(v) < 1e9; });
-        if (data_of_cells_ && names.contains(name) && whole) region_values_ = std::move(values);
-    }
-
-    Status read_scalars() {
-        const std::string name = next_word();
-        const std::string type = next_word();
-        std::size_t components = 1;
-        const std::string_view rest = next_line();
-        if (rest.find_first_of("1234") != std::string_view::npos)
-            components = static_cast<std::size_t>(rest[rest.find_first_of("1234")] - '0');
-        const std::size_t mark = at_;
-        if (next_word() == "LOOKUP_TABLE")
-            next_line();
-        else
-            at_ = mark;
-        if (binary_) --at_;  // the line end before the bytes
-        Result<std::vector<double>> numbers = read_numbers(components * std::min(data_count_, bytes_.size()), type);
-        if (!numbers) return tl::unexpected(numbers.error());
-        keep_region(name, std::move(*numbers));
-        return {};
-    }
-
-    Status read_field() {
-        next_word();
-        std::size_t arrays = 0;
-        if (Status status = read_count(arrays); !status) return status;
-        for (std::size_t a = 0; a < arrays; ++a) {
-            const std::string name = next_word();
-            if (name.empty()) return error("the file ends in the middle of a FIELD");
-            std::size_t components = 0;
-            std::size_t tuples = 0;
-            if (Status status = read_count(components); !status) return status;
-            if (Status status = read_count(tuples); !status) return status;
-            const std::string type = next_word();
-            if (components != 0 && tuples > bytes_.size() / components)
-                return error("more values are announced than the file can hold");
-            if (type == "string") return error("text arrays are not understood");
-            Result<std::vector<double>> numbers = read_numbers(components * tuples, type);
-            if (!numbers) return tl::unexpected(numbers.error());
-            keep_region(name, std::move(*numbers));
-        }
-        return {};
-    }
-
-    Status skip_array(std::size_t components) {
-        next_word();
-        const std::string type = next_word();
-        const Result<std::vector<double>> numbers =
-            read_numbers(components * std::min(data_count_, bytes_.size()), type);
-        return numbers ? Status{} : tl::unexpected(numbers.error());
-    }
-
-    void skip_metadata() {
-        next_line();
-        while (at_ < bytes_.size() && !next_line().empty()) {
-        }
-    }
-
-    Result<TetMesh> assemble() {
-        if (types_.size() != cells_.size())
-            return error(fmt::format("{} cells but {} cell types", cells_.size(), types_.size()));
-        int order = 0;
-        for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const int type = static_cast<int>(types_[c]);
-            if (type != vtk_tetra && type != vtk_quadratic_tetra) continue;
-            const int this_order = type == vtk_tetra ? 1 : 2;
-            if (order != 0 && order != this_order) return error("mixes tetrahedra of 4 and 10 nodes");
-            order = this_order;
-        }
-        if (order == 0) return error("holds no tetrahedra");
-        TetMesh mesh;
-        mesh.order = order;
-        std::vector<int> index(points_.size(), -1);
-        std::map<int, int> region_of;
-        for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const int type = static_cast<int>(types_[c]);
-            if (type != vtk_tetra && type != vtk_quadratic_tetra) continue;
-            if (cells_[c].size() != static_cast<std::size_t>(mesh.nodes_per_tet()))
-                return error(fmt::format("cell {} has {} nodes", c, cells_[c].size()));
-            for (const double node : cells_[c]) {
-                if (!(node >= 0 && node < static_cast<double>(points_.size())))
-                    return error(fmt::format("cell {} names point {}, there are {}", c, node, points_.size()));
-                int& number = index[static_cast<std::size_t>(node)];
-                if (number < 0) {
-                    number = static_cast<int>(mesh.points.size());
-                    mesh.points.push_back(points_[static_cast<std::size_t>(node)]);
-                }
-                mesh.nodes.push_back(number);
-            }
-            const int value = c < region_values_.size() ? static_cast<int>(region_values_[c]) : 0;
-            mesh.region.push_back(region_of.try_emplace(value, static_cast<int>(region_of.size())).first->second);
-        }
-        name_regions(mesh, region_of);
-        turn_inside_out_tets(mesh);
-        return mesh;
-    }
-
-    static void name_regions(TetMesh& mesh, const std::map<int, int>& region_of) {
-        mesh.region_names.resize(region_of.size());
-        for (const auto& [value, region] : region_of)
-            mesh.region_names[static_cast<std::size_t>(region)] = fmt::format("{}", value);
-    }
-
-    static void turn_inside_out_tets(TetMesh& mesh) {
-        const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
-        for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-            int* n = mesh.nodes.data() + t * width;
-            if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
-                continue;
-            std::swap(n[1], n[2]);
-            if (mesh.order == 2) {  // edges 01-02 and 13-23 change places with corners 1 and 2
-                std::swap(n[4], n[6]);
-                std::swap(n[8], n[9]);
-            }
-        }
-    }
-
-    std::string_view bytes_;
-    std::string name_;
-    std::size_t at_ = 0;
-    bool binary_ = false;
-    bool data_of_cells_ = false;
-    std::size_t data_count_ = 0;
-    std::vector<Vec3> points_;
-    std::vector<std::vector<double>> cells_;
-    std::vector<double> types_;
-    std::vector<double> region_values_;
-};
+    return out;
+}
 
 }  // namespace
 
-Result<TetMesh> parse_vtk(std::string_view bytes, const std::string& name) {
-    return VtkReader(bytes, name).read();
+Result<TetMesh> parse_tet_mesh(std::string_view bytes, const std::string& name) {
+    if (bytes.starts_with(vtk_mark)) return parse_vtk(bytes, name);
+    if (bytes.starts_with(msh_mark)) return parse_msh(bytes, name);
+    if (looks_like_vtu(bytes)) return parse_vtu(bytes, name);
+    return input_error("{}: is no tet mesh that Pliant reads (.vtk, .vtu or .msh, by content)", name);
 }
 
 Result<TetMesh> read_tet_mesh(const std::filesystem::path& path) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    if (!bytes->starts_with("# vtk"))
-        return input_error("{}: is no tet mesh that Pliant reads; that is a legacy VTK file", path.string());
-    return parse_vtk(*bytes, path.string());
+    return parse_tet_mesh(*bytes, path.string());
 }
 
 bool looks_like_tet_file(const std::filesystem::path& path) {
     const Result<std::string> bytes = read_file(path);
-    return bytes && bytes->starts_with("# vtk");
+    return bytes && looks_like_tets(*bytes);
 }
 
 std::string vtk_text(const TetMesh& mesh) {
     std::string text = "# vtk DataFile Version 3.0\npliant tet mesh\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+    fmt::format_to(std::back_inserter(text), "FIELD FieldData 1\nregion_names 1 {} string\n", mesh.region_names.size());
+    for (const std::string& name : mesh.region_names) text += percent_encoded(name) + "\n";
     fmt::format_to(std::back_inserter(text), "POINTS {} double\n", mesh.points.size());
     for (const Vec3& p : mesh.points) fmt::format_to(std::back_inserter(text), "{} {} {}\n", p.x, p.y, p.z);
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
@@ -394,6 +74,7 @@ Status write_tet_mesh(const std::filesystem::path& path, const TetMesh& mesh) {
     if (path.extension() == ".vtu") {
         VtuData data;
         data.cells.push_back({"region", 1, std::vector<std::int32_t>(mesh.region.begin(), mesh.region.end())});
+        data.region_names = mesh.region_names;
         return write_vtu(path, mesh, mesh.points, data);
     }
     return input_error("{}: unknown kind of mesh file; write .vtk or .vtu", path.string());

@@ -15,7 +15,7 @@ TetMesh two_tets() {
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
     mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
     mesh.region = {0, 1};
-    mesh.region_names = {"0", "1"};
+    mesh.region_names = {"soft foam 50%", "grip"};
     return mesh;
 }
 
@@ -114,4 +114,36 @@ TEST_CASE("broken files give a reason with the line, and claims are not believed
 
 TEST_CASE("an unknown kind of file to write is refused") {
     CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk or .vtu") != std::string::npos);
+}
+
+TEST_CASE("attributes that are not read are passed over: colours, tables, texts, coordinates of pictures") {
+    const std::string text = head +
+                             "FIELD FieldData 2\nnotes 1 2 string\nfirst one\nsecond%20one\nTIME 1 1 double\n0.5\n"
+                             "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+                             "POINT_DATA 4\nCOLOR_SCALARS c 3\n0 0 0 1 1 1 0 0 0 1 1 1\nTEXTURE_COORDINATES t 2 "
+                             "float\n0 0 0 0 0 0 0 0\nSCALARS p float 1\nLOOKUP_TABLE mine\n1 2 3 4\nLOOKUP_TABLE mine "
+                             "2\n0 0 0 1 1 1 1 1\nCELL_DATA 1\nSCALARS region int\nLOOKUP_TABLE default\n3\n";
+    const Result<TetMesh> mesh = parse_vtk(text, "a.vtk");
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(mesh->region_names == std::vector<std::string>{"3"});
+}
+
+TEST_CASE("names in binary files come with their length") {
+    std::string bytes = "# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\n";
+    bytes += "region_names 1 2 string\n";
+    bytes += static_cast<char>(0xC4);  // one byte: length 4
+    bytes += "foam";
+    bytes += std::string{static_cast<char>(0x80), static_cast<char>(0x46)};  // two bytes: length 70
+    bytes += std::string(70, 'g') + "\nPOINTS 4 float\n";
+    for (const float c : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F}) put(bytes, c);
+    bytes += "\nCELLS 1 5\n";
+    for (const std::int32_t i : {4, 0, 1, 2, 3}) put(bytes, i);
+    bytes += "\nCELL_TYPES 1\n";
+    put(bytes, std::int32_t{10});
+    bytes += "\nCELL_DATA 1\nSCALARS region int 1\nLOOKUP_TABLE default\n";
+    put(bytes, std::int32_t{1});
+    const Result<TetMesh> mesh = parse_vtk(bytes, "a.vtk");
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(mesh->region_names == std::vector<std::string>{std::string(70, 'g')});
+    for (std::size_t length = 0; length < bytes.size(); ++length) (void)parse_vtk(bytes.substr(0, length), "a.vtk");
 }

@@ -111,6 +111,20 @@ std::string cells_text(const Compressor& compressor, const TetMesh& mesh) {
            data_array(compressor, "types", 1, types);
 }
 
+/// Text arrays are lists of character codes, each text ended by 0.
+std::string names_text(const std::vector<std::string>& names) {
+    if (names.empty()) return "";
+    std::string codes;
+    for (const std::string& name : names) {
+        for (const unsigned char c : name) codes += fmt::format("{} ", static_cast<int>(c));
+        codes += "0 ";
+    }
+    return fmt::format(
+        "<FieldData>\n<DataArray type=\"String\" Name=\"region_names\" NumberOfTuples=\"{}\" "
+        "format=\"ascii\">\n{}\n</DataArray>\n</FieldData>\n",
+        names.size(), codes);
+}
+
 std::string points_text(const Compressor& compressor, std::span<const Vec3> points) {
     std::vector<double> coordinates;
     coordinates.reserve(3 * points.size());
@@ -133,11 +147,11 @@ Result<std::string> vtu_text(const TetMesh& mesh, std::span<const Vec3> points, 
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
         "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n"
-        "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+        "{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
         "<Points>\n{}</Points>\n<Cells>\n{}</Cells>\n<PointData>\n{}</PointData>\n<CellData>\n{}</CellData>\n"
         "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
-        points.size(), mesh.tet_count(), points_text(compressor, points), cells_text(compressor, mesh), *point_data,
-        *cell_data);
+        names_text(data.region_names), points.size(), mesh.tet_count(), points_text(compressor, points),
+        cells_text(compressor, mesh), *point_data, *cell_data);
 }
 
 Status write_vtu(const std::filesystem::path& path, const TetMesh& mesh, std::span<const Vec3> points,

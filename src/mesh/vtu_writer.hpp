@@ -22,8 +22,9 @@ struct VtuArray {
 };
 
 struct VtuData {
-    std::vector<VtuArray> points;  ///< one item per point of the mesh
-    std::vector<VtuArray> cells;   ///< one item per tet
+    std::vector<VtuArray> points;           ///< one item per point of the mesh
+    std::vector<VtuArray> cells;            ///< one item per tet
+    std::vector<std::string> region_names;  ///< field data for readers of the cell array "region"; none: not written
 };
 
 /// The whole file. `points` (n, 3) takes the place of the mesh's own points, in the unit the reader should see. An
