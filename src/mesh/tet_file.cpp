@@ -20,14 +20,29 @@ bool looks_like_tets(std::string_view bytes) {
     return bytes.starts_with(vtk_mark) || bytes.starts_with(msh_mark) || looks_like_vtu(bytes);
 }
 
-/// Names in legacy VTK files hold one word a line: all but letters, digits and a few signs become %XX.
+/// Names in legacy VTK files are words without commas: blanks and a few signs become %XX.
 std::string percent_encoded(std::string_view text) {
     std::string out;
     for (const char c : text) {
-        const bool plain = c > ' ' && c < 127 && c != '%' && c != '"';
+        const bool plain = c > ' ' && c < 127 && c != '%' && c != '"' && c != ',';
         out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
     return out;
+}
+
+/// Title and data type. The names of the regions stand in the title, because Gmsh and others stumble over a field
+/// before the points; only names too long for a title (256 characters) are written as a field.
+std::string vtk_head(const TetMesh& mesh) {
+    constexpr std::size_t longest_title = 255;
+    std::vector<std::string> names;
+    for (const std::string& name : mesh.region_names) names.push_back(percent_encoded(name));
+    const std::string title = fmt::format("{}{}", vtk_title_mark, fmt::join(names, ","));
+    const bool fits = title.size() <= longest_title;
+    std::string text = fmt::format("# vtk DataFile Version 3.0\n{}\nASCII\nDATASET UNSTRUCTURED_GRID\n",
+                                   fits ? title : std::string("pliant tet mesh"));
+    if (!fits)
+        text += fmt::format("FIELD FieldData 1\nregion_names 1 {} string\n{}\n", names.size(), fmt::join(names, "\n"));
+    return text;
 }
 
 }  // namespace
@@ -51,9 +66,7 @@ bool looks_like_tet_file(const std::filesystem::path& path) {
 }
 
 std::string vtk_text(const TetMesh& mesh) {
-    std::string text = "# vtk DataFile Version 3.0\npliant tet mesh\nASCII\nDATASET UNSTRUCTURED_GRID\n";
-    fmt::format_to(std::back_inserter(text), "FIELD FieldData 1\nregion_names 1 {} string\n", mesh.region_names.size());
-    for (const std::string& name : mesh.region_names) text += percent_encoded(name) + "\n";
+    std::string text = vtk_head(mesh);
     fmt::format_to(std::back_inserter(text), "POINTS {} double\n", mesh.points.size());
     for (const Vec3& p : mesh.points) fmt::format_to(std::back_inserter(text), "{} {} {}\n", p.x, p.y, p.z);
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());

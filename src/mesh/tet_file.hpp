@@ -17,7 +17,8 @@ namespace pliant::mesh {
 [[nodiscard]] Result<TetMesh> parse_tet_mesh(std::string_view bytes, const std::string& name);
 
 /// Versions 2.0 to 5.1, ASCII or binary, UNSTRUCTURED_GRID. Whole numbers in cell data named "region", "material",
-/// "medit:ref" or "gmsh:physical" become regions; a text field "region_names" names them by their number.
+/// "medit:ref" or "gmsh:physical" become regions; a text field "region_names" or the title of vtk_text() names them by
+/// their number.
 [[nodiscard]] Result<TetMesh> parse_vtk(std::string_view bytes, const std::string& name);
 
 /// UnstructuredGrid with any number of pieces; arrays as text, base64 or appended, raw or zlib-compressed, of either
@@ -31,8 +32,12 @@ namespace pliant::mesh {
 [[nodiscard]] bool looks_like_tet_file(const std::filesystem::path& path);
 
 /// By the extension: .vtk (legacy, ASCII) or .vtu. Regions are written as cell data "region", their names as the text
-/// field "region_names".
+/// field "region_names" or, in .vtk files, in the title line.
 [[nodiscard]] Status write_tet_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 [[nodiscard]] std::string vtk_text(const TetMesh& mesh);
+
+/// The title line of .vtk files that vtk_text() writes begins with this; the names follow, divided by commas, with %XX
+/// for blanks and signs.
+inline constexpr std::string_view vtk_title_mark = "pliant tet mesh, regions: ";
 
 }  // namespace pliant::mesh

@@ -50,6 +50,16 @@ TEST_CASE("linear and quadratic meshes come back as they were written") {
     }
 }
 
+TEST_CASE("names of regions come back whatever they hold, and however long they are") {
+    TetMesh mesh = two_tets();
+    for (const std::string& name : {std::string("a, b"), std::string("100%,\n\xc3\xa9"), std::string(400, 'n')}) {
+        mesh.region_names[1] = name;
+        const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+        REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
+        CHECK(back->region_names == mesh.region_names);
+    }
+}
+
 TEST_CASE("binary files, other cells, loose points and inside-out tets") {
     std::string bytes = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n";
     for (const Vec3& p : {Vec3{9, 9, 9}, Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{8, 8, 8}}) {

@@ -94,7 +94,7 @@ private:
     Status read_header() {
         if (!next_line().starts_with("# vtk DataFile Version"))
             return input_error("{}: is not a legacy VTK file", name_);
-        next_line();  // title
+        read_title(next_line());
         std::string_view encoding = next_line();
         while (!encoding.empty() && is_blank(encoding.back())) encoding.remove_suffix(1);
         if (encoding == "BINARY")
@@ -104,6 +104,16 @@ private:
         if (next_word() != "DATASET" || next_word() != "UNSTRUCTURED_GRID")
             return error("only DATASET UNSTRUCTURED_GRID holds tetrahedra");
         return {};
+    }
+
+    void read_title(std::string_view title) {
+        if (!title.starts_with(vtk_title_mark)) return;
+        title.remove_prefix(vtk_title_mark.size());
+        for (std::int64_t i = 0; !title.empty(); ++i) {
+            const std::size_t comma = std::min(title.find(','), title.size());
+            region_names_[i] = percent_decoded(title.substr(0, comma));
+            title.remove_prefix(std::min(comma + 1, title.size()));
+        }
     }
 
     Status read_count(std::size_t& count) {
