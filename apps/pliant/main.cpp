@@ -7,7 +7,8 @@
 
 #include "command.hpp"
 
-int main(int argc, char** argv) {
+// Only running out of memory can escape, and that ends the program in any case.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace pliant::app;
     // The solver takes and gives back the same large blocks again and again: keep them instead of mapping them anew.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
