@@ -95,8 +95,40 @@ std::vector<Face> boundary_faces(const TetMesh& mesh) {
     return single_faces(mesh, [](std::size_t) { return true; });
 }
 
+std::vector<Face> region_faces(const TetMesh& mesh, int region) {
+    return single_faces(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
+}
+
+Extract extract_regions(const TetMesh& mesh, const std::vector<bool>& keep) {
+    Extract extract;
+    extract.mesh.order = mesh.order;
+    extract.node.assign(mesh.points.size(), -1);
+    std::vector<int> new_region(keep.size(), -1);
+    for (std::size_t r = 0; r < keep.size(); ++r) {
+        if (!keep[r]) continue;
+        new_region[r] = static_cast<int>(extract.mesh.region_names.size());
+        extract.mesh.region_names.push_back(mesh.region_names[r]);
+    }
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const int region = new_region[static_cast<std::size_t>(mesh.region[t])];
+        if (region < 0) continue;
+        extract.mesh.region.push_back(region);
+        for (const int node : mesh.tet(t)) extract.node[static_cast<std::size_t>(node)] = 0;
+    }
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+        if (extract.node[n] < 0) continue;
+        extract.node[n] = static_cast<int>(extract.mesh.points.size());
+        extract.mesh.points.push_back(mesh.points[n]);
+    }
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (new_region[static_cast<std::size_t>(mesh.region[t])] < 0) continue;
+        for (const int node : mesh.tet(t)) extract.mesh.nodes.push_back(extract.node[static_cast<std::size_t>(node)]);
+    }
+    return extract;
+}
+
 TriMesh region_surface(const TetMesh& mesh, int region) {
-    const auto faces = single_faces(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
+    const auto faces = region_faces(mesh, region);
     TriMesh surface;
     std::vector<int> index(mesh.points.size(), -1);
     const auto point = [&](int node) {

@@ -48,6 +48,17 @@ struct Face {
 /// The faces of the outer surface (those that one tet has alone), in the order of the tets.
 [[nodiscard]] std::vector<Face> boundary_faces(const TetMesh& mesh);
 
+/// The faces that bound one region, whatever lies behind them.
+[[nodiscard]] std::vector<Face> region_faces(const TetMesh& mesh, int region);
+
+/// Some regions of a mesh, with the nodes that they use.
+struct Extract {
+    TetMesh mesh;           ///< regions renumbered, in order
+    std::vector<int> node;  ///< (nodes of the whole mesh) index in the extract, or -1
+};
+/// The tets of the regions for which `keep` (regions) is true.
+[[nodiscard]] Extract extract_regions(const TetMesh& mesh, const std::vector<bool>& keep);
+
 /// The closed surface of one region, points compacted; quadratic faces give four triangles each.
 [[nodiscard]] TriMesh region_surface(const TetMesh& mesh, int region);
 

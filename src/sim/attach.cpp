@@ -100,4 +100,26 @@ Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tol
     return Attachment{std::move(nodes), {weights.data(), weights.data() + weights.size()}, {}};
 }
 
+Wall wall_of_faces(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces, std::span<const int> index) {
+    Wall wall;
+    std::vector<int> point(mesh.points.size(), -1);
+    for (const mesh::Face& face : faces) {
+        WallFace corners{};
+        for (std::size_t i = 0; i < 6; ++i) {
+            const int node = face.nodes[i];
+            corners[i] = -1;
+            if (node < 0) continue;
+            const auto n = static_cast<std::size_t>(node);
+            if (point[n] < 0) {
+                point[n] = static_cast<int>(wall.points.size());
+                wall.points.push_back(index[n] >= 0 ? Attachment{{index[n]}, {1.0}, {}}
+                                                    : Attachment{{}, {}, mesh.points[n]});
+            }
+            corners[i] = point[n];
+        }
+        wall.faces.push_back(corners);
+    }
+    return wall;
+}
+
 }  // namespace pliant::sim

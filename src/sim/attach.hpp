@@ -1,6 +1,7 @@
 // Ties points of space to the mesh that carries them.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/error.hpp"
@@ -34,5 +35,11 @@ private:
     std::vector<int> tet_start_;  ///< (n + 1)
     std::vector<int> tets_;       ///< tets of every node
 };
+
+/// The wall that faces form, their nodes as points. `index` (nodes of the mesh that the faces come from) says which
+/// node of the robot each is; where it is -1 the point stays where it is: in the mouth of a chamber that a support
+/// closes.
+[[nodiscard]] Wall wall_of_faces(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces,
+                                 std::span<const int> index);
 
 }  // namespace pliant::sim

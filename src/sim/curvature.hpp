@@ -1,7 +1,7 @@
 // Three ways to turn forces into motion. The step solver asks for H^-1 times a few vectors, where H is
 //   local-global   the pre-factored weighted Laplacian: one step is the thesis' local and global step (A.1 to A.4)
 //   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
-//   newton         the tangent stiffness with the cables' own stiffness, factorised anew
+//   newton         the tangent stiffness with the actuators' own stiffness, factorised anew
 // so that elements, constraints and line search are the same for all.
 #pragma once
 
@@ -22,10 +22,11 @@ public:
     /// Called at the start of each step of the program.
     virtual void restart() {}
     /// Called before solve() at a new state; `cautious` asks for a positive definite H. False: no H could be made.
-    [[nodiscard]] virtual bool refresh(const State& state, bool cautious) = 0;
+    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, bool cautious) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
-    /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed tension.
+    /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed
+    /// multipliers.
     virtual void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
         (void)step;
         (void)change;

@@ -30,7 +30,7 @@ public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
     [[nodiscard]] std::string_view name() const override { return "local-global"; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
-    [[nodiscard]] bool refresh(const sim::State&, bool) override { return true; }
+    [[nodiscard]] bool refresh(const sim::State&, const Controls&, bool) override { return true; }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }
 
 private:

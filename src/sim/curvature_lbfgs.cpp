@@ -17,7 +17,7 @@ public:
     [[nodiscard]] int default_iteration_limit() const override { return 3000; }
     void restart() override { pairs_.clear(); }
 
-    [[nodiscard]] bool refresh(const State&, bool cautious) override {
+    [[nodiscard]] bool refresh(const State&, const Controls&, bool cautious) override {
         if (cautious) pairs_.clear();  // the last steps misled: start from the Laplacian again
         return true;
     }

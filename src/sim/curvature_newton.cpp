@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "linalg/cholesky.hpp"
+#include "linalg/gmres.hpp"
 #include "sim/curvature.hpp"
 #include "sim/elements.hpp"
 
@@ -10,14 +11,17 @@ namespace {
 class Newton final : public Curvature {
 public:
     explicit Newton(const Equilibrium& system)
-        : system_(&system), pattern_(make_stiffness_pattern(system)), factor_(pattern_) {}
+        : system_(&system),
+          pattern_(linalg::make_pattern(system.model().free_count(), 3, system.cliques())),
+          factor_(pattern_) {}
 
     [[nodiscard]] std::string_view name() const override { return "newton"; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
 
     /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
     /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
-    [[nodiscard]] bool refresh(const State& state, bool cautious) override {
+    [[nodiscard]] bool refresh(const State& state, const Controls&, bool cautious) override {
+        if (system_->has_skew()) state_ = state;
         assemble(state, false, values_);
         if (!cautious && factor_.factorise(values_)) {
             share_ = smallest_share;
@@ -37,29 +41,34 @@ public:
     }
 
     void solve(Eigen::MatrixXd& columns) override {
-        factor_.solve({columns.data(), static_cast<std::size_t>(columns.size())}, static_cast<int>(columns.cols()));
+        if (!system_->has_skew()) {
+            factor_.solve({columns.data(), static_cast<std::size_t>(columns.size())}, static_cast<int>(columns.cols()));
+            return;
+        }
+        for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
     }
 
 private:
-    static linalg::SymmetricPattern make_stiffness_pattern(const Equilibrium& system) {
-        const Model& model = system.model();
-        auto cliques = model.elements().cliques(model.free_index());
-        for (const CablePath& cable : system.cables()) cable.append_cliques(model.free_index(), cliques);
-        return linalg::make_pattern(model.free_count(), 3, cliques);
+    /// (H + skew)^-1 b: with H^-1 as preconditioner from the right the product is v + skew H^-1 v.
+    [[nodiscard]] Eigen::VectorXd solve_with_skew(const Eigen::VectorXd& b) const {
+        const auto precondition = [&](Eigen::VectorXd v) {
+            factor_.solve({v.data(), static_cast<std::size_t>(v.size())}, 1);
+            return v;
+        };
+        const auto multiply = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+            return v + system_->apply_skew(state_, precondition(v));
+        };
+        return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
     }
 
     void assemble(const State& state, bool project, std::vector<double>& values) const {
-        const Model& model = system_->model();
-        const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
         values.assign(pattern_.entries(), 0.0);
-        model.elements().add_tangent(x, model.free_index(), pattern_, values, project);
-        for (std::size_t c = 0; c < system_->cables().size(); ++c) {
-            const double tension = state.tension[static_cast<Eigen::Index>(c)];
-            if (tension > 0) system_->cables()[c].add_hessian(x, tension, model.free_index(), pattern_, values);
-        }
+        system_->add_tangent(state, pattern_, values, project);
     }
 
     static constexpr double smallest_share = 1.0 / 16;
+    static constexpr double skew_tolerance = 1e-8;
+    static constexpr int skew_limit = 60;
 
     const Equilibrium* system_;
     linalg::SymmetricPattern pattern_;
@@ -68,6 +77,7 @@ private:
     std::vector<double> blended_;
     double share_ = smallest_share;  ///< of the projection that was needed last
     linalg::Cholesky factor_;
+    State state_;  ///< where the tangent was made; kept only where its skew part is needed
 };
 
 }  // namespace

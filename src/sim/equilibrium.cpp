@@ -10,8 +10,6 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 std::span<const double> view(const Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
 }
@@ -19,29 +17,30 @@ std::span<double> view(Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
 }
 
+Eigen::Vector3d vector(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 }  // namespace
 
 Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     const Description& d = model.description();
     const Eigen::Index n = model.node_count();
     rest_.resize(3 * n);
-    external_ = Eigen::VectorXd::Zero(3 * n);
+    gravity_.resize(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const Vec3& p = d.mesh.points[static_cast<std::size_t>(i)];
         rest_.segment<3>(3 * i) << p.x, p.y, p.z;
-        const double mass = model.elements().node_mass_kg()[static_cast<std::size_t>(i)];
-        external_.segment<3>(3 * i) += mass * Eigen::Vector3d(d.gravity_m_s2.x, d.gravity_m_s2.y, d.gravity_m_s2.z);
+        gravity_.segment<3>(3 * i) =
+            model.elements().node_mass_kg()[static_cast<std::size_t>(i)] * vector(d.gravity_m_s2);
     }
-    for (const Load& load : d.loads) {
-        for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-            external_.segment<3>(3 * load.nodes[k]) +=
-                load.shares[k] * Eigen::Vector3d(load.force_N.x, load.force_N.y, load.force_N.z);
-        }
+    add_actuators();
+    for (std::size_t k = 0; k < d.pressures.size(); ++k) {
+        if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
     }
-    for (const Cable& cable : d.cables) {
-        cables_.emplace_back(cable, view(std::as_const(rest_)));
-        rest_length_.push_back(cables_.back().length(view(rest_)));
-    }
+    conservative_ = model.elements().has_energy() && skew_.empty();
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
     const double volume = mesh::volume(d.mesh);
@@ -49,36 +48,109 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     energy_rounding_ = 1e-16 * stiffest * volume;
 }
 
-Controls Equilibrium::controls(double time) const {
-    Controls controls;
-    controls.load_scale = time;
-    const auto& cables = model_->description().cables;
-    for (std::size_t c = 0; c < cables.size(); ++c) {
-        const CableTarget& target = cables[c].target;
-        double length = infinity;
-        if (target.kind == CableTarget::Kind::length_ratio) length = rest_length_[c] * (1 + time * (target.value - 1));
-        if (target.kind == CableTarget::Kind::shortening_m) length = rest_length_[c] - time * target.value;
-        controls.cable_length_m.push_back(length);
-        controls.cable_tension_N.push_back(target.kind == CableTarget::Kind::tension_N ? time * target.value : 0);
+void Equilibrium::add_actuators() {
+    const Description& d = model_->description();
+    const auto rest = view(std::as_const(rest_));
+    for (const Cable& cable : d.cables) actuators_.emplace_back(CablePath(cable, rest), rest);
+    for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
+    for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
+}
+
+bool Equilibrium::rim_is_held(const Wall& wall) const {
+    const auto held = [&](int point) {
+        const auto& nodes = wall.points[static_cast<std::size_t>(point)].nodes;
+        return std::all_of(nodes.begin(), nodes.end(),
+                           [&](int node) { return model_->free_index()[static_cast<std::size_t>(node)] < 0; });
+    };
+    const auto rim = rim_points(wall);
+    return std::all_of(rim.begin(), rim.end(), held);
+}
+
+Eigen::VectorXd Equilibrium::external_at(double time) const {
+    const Description& d = model_->description();
+    Eigen::VectorXd force = d.gravity_share.at(time) * gravity_;
+    for (const Load& load : d.loads) {
+        const Eigen::Vector3d total = load.share.at(time) * vector(load.force_N);
+        for (std::size_t k = 0; k < load.nodes.size(); ++k)
+            force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
     }
+    return force;
+}
+
+Controls Equilibrium::controls(double time) const {
+    const Description& d = model_->description();
+    Controls controls;
+    controls.time = time;
+    controls.external_N = external_at(time);
+    for (const Support& support : d.supports) controls.support_share.push_back(support.share.at(time));
+    for (const Cable& cable : d.cables) {
+        const double rest = actuators_[controls.drives.size()].rest_measure();
+        const double value = cable.target.at(time);
+        switch (cable.target.kind) {
+            case CableTarget::Kind::length_ratio:
+                controls.drives.push_back({Drive::Kind::measure, value * rest});
+                break;
+            case CableTarget::Kind::shortening_m:
+                controls.drives.push_back({Drive::Kind::measure, rest - value});
+                break;
+            case CableTarget::Kind::tension_N:
+                controls.drives.push_back({Drive::Kind::multiplier, value});
+                break;
+        }
+    }
+    for (const Chamber& chamber : d.chambers) {
+        const double rest = actuators_[controls.drives.size()].rest_measure();
+        const double value = chamber.target.at(time);
+        switch (chamber.target.kind) {
+            case ChamberTarget::Kind::volume_ratio:
+                controls.drives.push_back({Drive::Kind::measure, value * rest});
+                break;
+            case ChamberTarget::Kind::volume_change_m3:
+                controls.drives.push_back({Drive::Kind::measure, rest + value});
+                break;
+            case ChamberTarget::Kind::pressure_Pa:
+                controls.drives.push_back({Drive::Kind::multiplier, -value});
+                break;
+            case ChamberTarget::Kind::gas_ratio:
+                controls.drives.push_back({Drive::Kind::gas, value * d.ambient_pressure_Pa * rest});
+                break;
+        }
+    }
+    for (const PressureLoad& load : d.pressures)
+        controls.drives.push_back({Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa});
     return controls;
 }
 
 State Equilibrium::rest() const {
-    return {rest_, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cables_.size()))};
+    return {rest_, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators_.size()))};
 }
 
 void Equilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
-    for (const Support& support : model_->description().supports) {
-        const Vec3 move = controls.load_scale * support.move_m;
-        for (const int node : support.nodes) {
-            x.segment<3>(3 * node) = rest_.segment<3>(3 * node) + Eigen::Vector3d(move.x, move.y, move.z);
-        }
+    const auto& supports = model_->description().supports;
+    for (std::size_t s = 0; s < supports.size(); ++s) {
+        const Eigen::Vector3d move = controls.support_share[s] * vector(supports[s].move_m);
+        for (const int node : supports[s].nodes) x.segment<3>(3 * node) = rest_.segment<3>(3 * node) + move;
     }
 }
 
-double Equilibrium::external_work(const Eigen::VectorXd& x, double load_scale) const {
-    return load_scale * external_.dot(x - rest_);
+double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, double g) const {
+    switch (drive.kind) {
+        case Drive::Kind::measure:
+            return 0;
+        case Drive::Kind::multiplier:
+            return drive.value * g;
+        case Drive::Kind::gas:
+            // Work of the ambient and of the gas between rest and g, at constant temperature.
+            return g > 0 ? model_->description().ambient_pressure_Pa * g -
+                               drive.value * std::log(g / actuators_[actuator].rest_measure())
+                         : infinity;
+    }
+    return 0;
+}
+
+double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const {
+    const double absolute = model_->description().ambient_pressure_Pa - multiplier;
+    return drive.value / (absolute * absolute);  // g = value / (p_ambient - m)
 }
 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
@@ -87,42 +159,84 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
     e.min_J = elastic.min_J;
     if (!(e.min_J > 0)) return e;
-    e.energy_J = elastic.energy_J - external_work(state.x, controls.load_scale);
-    for (std::size_t c = 0; c < cables_.size(); ++c) {
-        const double length = cables_[c].length(view(state.x));
-        e.energy_J += controls.cable_tension_N[c] * length;
-        const double excess = length - controls.cable_length_m[c];
-        e.excess_m.push_back(excess);
-        const bool pulls = state.tension[static_cast<Eigen::Index>(c)] > 0 && std::isfinite(excess);
-        e.excess = std::max(e.excess, (pulls ? std::fabs(excess) : std::max(excess, 0.0)) / rest_length_[c]);
-    }
+    e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
+    fill_actuators(state, controls, e);
     fill_residual(state, controls, internal, e);
     return e;
 }
 
+void Equilibrium::fill_actuators(const State& state, const Controls& controls, Evaluation& e) const {
+    e.multiplier = state.multiplier;
+    e.excess = Eigen::VectorXd::Zero(state.multiplier.size());
+    for (std::size_t a = 0; a < actuators_.size(); ++a) {
+        const auto i = static_cast<Eigen::Index>(a);
+        const Drive& drive = controls.drives[a];
+        const double g = actuators_[a].measure(view(state.x));
+        e.energy_J += drive_energy(drive, a, g);
+        if (drive.kind == Drive::Kind::multiplier) e.multiplier[i] = drive.value;
+        if (drive.kind == Drive::Kind::gas)
+            e.multiplier[i] = model_->description().ambient_pressure_Pa - drive.value / g;
+        if (drive.kind != Drive::Kind::measure) continue;
+        e.excess[i] = (g - drive.value) / actuators_[a].rest_measure();
+        const bool slack = actuators_[a].only_pulls() && !(e.multiplier[i] > 0);
+        e.violation = std::max(e.violation, slack ? e.excess[i] : std::fabs(e.excess[i]));
+    }
+}
+
 void Equilibrium::fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
                                 Evaluation& e) const {
-    Eigen::VectorXd driving = -controls.load_scale * external_;
-    for (std::size_t c = 0; c < cables_.size(); ++c) {
-        cables_[c].add_gradient(view(state.x), state.tension[static_cast<Eigen::Index>(c)], view(driving));
-    }
+    Eigen::VectorXd driving = -controls.external_N;
+    for (std::size_t a = 0; a < actuators_.size(); ++a)
+        actuators_[a].add_gradient(view(state.x), e.multiplier[static_cast<Eigen::Index>(a)], view(driving));
     e.out_of_balance = internal + driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
     const double balancing = std::max({internal.norm(), driving.norm(), force_floor_});
     e.residual = balancing > 0 ? unbalanced / balancing : 0;
 }
 
-Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls, double merit_weight) const {
+Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls,
+                                      const Eigen::VectorXd& prices) const {
     const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {});
     Merit merit{elastic.min_J, 0};
     if (!(merit.min_J > 0)) return merit;
-    merit.value_J = elastic.energy_J - external_work(x, controls.load_scale);
-    for (std::size_t c = 0; c < cables_.size(); ++c) {
-        const double length = cables_[c].length(view(x));
-        merit.value_J += controls.cable_tension_N[c] * length;
-        merit.value_J += merit_weight * std::max(length - controls.cable_length_m[c], 0.0);
+    merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_);
+    for (std::size_t a = 0; a < actuators_.size(); ++a) {
+        const Drive& drive = controls.drives[a];
+        const double g = actuators_[a].measure(view(x));
+        merit.value_J += drive_energy(drive, a, g);
+        if (drive.kind != Drive::Kind::measure) continue;
+        const double excess = (g - drive.value) / actuators_[a].rest_measure();
+        const double counted = actuators_[a].only_pulls() ? std::max(excess, 0.0) : std::fabs(excess);
+        merit.value_J += prices[static_cast<Eigen::Index>(a)] * counted;
     }
     return merit;
+}
+
+std::vector<std::vector<int>> Equilibrium::cliques() const {
+    auto cliques = model_->elements().cliques(model_->free_index());
+    for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
+    return cliques;
+}
+
+void Equilibrium::add_tangent(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values,
+                              bool project) const {
+    model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project);
+    for (std::size_t a = 0; a < actuators_.size(); ++a) {
+        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        if (multiplier != 0)
+            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values);
+    }
+}
+
+Eigen::VectorXd Equilibrium::apply_skew(const State& state, const Eigen::VectorXd& v) const {
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(state.x.size());
+    add_free(v, 1, motion);
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(state.x.size());
+    for (const std::size_t a : skew_) {
+        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        actuators_[a].apply_skew(view(state.x), multiplier, view(std::as_const(motion)), view(result));
+    }
+    return restrict_to_free(result);
 }
 
 Eigen::VectorXd Equilibrium::restrict_to_free(const Eigen::VectorXd& full) const {

@@ -1,39 +1,42 @@
-// The equations of one step: forces, cable constraints and the residual that says how far from equilibrium a state is.
+// The equations of one step: forces, actuators and the residual that says how far from equilibrium a state is.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "sim/cable_path.hpp"
+#include "sim/actuator.hpp"
 #include "sim/model.hpp"
 
 namespace pliant::sim {
 
 /// Where the program wants the robot at one instant.
 struct Controls {
-    double load_scale = 0;                ///< share of all loads, gravity and prescribed motions
-    std::vector<double> cable_length_m;   ///< (cables) longest length allowed; infinity where the tension is given
-    std::vector<double> cable_tension_N;  ///< (cables) given tension; 0 where the length is
+    double time = 0;
+    Eigen::VectorXd external_N;         ///< (3n) dead loads and gravity
+    std::vector<double> support_share;  ///< (supports) of their prescribed motion
+    std::vector<Drive> drives;          ///< (actuators)
 };
 
-/// What a solver changes: node positions and the tension of every cable.
+/// What a solver changes: node positions and the multiplier of every actuator.
 struct State {
-    Eigen::VectorXd x;        ///< (3n) metres
-    Eigen::VectorXd tension;  ///< (cables) N, never negative
+    Eigen::VectorXd x;           ///< (3n) metres
+    Eigen::VectorXd multiplier;  ///< (actuators) tension of cables, N, never negative; minus the pressure of air, Pa
 };
 
 /// Everything that is known about a state at given controls.
 struct Evaluation {
     double min_J = 0;                ///< if not positive, nothing below is filled
-    double energy_J = 0;             ///< elastic, minus the work of loads, plus given tension times length
-    Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + tension * dL/dx; at supports the reaction
-    std::vector<double> excess_m;    ///< (cables) length - allowed length (minus infinity where the tension is given)
+    double energy_J = 0;             ///< elastic and of given multipliers and gas, minus the work of loads
+    Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + sum m dg/dx; at supports the reaction
+    Eigen::VectorXd multiplier;      ///< (actuators) the state's or, where not the measure is driven, what it must be
+    Eigen::VectorXd excess;          ///< (actuators) (g - wanted g) / rest g; zero where not the measure is driven
     double residual = 0;             ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
-    double excess = 0;               ///< largest violated length (or slack under tension) over the rest length
-    [[nodiscard]] double error() const { return residual > excess ? residual : excess; }
+    double violation = 0;            ///< largest excess that counts: not that of a slack cable
+    [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
 };
 
-/// The discrete system of one model; holds no state.
+/// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure
+/// loads, each in the order of the model.
 class Equilibrium {
 public:
     explicit Equilibrium(const Model& model);
@@ -44,17 +47,34 @@ public:
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Energy and lengths only: what a line search needs. `merit_weight` (cables) is the price of a metre of excess.
+    /// Energies and measures only: what a line search needs. `prices` (actuators): J for each unit of excess.
     struct Merit {
         double min_J = 0;
         double value_J = 0;
     };
-    [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, double merit_weight) const;
+    [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, const Eigen::VectorXd& prices) const;
+
+    /// Node lists that the tangent couples, as free indices.
+    [[nodiscard]] std::vector<std::vector<int>> cliques() const;
+    /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
+    /// the elastic part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
+    void add_tangent(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values,
+                     bool project) const;
+
+    /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
+    /// out.
+    [[nodiscard]] bool has_skew() const { return !skew_.empty(); }
+    /// (3 free) -> (3 free): the skew part of the tangent times v.
+    [[nodiscard]] Eigen::VectorXd apply_skew(const State& state, const Eigen::VectorXd& v) const;
 
     [[nodiscard]] const Model& model() const { return *model_; }
-    [[nodiscard]] const std::vector<CablePath>& cables() const { return cables_; }
-    [[nodiscard]] double rest_length_m(std::size_t cable) const { return rest_length_[cable]; }
+    [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
+    [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
+    /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
+    [[nodiscard]] double gas_compliance(const Drive& drive, double multiplier) const;
 
+    /// All forces are the gradient of one energy, so that a line search may use it.
+    [[nodiscard]] bool conservative() const { return conservative_; }
     /// Energies that differ by less than this are the same to rounding.
     [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
 
@@ -63,16 +83,22 @@ public:
     void add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const;
 
 private:
-    [[nodiscard]] double external_work(const Eigen::VectorXd& x, double load_scale) const;
+    void add_actuators();
+    [[nodiscard]] Eigen::VectorXd external_at(double time) const;
+    [[nodiscard]] bool rim_is_held(const Wall& wall) const;
+    /// Energy of an actuator whose measure is not driven, at measure g.
+    [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
+    void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
     void fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
                        Evaluation& e) const;
 
     const Model* model_;
-    std::vector<CablePath> cables_;
-    std::vector<double> rest_length_;
-    Eigen::VectorXd rest_;      ///< (3n)
-    Eigen::VectorXd external_;  ///< (3n) all loads and gravity at full scale
-    double force_floor_ = 0;    ///< forces below this are rounding, not load
+    std::vector<Actuator> actuators_;
+    Eigen::VectorXd rest_;           ///< (3n)
+    Eigen::VectorXd gravity_;        ///< (3n) at full share
+    std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
+    bool conservative_ = true;
+    double force_floor_ = 0;  ///< forces below this are rounding, not load
     double energy_rounding_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/chamber_surface.hpp"
 #include "sim/elements.hpp"
 
 namespace pliant::sim {
@@ -57,12 +58,45 @@ Status check_cable(const Cable& cable, int nodes) {
     return {};
 }
 
+/// The faces name points that exist, and those of a chamber close.
+Status check_wall(const Wall& wall, bool closed, int nodes, const std::string& owner) {
+    if (wall.faces.empty()) return input_error("{}: has no wall", owner);
+    for (const Attachment& point : wall.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    for (const WallFace& face : wall.faces) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            const bool none = face[i] == -1 && face[3] == -1 && i >= 3;
+            if (!none && (face[i] < 0 || face[i] >= static_cast<int>(wall.points.size())))
+                return input_error("{}: a face names point {} of its wall, which does not exist", owner, face[i]);
+        }
+    }
+    if (closed && !is_closed(wall)) return input_error("{}: its wall is not closed", owner);
+    return {};
+}
+
+Status check_chamber(const Chamber& chamber, int nodes) {
+    const std::string owner = "chamber \"" + chamber.name + "\"";
+    if (Status status = check_wall(chamber.wall, true, nodes, owner); !status) return status;
+    const double value = chamber.target.value;
+    using Kind = ChamberTarget::Kind;
+    const bool ratio = chamber.target.kind == Kind::volume_ratio || chamber.target.kind == Kind::gas_ratio;
+    if (!std::isfinite(value) || (ratio && value <= 0))
+        return input_error("{}: the target {} is not possible", owner, value);
+    return {};
+}
+
 Status check_loads(const Description& d, int nodes) {
     for (const Load& load : d.loads) {
         const Attachment spread{load.nodes, load.shares, {}};
         if (load.nodes.empty()) return input_error("load \"{}\": acts on nothing", load.name);
         if (Status status = check_attachment(spread, nodes, "load \"" + load.name + "\""); !status) return status;
         if (!is_finite(load.force_N)) return input_error("load \"{}\": the force is not finite", load.name);
+    }
+    for (const PressureLoad& load : d.pressures) {
+        const std::string owner = "load \"" + load.name + "\"";
+        if (Status status = check_wall(load.wall, false, nodes, owner); !status) return status;
+        if (!std::isfinite(load.pressure_Pa)) return input_error("{}: the pressure is not finite", owner);
     }
     for (const Marker& marker : d.markers) {
         if (Status status = check_attachment(marker.point, nodes, "marker \"" + marker.name + "\""); !status)
@@ -137,6 +171,8 @@ Result<Model> Model::create(Description description) {
     if (status) status = check_loads(description, nodes);
     for (std::size_t c = 0; status && c < description.cables.size(); ++c)
         status = check_cable(description.cables[c], nodes);
+    for (std::size_t c = 0; status && c < description.chambers.size(); ++c)
+        status = check_chamber(description.chambers[c], nodes);
     if (status) status = number_free_nodes(description, model.free_index_, model.free_count_);
     if (status) status = check_held(description);
     if (!status) return tl::unexpected(status.error());
@@ -145,6 +181,15 @@ Result<Model> Model::create(Description description) {
     if (!elements) return tl::unexpected(elements.error());
     model.elements_ = std::make_unique<Elements>(std::move(*elements));
     return model;
+}
+
+double CableTarget::at(double time) const {
+    return keys ? keys->at(time) : ramp(kind == Kind::length_ratio ? 1 : 0, value).at(time);
+}
+
+double ChamberTarget::at(double time) const {
+    const bool ratio = kind == Kind::volume_ratio || kind == Kind::gas_ratio;
+    return keys ? keys->at(time) : ramp(ratio ? 1 : 0, value).at(time);
 }
 
 Vec3 position(const Attachment& point, std::span<const double> x) {

@@ -1,7 +1,10 @@
-// A robot as the solver sees it: mesh, laws, supports, loads, cables, markers. Built once, validated, never changed.
+// A robot as the solver sees it: mesh, laws, supports, loads, cables, chambers, markers. Built once, validated, never
+// changed. Time runs from 0, at rest, to the end of the program.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +13,7 @@
 #include "core/vec3.hpp"
 #include "material/law.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "sim/curve.hpp"
 
 namespace pliant::sim {
 
@@ -28,26 +32,58 @@ struct Material {
     double density_kg_m3 = 0;
 };
 
-/// Nodes whose motion is prescribed: from rest to rest + move, in proportion to time.
+/// Nodes whose motion is prescribed: they are at rest + share * move.
 struct Support {
     std::string name;
     std::vector<int> nodes;
     Vec3 move_m;
+    Curve share = ramp(0, 1);
 };
 
-/// A force that keeps its direction and grows in proportion to time.
+/// A force that keeps its direction: share * force.
 struct Load {
     std::string name;
     std::vector<int> nodes;
     std::vector<double> shares;  ///< of the total force, sum 1
     Vec3 force_N;
+    Curve share = ramp(0, 1);
 };
 
-/// What a cable is driven by, reached in proportion to time.
+/// A face of a wall: 3 corners and, where it is curved, the points between 0-1, 1-2, 2-0 (else -1); indices into
+/// Wall::points. Seen counter-clockwise from the solid side: the normal points out of the air.
+using WallFace = std::array<int, 6>;
+
+/// A surface that air presses on; its points ride on the mesh.
+struct Wall {
+    std::vector<Attachment> points;
+    std::vector<WallFace> faces;
+};
+
+/// A pressure that follows the surface as it deforms: share * pressure, towards the solid.
+struct PressureLoad {
+    std::string name;
+    Wall wall;
+    double pressure_Pa = 0;
+    Curve share = ramp(0, 1);
+};
+
+/// What a cable is driven by: in a straight line from rest to `value` at time 1, or through keys.
 struct CableTarget {
     enum class Kind { length_ratio, shortening_m, tension_N };
     Kind kind = Kind::length_ratio;
     double value = 1;
+    std::optional<Curve> keys = std::nullopt;
+    [[nodiscard]] double at(double time) const;
+};
+
+/// What a chamber is driven by, likewise. gas_ratio: the chamber is sealed and holds this many times the gas that it
+/// holds at rest at ambient pressure; (p + p_ambient) V = gas_ratio p_ambient V_rest, at constant temperature.
+struct ChamberTarget {
+    enum class Kind { volume_ratio, volume_change_m3, pressure_Pa, gas_ratio };
+    Kind kind = Kind::volume_ratio;
+    double value = 1;
+    std::optional<Curve> keys = std::nullopt;
+    [[nodiscard]] double at(double time) const;
 };
 
 /// A frictionless cable through guide points; its length is that of the polyline.
@@ -55,6 +91,13 @@ struct Cable {
     std::string name;
     std::vector<Attachment> points;  ///< at least two
     CableTarget target;
+};
+
+/// Air inside a closed wall. Its pressure (above ambient, of either sign) is the multiplier of its volume.
+struct Chamber {
+    std::string name;
+    Wall wall;
+    ChamberTarget target;
 };
 
 /// A point of the material whose position is reported.
@@ -69,9 +112,13 @@ struct Description {
     std::vector<int> material_of_region;  ///< (regions)
     std::vector<Support> supports;
     std::vector<Load> loads;
+    std::vector<PressureLoad> pressures;
     std::vector<Cable> cables;
+    std::vector<Chamber> chambers;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
+    Curve gravity_share = ramp(0, 1);
+    double ambient_pressure_Pa = 101325;
 };
 
 class Model {

@@ -66,10 +66,15 @@ public:
         step.min_J = evaluation_.min_J;
         const auto& d = model_.description();
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-        for (std::size_t c = 0; c < d.cables.size(); ++c) {
-            const double length = system_.cables()[c].length(x);
-            step.cables.push_back({d.cables[c].name, length / system_.rest_length_m(c), length,
-                                   state_.tension[static_cast<Eigen::Index>(c)]});
+        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+            const Actuator& actuator = system_.actuators()[a];
+            const double measure = actuator.measure(x);
+            const double ratio = measure / actuator.rest_measure();
+            const double multiplier = state_.multiplier[static_cast<Eigen::Index>(a)];
+            if (a < d.cables.size())
+                step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
+            else
+                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, -multiplier});
         }
         for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});
         for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
@@ -79,8 +84,8 @@ public:
     /// A gap that has closed between two guide points: from here on the flanks would touch.
     void warn(int step, std::vector<std::string>& warnings) {
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-        for (std::size_t c = 0; c < system_.cables().size(); ++c) {
-            const int segment = system_.cables()[c].closed_segment(x);
+        for (std::size_t c = 0; c < system_.cable_count(); ++c) {
+            const int segment = system_.actuators()[c].cable().closed_segment(x);
             if (segment < 0 || !warned_.insert(c).second) continue;
             warnings.push_back(
                 fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
@@ -119,7 +124,11 @@ private:
             State onward = state_;
             const double factor = (time - time_) / (time_ - previous_time_);
             onward.x += factor * (state_.x - previous_.x);
-            onward.tension = (onward.tension + factor * (state_.tension - previous_.tension)).cwiseMax(0.0);
+            onward.multiplier += factor * (state_.multiplier - previous_.multiplier);
+            for (std::size_t c = 0; c < system_.cable_count(); ++c) {
+                double& tension = onward.multiplier[static_cast<Eigen::Index>(c)];
+                tension = std::max(tension, 0.0);
+            }
             system_.place_supports(controls, onward.x);
             if (system_.evaluate(onward, controls).min_J > 0) next = std::move(onward);
         }

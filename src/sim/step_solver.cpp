@@ -18,94 +18,127 @@ constexpr double smallest_step = 1e-7;
 constexpr std::size_t error_memory = 10;
 
 struct Direction {
-    Eigen::VectorXd dx;       ///< (3 free)
-    Eigen::VectorXd tension;  ///< (cables) tension that goes with the full step
-    double slope_J = 0;       ///< change of energy along dx, to first order
+    Eigen::VectorXd dx;          ///< (3 free)
+    Eigen::VectorXd multiplier;  ///< (actuators) that goes with the full step
+    double slope_J = 0;          ///< change of energy along dx, to first order
 };
 
-/// The tensions t >= 0 that minimise t^T S t / 2 - t^T b: each cable either pulls and keeps its length, or is slack and
-/// not too long. S = A^T H^-1 A may be singular (parallel cables). Lawson and Hanson 1974, chapter 23.
-Eigen::VectorXd tensions_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b) {
+/// Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
+Eigen::VectorXd solve_small(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right_side) {
+    return matrix.completeOrthogonalDecomposition().solve(right_side);
+}
+
+/// The multipliers m that solve min m^T S m / 2 - m^T b, where those that `only_pull` may not be negative: each cable
+/// either pulls and keeps its length, or is slack and not too long. S = A^T H^-1 A may be singular (parallel cables).
+/// Lawson and Hanson 1974, chapter 23.
+Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b,
+                                      const std::vector<bool>& only_pull) {
     const Eigen::Index count = b.size();
-    Eigen::VectorXd t = Eigen::VectorXd::Zero(count);
-    std::vector<Eigen::Index> pulling;
+    Eigen::VectorXd m = Eigen::VectorXd::Zero(count);
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index i = 0; i < count; ++i) {
+        if (!only_pull[static_cast<std::size_t>(i)]) active.push_back(i);
+    }
+    if (!active.empty()) m(active) = solve_small(S(active, active), b(active));
     const double rounding = 1e-13 * (b.cwiseAbs().maxCoeff() + 1e-300);
     for (Eigen::Index round = 0; round < 3 * count + 3; ++round) {
-        const Eigen::VectorXd excess = b - S * t;
+        const Eigen::VectorXd excess = b - S * m;
         Eigen::Index worst = -1;
         for (Eigen::Index i = 0; i < count; ++i) {
-            const bool slack = std::find(pulling.begin(), pulling.end(), i) == pulling.end();
+            const bool slack = std::find(active.begin(), active.end(), i) == active.end();
             if (slack && excess[i] > rounding && (worst < 0 || excess[i] > excess[worst])) worst = i;
         }
         if (worst < 0) break;
-        pulling.push_back(worst);
-        while (!pulling.empty()) {
-            const Eigen::MatrixXd small = S(pulling, pulling);
-            const Eigen::VectorXd wanted = small.ldlt().solve(b(pulling));
-            double share = 1;  // of the way from t to wanted that keeps every tension positive
-            for (std::size_t k = 0; k < pulling.size(); ++k) {
-                const double from = t[pulling[k]];
+        active.push_back(worst);
+        while (!active.empty()) {
+            const Eigen::VectorXd wanted = solve_small(S(active, active), b(active));
+            double share = 1;  // of the way from m to wanted that keeps every tension positive
+            for (std::size_t k = 0; k < active.size(); ++k) {
+                const double from = m[active[k]];
                 const double to = wanted[static_cast<Eigen::Index>(k)];
-                if (to <= 0) share = std::min(share, from / (from - to));
+                if (only_pull[static_cast<std::size_t>(active[k])] && to <= 0)
+                    share = std::min(share, from / (from - to));
             }
-            for (std::size_t k = 0; k < pulling.size(); ++k) {
-                t[pulling[k]] += share * (wanted[static_cast<Eigen::Index>(k)] - t[pulling[k]]);
-            }
+            for (std::size_t k = 0; k < active.size(); ++k)
+                m[active[k]] += share * (wanted[static_cast<Eigen::Index>(k)] - m[active[k]]);
             if (share == 1) break;
-            std::erase_if(pulling,
-                          [&](Eigen::Index i) { return t[i] <= 1e-14 * t.maxCoeff() ? (t[i] = 0, true) : false; });
+            const double zero = 1e-14 * m.cwiseAbs().maxCoeff();
+            std::erase_if(active, [&](Eigen::Index i) {
+                return only_pull[static_cast<std::size_t>(i)] && m[i] <= zero ? (m[i] = 0, true) : false;
+            });
         }
     }
-    return t;
+    return m;
 }
 
 class StepSolver {
 public:
     StepSolver(const Equilibrium& system, Curvature& curvature, const Controls& controls, State& state)
         : system_(system), curvature_(curvature), controls_(controls), state_(state) {
-        for (std::size_t c = 0; c < controls.cable_length_m.size(); ++c) {
-            if (std::isfinite(controls.cable_length_m[c]))
-                driven_.push_back(static_cast<Eigen::Index>(c));
-            else
-                state_.tension[static_cast<Eigen::Index>(c)] = controls.cable_tension_N[c];
+        for (std::size_t a = 0; a < controls.drives.size(); ++a) {
+            if (controls.drives[a].kind == Drive::Kind::multiplier) continue;
+            solved_.push_back(static_cast<Eigen::Index>(a));
+            only_pull_.push_back(system.actuators()[a].only_pulls());
         }
-        conservative_ = system.model().elements().has_energy();
+        prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
         evaluation_ = system.evaluate(state, controls);
+        if (evaluation_.min_J > 0) state_.multiplier = evaluation_.multiplier;
     }
 
     [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
     [[nodiscard]] bool converged(double tolerance) const {
-        return evaluation_.residual <= tolerance && evaluation_.excess <= excess_share * tolerance;
+        return evaluation_.residual <= tolerance && evaluation_.violation <= excess_share * tolerance;
     }
 
     /// One iteration; false if no acceptable step was found.
     bool iterate(bool cautious) {
-        if (!curvature_.refresh(state_, cautious)) return false;
+        if (!curvature_.refresh(state_, controls_, cautious)) return false;
         const Direction direction = find_direction();
         if (!direction.dx.allFinite()) return false;
         return search(direction);
     }
 
 private:
-    /// dL/dx of every cable driven by length, on free nodes: (3 free, driven).
+    [[nodiscard]] const Actuator& actuator(Eigen::Index a) const {
+        return system_.actuators()[static_cast<std::size_t>(a)];
+    }
+    [[nodiscard]] static std::span<const double> view(const Eigen::VectorXd& v) {
+        return {v.data(), static_cast<std::size_t>(v.size())};
+    }
+
+    /// Gradients of the relative measures g / rest g whose multipliers are unknown, on free nodes: (3 free, solved).
     [[nodiscard]] Eigen::MatrixXd constraint_gradients() const {
-        Eigen::MatrixXd gradients(3 * system_.model().free_count(), static_cast<Eigen::Index>(driven_.size()));
-        for (std::size_t k = 0; k < driven_.size(); ++k) {
+        Eigen::MatrixXd gradients(3 * system_.model().free_count(), static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
-            system_.cables()[static_cast<std::size_t>(driven_[k])].add_gradient(
-                {state_.x.data(), static_cast<std::size_t>(state_.x.size())}, 1.0,
-                {full.data(), static_cast<std::size_t>(full.size())});
+            actuator(solved_[k])
+                .add_gradient(view(state_.x), 1 / actuator(solved_[k]).rest_measure(),
+                              {full.data(), static_cast<std::size_t>(full.size())});
             gradients.col(static_cast<Eigen::Index>(k)) = system_.restrict_to_free(full);
         }
         return gradients;
     }
 
-    [[nodiscard]] Eigen::VectorXd excess_of_driven() const {
-        Eigen::VectorXd excess(static_cast<Eigen::Index>(driven_.size()));
-        for (std::size_t k = 0; k < driven_.size(); ++k) {
-            excess[static_cast<Eigen::Index>(k)] = evaluation_.excess_m[static_cast<std::size_t>(driven_[k])];
+    /// Rest measures of the solved actuators: multipliers times these are energies, all of one kind.
+    [[nodiscard]] Eigen::VectorXd scales() const {
+        Eigen::VectorXd scale(static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k)
+            scale[static_cast<Eigen::Index>(k)] = actuator(solved_[k]).rest_measure();
+        return scale;
+    }
+
+    /// A sealed gas gives way: a compliance beside the body's own, (solved).
+    [[nodiscard]] Eigen::VectorXd compliances() const {
+        Eigen::VectorXd compliance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k) {
+            const Eigen::Index a = solved_[k];
+            const Drive& drive = controls_.drives[static_cast<std::size_t>(a)];
+            const double rest = actuator(a).rest_measure();
+            if (drive.kind == Drive::Kind::gas)
+                compliance[static_cast<Eigen::Index>(k)] =
+                    system_.gas_compliance(drive, state_.multiplier[a]) / (rest * rest);
         }
-        return excess;
+        return compliance;
     }
 
     [[nodiscard]] Direction find_direction() {
@@ -117,42 +150,58 @@ private:
         curvature_.solve(columns);
 
         Direction direction;
-        direction.tension = state_.tension;
+        direction.multiplier = state_.multiplier;
         direction.dx = -columns.col(0);
         Eigen::VectorXd energy_gradient = gradient;
-        if (!driven_.empty()) {
-            const Eigen::VectorXd tension = state_.tension(driven_);
-            const Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
-            const Eigen::VectorXd excess = excess_of_driven() - A.transpose() * columns.col(0);  // after the free step
-            const Eigen::VectorXd change = tensions_that_hold(S, excess + S * tension) - tension;
+        if (!solved_.empty()) {
+            const Eigen::VectorXd scale = scales();
+            const Eigen::VectorXd compliance = compliances();
+            const Eigen::VectorXd now = state_.multiplier(solved_).cwiseProduct(scale);
+            Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
+            // What is too much after the free step; then what it takes beside the present multipliers.
+            const Eigen::VectorXd excess = evaluation_.excess(solved_) - A.transpose() * columns.col(0);
+            S.diagonal() += compliance;
+            const Eigen::VectorXd change = multipliers_that_hold(S, excess + S * now, only_pull_) - now;
             direction.dx -= columns.rightCols(A.cols()) * change;
-            direction.tension(driven_) += change;
-            direction.tension = direction.tension.cwiseMax(0.0);
-            energy_gradient -= A * tension;
+            direction.multiplier(solved_) += change.cwiseQuotient(scale);
+            for (const Eigen::Index a : solved_) {
+                if (actuator(a).only_pulls()) direction.multiplier[a] = std::max(direction.multiplier[a], 0.0);
+            }
+            for (std::size_t k = 0; k < solved_.size(); ++k) {
+                const auto i = static_cast<Eigen::Index>(k);
+                if (drives_measure(solved_[k])) energy_gradient -= A.col(i) * now[i];
+            }
         }
         direction.slope_J = energy_gradient.dot(direction.dx);
         return direction;
     }
 
+    [[nodiscard]] bool drives_measure(Eigen::Index a) const {
+        return controls_.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::measure;
+    }
+
     /// Halves the step until min_J stays positive and the merit (or the error) goes down.
     bool search(const Direction& direction) {
-        const double price = price_of_excess(direction);
-        const Equilibrium::Merit start = system_.merit(state_.x, controls_, price);
-        double violated = 0;
-        for (const Eigen::Index c : driven_)
-            violated += std::max(evaluation_.excess_m[static_cast<std::size_t>(c)], 0.0);
-        const double slope = direction.slope_J - price * violated;
+        raise_prices(direction);
+        const Equilibrium::Merit start = system_.merit(state_.x, controls_, prices_);
+        double cost = 0;  // of the present excess; a full step removes it
+        for (const Eigen::Index a : solved_) {
+            const double excess = evaluation_.excess[a];
+            cost += prices_[a] * (actuator(a).only_pulls() ? std::max(excess, 0.0) : std::fabs(excess));
+        }
+        const double slope = direction.slope_J - cost;
+        const bool conservative = system_.conservative();
         for (double alpha = 1; alpha > smallest_step; alpha *= 0.5) {
             State next = state_;
             system_.add_free(direction.dx, alpha, next.x);
-            next.tension += alpha * (direction.tension - state_.tension);
-            const Equilibrium::Merit merit = system_.merit(next.x, controls_, price);
+            next.multiplier += alpha * (direction.multiplier - state_.multiplier);
+            const Equilibrium::Merit merit = system_.merit(next.x, controls_, prices_);
             if (!(merit.min_J > 0.05 * evaluation_.min_J)) continue;
-            const bool lower = conservative_ && slope < 0 &&
+            const bool lower = conservative && slope < 0 &&
                                merit.value_J <= start.value_J + 1e-4 * alpha * slope + system_.energy_rounding_J();
             Evaluation evaluation = system_.evaluate(next, controls_);
-            const bool nearer = conservative_ ? evaluation.error() < 0.5 * evaluation_.error()
-                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
+            const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
+                                             : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
             if (!lower && !nearer) continue;
             accept(std::move(next), std::move(evaluation), direction, alpha);
             return true;
@@ -167,17 +216,18 @@ private:
         return errors_.size() < error_memory ? 2 : *std::max_element(errors_.begin(), errors_.end());
     }
 
-    /// A metre of excess must cost more than any tension that holds it, or the merit would prefer long cables.
-    [[nodiscard]] double price_of_excess(const Direction& direction) {
-        for (const Eigen::Index c : driven_) price_ = std::max(price_, 2 * direction.tension[c]);
-        return price_;
+    /// Excess must cost more than any multiplier that holds it, or the merit would prefer long cables.
+    void raise_prices(const Direction& direction) {
+        for (const Eigen::Index a : solved_) {
+            if (drives_measure(a))
+                prices_[a] = std::max(prices_[a], 2 * std::fabs(direction.multiplier[a]) * actuator(a).rest_measure());
+        }
     }
 
     void accept(State next, Evaluation evaluation, const Direction& direction, double alpha) {
-        // The quasi-Newton pair needs both forces at the same tension.
-        State before = state_;
-        before.tension = next.tension;
-        const Eigen::VectorXd old_force = driven_.empty() ? evaluation_.out_of_balance : force_at(before);
+        // The quasi-Newton pair needs both forces at the same multipliers.
+        next.multiplier = evaluation.multiplier;
+        const Eigen::VectorXd old_force = solved_.empty() ? evaluation_.out_of_balance : force_at(next.multiplier);
         curvature_.learn(alpha * direction.dx, system_.restrict_to_free(evaluation.out_of_balance - old_force));
         state_ = std::move(next);
         evaluation_ = std::move(evaluation);
@@ -185,13 +235,12 @@ private:
         if (errors_.size() > error_memory) errors_.pop_front();
     }
 
-    /// Out-of-balance force of the present positions at other tensions: only the cables' part changes.
-    [[nodiscard]] Eigen::VectorXd force_at(const State& state) const {
+    /// Out-of-balance force of the present positions at other multipliers.
+    [[nodiscard]] Eigen::VectorXd force_at(const Eigen::VectorXd& multiplier) const {
         Eigen::VectorXd force = evaluation_.out_of_balance;
-        for (const Eigen::Index c : driven_) {
-            system_.cables()[static_cast<std::size_t>(c)].add_gradient(
-                {state.x.data(), static_cast<std::size_t>(state.x.size())}, state.tension[c] - state_.tension[c],
-                {force.data(), static_cast<std::size_t>(force.size())});
+        for (const Eigen::Index a : solved_) {
+            actuator(a).add_gradient(view(state_.x), multiplier[a] - state_.multiplier[a],
+                                     {force.data(), static_cast<std::size_t>(force.size())});
         }
         return force;
     }
@@ -201,10 +250,10 @@ private:
     const Controls& controls_;
     State& state_;
     Evaluation evaluation_;
-    std::vector<Eigen::Index> driven_;  ///< cables driven by length
-    bool conservative_ = true;
-    double price_ = 0;
-    std::deque<double> errors_;  ///< of the last steps
+    std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
+    std::vector<bool> only_pull_;       ///< (solved)
+    Eigen::VectorXd prices_;            ///< (actuators)
+    std::deque<double> errors_;         ///< of the last steps
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Brings one state to equilibrium at fixed controls: sequential quadratic programming with cables as constraints.
+// Brings one state to equilibrium at fixed controls: sequential quadratic programming with lengths and volumes as
+// constraints.
 #pragma once
 
 #include <string>
@@ -22,9 +23,10 @@ struct StepOutcome {
     std::string reason;     ///< why it did not converge
 };
 
-/// Minimises the energy subject to length <= allowed length for every cable driven by length; the multiplier is the
-/// tension, so a cable only pulls. Every accepted state has min_J > 0 and a lower merit (energy plus the price of
-/// excess length) or, where a law has no energy, a lower residual. Precondition: min_J > 0 at `state`.
+/// Minimises the energy subject to length <= allowed length for every cable driven by length and volume = wanted volume
+/// for every chamber driven by volume; the multipliers are tension, so that a cable only pulls, and pressure. Every
+/// accepted state has min_J > 0 and a lower merit (energy plus the price of excess) or, where the forces have no
+/// energy, an error that is not above the last ones. Precondition: min_J > 0 at `state`.
 /// Source of the constraint step: Nocedal and Wright, Numerical Optimization, chapter 18.
 [[nodiscard]] StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
                                      const StepSettings& settings, State& state, const Progress& progress);

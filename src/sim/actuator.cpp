@@ -1,0 +1,36 @@
+#include "sim/actuator.hpp"
+
+#include <utility>
+
+namespace pliant::sim {
+
+Actuator::Actuator(CablePath path, std::span<const double> rest)
+    : geometry_(std::move(path)), rest_measure_(measure(rest)) {}
+
+Actuator::Actuator(ChamberSurface surface, std::span<const double> rest)
+    : geometry_(std::move(surface)), rest_measure_(measure(rest)) {}
+
+double Actuator::measure(std::span<const double> x) const {
+    if (const auto* path = std::get_if<CablePath>(&geometry_)) return path->length(x);
+    return std::get<ChamberSurface>(geometry_).volume(x);
+}
+
+void Actuator::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
+    std::visit([&](const auto& geometry) { geometry.add_gradient(x, factor, forces); }, geometry_);
+}
+
+void Actuator::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
+                           const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    std::visit([&](const auto& geometry) { geometry.add_hessian(x, factor, free_index, pattern, values); }, geometry_);
+}
+
+void Actuator::apply_skew(std::span<const double> x, double factor, std::span<const double> v,
+                          std::span<double> result) const {
+    if (const auto* wall = std::get_if<ChamberSurface>(&geometry_)) wall->apply_skew(x, factor, v, result);
+}
+
+void Actuator::append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+    std::visit([&](const auto& geometry) { geometry.append_cliques(free_index, cliques); }, geometry_);
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,55 @@
+// What drives a robot is geometry: a cable's length, a chamber's volume. Both are one function g of the node positions,
+// its measure, and a multiplier m that puts the force -m dg/dx on the nodes: m is the tension of a cable and minus the
+// pressure of a chamber.
+#pragma once
+
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "sim/cable_path.hpp"
+#include "sim/chamber_surface.hpp"
+
+namespace pliant::sim {
+
+class Actuator {
+public:
+    Actuator(CablePath path, std::span<const double> rest);
+    Actuator(ChamberSurface surface, std::span<const double> rest);
+
+    /// Length in m or volume in m^3, and at rest.
+    [[nodiscard]] double measure(std::span<const double> x) const;
+    [[nodiscard]] double rest_measure() const { return rest_measure_; }
+    /// A cable pulls and never pushes (m >= 0, and it may be shorter than allowed); air does both.
+    [[nodiscard]] bool only_pulls() const { return std::holds_alternative<CablePath>(geometry_); }
+
+    /// forces (3n) += factor * dg/dx.
+    void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
+    /// values += factor * d2g/dx2, for a pattern over free nodes (block 3) that holds the cliques.
+    void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
+                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+    /// result (3n) += factor * (skew part of the derivative of the gradient) * v: only a pressed patch with a free rim
+    /// has one, its force is not the gradient of g.
+    void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
+                    std::span<double> result) const;
+    void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
+
+    [[nodiscard]] const CablePath& cable() const { return std::get<CablePath>(geometry_); }
+
+private:
+    std::variant<CablePath, ChamberSurface> geometry_;
+    double rest_measure_;
+};
+
+/// How an actuator is driven at one instant.
+struct Drive {
+    enum class Kind {
+        measure,     ///< g = value (a cable: at most)
+        multiplier,  ///< m = value
+        gas          ///< a sealed chamber: (-m + p_ambient) g = value, in J
+    };
+    Kind kind = Kind::measure;
+    double value = 0;
+};
+
+}  // namespace pliant::sim

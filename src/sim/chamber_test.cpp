@@ -1,0 +1,256 @@
+// Chambers: geometry of the wall by finite differences, and one answer whichever way the air is driven.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "sim/attach.hpp"
+#include "sim/chamber_surface.hpp"
+#include "sim/reference_problems.hpp"
+#include "sim/simulate.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+
+namespace {
+
+constexpr double side = 0.01;
+
+/// A block of 3 x 1 x 1 cm with an empty box in the middle, clamped at x = 0.
+Description hollow_block(int order, double nu = 0.4) {
+    const auto void_at = [](Vec3 c) {
+        const auto inside = [](double v, double low, double high) { return v > low && v < high; };
+        return inside(c.x, 0.005, 0.025) && inside(c.y, 0.0025, 0.0075) && inside(c.z, 0.0025, 0.0075) ? 1 : 0;
+    };
+    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 6, 4, 4, void_at);
+    whole.region_names = {"solid", "air"};
+    if (order == 2) whole = mesh::to_quadratic(whole);
+    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
+    Description d;
+    d.mesh = std::move(solid.mesh);
+    d.materials = {{"A", material::neo_hookean(1e5, nu), 1000}};
+    d.material_of_region = {0};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    Chamber air{"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}};
+    d.chambers.push_back(std::move(air));
+    d.markers = {
+        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }))}};
+    return d;
+}
+
+Trajectory solve(Description d, Program program) {
+    auto model = Model::create(std::move(d));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    Progress silent;
+    return run(*model, program, silent);
+}
+
+/// Rest positions with a smooth and a rough distortion.
+std::vector<double> distorted(const mesh::TetMesh& mesh) {
+    std::vector<double> x;
+    for (const Vec3& p : mesh.points) {
+        const double s = 1e-3 * std::sin(517 * p.x + 911 * p.y - 1300 * p.z);
+        x.insert(x.end(), {p.x + s, p.y + 0.1 * p.x + 0.5 * s, p.z * 1.1 - 0.7 * s});
+    }
+    return x;
+}
+
+}  // namespace
+
+TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
+    for (const int order : {1, 2}) {
+        const Description d = hollow_block(order);
+        std::vector<double> rest;
+        for (const Vec3& p : d.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+        const ChamberSurface wall(d.chambers[0].wall, rest);
+        CHECK(is_closed(d.chambers[0].wall));
+        CHECK(wall.volume(rest) == doctest::Approx(0.02 * 0.005 * 0.005).epsilon(1e-12));
+
+        std::vector<double> x = distorted(d.mesh);
+        std::vector<double> gradient(x.size(), 0.0);
+        wall.add_gradient(x, 1, gradient);
+        std::vector<int> free_index(d.mesh.points.size());
+        std::iota(free_index.begin(), free_index.end(), 0);
+        std::vector<std::vector<int>> cliques;
+        wall.append_cliques(free_index, cliques);
+        const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
+        std::vector<double> hessian(pattern.entries(), 0.0);
+        wall.add_hessian(x, 1, free_index, pattern, hessian);
+
+        // Along one rough direction: the volume is a cubic, so central differences are exact but for rounding.
+        std::vector<double> direction(x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) direction[i] = std::cos(12.9898 * static_cast<double>(i));
+        double slope = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) slope += gradient[i] * direction[i];
+        const double h = 1e-5;
+        std::vector<double> ahead = x;
+        std::vector<double> behind = x;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            ahead[i] += h * direction[i];
+            behind[i] -= h * direction[i];
+        }
+        CHECK((wall.volume(ahead) - wall.volume(behind)) / (2 * h) == doctest::Approx(slope).epsilon(1e-5));
+        std::vector<double> gradient_ahead(x.size(), 0.0);
+        std::vector<double> gradient_behind(x.size(), 0.0);
+        wall.add_gradient(ahead, 1, gradient_ahead);
+        wall.add_gradient(behind, 1, gradient_behind);
+        double largest = 0;
+        double wrong = 0;
+        std::vector<double> product(x.size(), 0.0);
+        for (int column = 0; column < pattern.size(); ++column) {
+            for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
+                const int row = pattern.row[k];
+                product[row] += hessian[k] * direction[column];
+                if (row != column) product[column] += hessian[k] * direction[row];
+            }
+        }
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double expected = (gradient_ahead[i] - gradient_behind[i]) / (2 * h);
+            largest = std::max(largest, std::fabs(expected));
+            wrong = std::max(wrong, std::fabs(expected - product[i]));
+        }
+        CHECK(wrong < 1e-8 * largest);
+    }
+}
+
+TEST_CASE("an open wall: symmetric and skew part together are the derivative of the follower force") {
+    const Description d = hollow_block(2);
+    Wall wall = d.chambers[0].wall;
+    wall.faces.resize(wall.faces.size() / 3);
+    REQUIRE_FALSE(is_closed(wall));
+    std::vector<double> x = distorted(d.mesh);
+    const ChamberSurface surface(wall, x);
+    std::vector<double> v(x.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::cos(12.9898 * static_cast<double>(i));
+    std::vector<int> free_index(d.mesh.points.size());
+    std::iota(free_index.begin(), free_index.end(), 0);
+    std::vector<std::vector<int>> cliques;
+    surface.append_cliques(free_index, cliques);
+    const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
+    std::vector<double> hessian(pattern.entries(), 0.0);
+    surface.add_hessian(x, 1, free_index, pattern, hessian);
+    std::vector<double> product(x.size(), 0.0);
+    for (int column = 0; column < pattern.size(); ++column) {
+        for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
+            const int row = pattern.row[k];
+            product[row] += hessian[k] * v[column];
+            if (row != column) product[column] += hessian[k] * v[row];
+        }
+    }
+    std::vector<double> skew(x.size(), 0.0);
+    surface.apply_skew(x, 1, v, skew);
+    const double h = 1e-5;
+    std::vector<double> ahead(x.size(), 0.0);
+    std::vector<double> behind(x.size(), 0.0);
+    std::vector<double> moved = x;
+    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = x[i] + h * v[i];
+    surface.add_gradient(moved, 1, ahead);
+    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = x[i] - h * v[i];
+    surface.add_gradient(moved, 1, behind);
+    double largest = 0;
+    double wrong = 0;
+    double skewness = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double expected = (ahead[i] - behind[i]) / (2 * h);
+        largest = std::max(largest, std::fabs(expected));
+        wrong = std::max(wrong, std::fabs(expected - product[i] - skew[i]));
+        skewness = std::max(skewness, std::fabs(skew[i]));
+    }
+    CHECK(wrong < 1e-8 * largest);
+    CHECK(skewness > 1e-2 * largest);
+}
+
+TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {
+    for (const int order : {1, 2}) {
+        Description d = hollow_block(order);
+        d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.6};
+        const Trajectory by_volume = solve(d, {.steps = 4, .tolerance = 1e-8});
+        REQUIRE_MESSAGE(by_volume.converged, by_volume.message);
+        const ChamberState air = by_volume.steps.back().chambers[0];
+        CHECK(air.volume_ratio == doctest::Approx(1.6).epsilon(1e-9));
+        CHECK(air.pressure_Pa > 1000);
+
+        d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, air.pressure_Pa};
+        const Trajectory by_pressure = solve(d, {.steps = 4, .tolerance = 1e-8});
+        REQUIRE_MESSAGE(by_pressure.converged, by_pressure.message);
+        CHECK(by_pressure.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).epsilon(1e-6));
+
+        const double gas = 1.6 * (air.pressure_Pa + d.ambient_pressure_Pa) / d.ambient_pressure_Pa;
+        d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, gas};
+        const Trajectory by_gas = solve(d, {.steps = 4, .tolerance = 1e-8});
+        REQUIRE_MESSAGE(by_gas.converged, by_gas.message);
+        CHECK(by_gas.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).epsilon(1e-6));
+        CHECK(by_gas.steps.back().chambers[0].pressure_Pa == doctest::Approx(air.pressure_Pa).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("every solver inflates and deflates a chamber") {
+    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::local_global}) {
+        for (const double ratio : {1.4, 0.7}) {
+            Description d = hollow_block(1);
+            d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, ratio};
+            const Trajectory result = solve(d, {.steps = 4, .tolerance = 1e-5, .solver = solver});
+            CAPTURE(result.solver);
+            CAPTURE(ratio);
+            REQUIRE_MESSAGE(result.converged, result.message);
+            CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(ratio).epsilon(1e-6));
+            CHECK((result.steps.back().chambers[0].pressure_Pa > 0) == (ratio > 1));
+        }
+    }
+}
+
+TEST_CASE("a sealed chamber stiffens the block that holds it") {
+    // Push at the far end: the chamber shrinks, its gas pushes back.
+    Description d = hollow_block(2);
+    d.supports.push_back(
+        {"grip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }), {-0.3 * side, 0, 0}});
+    d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1};
+    const Trajectory sealed = solve(d, {.steps = 3, .tolerance = 1e-7});
+    REQUIRE_MESSAGE(sealed.converged, sealed.message);
+    const ChamberState air = sealed.steps.back().chambers[0];
+    CHECK((air.pressure_Pa + d.ambient_pressure_Pa) * air.volume_m3 ==
+          doctest::Approx(d.ambient_pressure_Pa * 0.02 * 0.005 * 0.005).epsilon(1e-9));
+    d.chambers.clear();
+    const Trajectory open = solve(d, {.steps = 3, .tolerance = 1e-7});
+    REQUIRE(open.converged);
+    CHECK(air.pressure_Pa > 0);
+    CHECK(std::fabs(sealed.steps.back().supports[1].force_N.x) > std::fabs(open.steps.back().supports[1].force_N.x));
+}
+
+TEST_CASE("a pressure on the outer surface follows it, and its sum is what the support carries") {
+    Description d = hollow_block(2);
+    d.chambers.clear();
+    std::vector<mesh::Face> faces;
+    for (const mesh::Face& face : mesh::boundary_faces(d.mesh)) {
+        const auto on_top = [&](int node) { return d.mesh.points[node].z > side - 1e-9; };
+        if (on_top(face.nodes[0]) && on_top(face.nodes[1]) && on_top(face.nodes[2])) {
+            mesh::Face turned = face;  // seen from the solid side: out of the air
+            std::swap(turned.nodes[1], turned.nodes[2]);
+            std::swap(turned.nodes[3], turned.nodes[5]);
+            faces.push_back(turned);
+        }
+    }
+    std::vector<int> same(d.mesh.points.size());
+    std::iota(same.begin(), same.end(), 0);
+    const double pressure = 300;
+    d.pressures = {{"press", wall_of_faces(d.mesh, faces, same), pressure}};
+    const Trajectory result = solve(d, {.steps = 3, .tolerance = 1e-8});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    const Vec3 force = result.steps.back().supports[0].force_N;
+    // Little bending: the top presses down with pressure times area, to the order of the rotation.
+    CHECK(force.z == doctest::Approx(pressure * 3 * side * side).epsilon(0.1));
+    CHECK(result.steps.back().markers[0].position_m.z < 0.5 * side - 1e-4);
+    // Four times the pressure: the surface turns and carries the force with it.
+    d.pressures[0].pressure_Pa = 4 * pressure;
+    const Trajectory strong = solve(d, {.steps = 10, .tolerance = 1e-8});
+    REQUIRE_MESSAGE(strong.converged, strong.message);
+    CHECK(strong.steps.back().supports[0].force_N.x > 0.05 * strong.steps.back().supports[0].force_N.z);
+}
+
+TEST_CASE("an open wall is no chamber") {
+    Description d = hollow_block(1);
+    d.chambers[0].wall.faces.pop_back();
+    const auto model = Model::create(std::move(d));
+    REQUIRE_FALSE(model);
+    CHECK(model.error().message.find("not closed") != std::string::npos);
+}
