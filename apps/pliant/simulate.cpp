@@ -64,6 +64,10 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
         fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
                    1e3 * c.length_m, c.tension_N);
     }
+    for (const auto& c : last.chambers) {
+        fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
+                   1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
+    }
     for (const auto& s : last.supports) {
         fmt::print("support {}: force ({:.4f}, {:.4f}, {:.4f}) N\n", s.name, s.force_N.x, s.force_N.y, s.force_N.z);
     }

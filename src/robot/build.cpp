@@ -37,66 +37,123 @@ double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
     return std::max({box.size().x, box.size().y, box.size().z}) / 24;
 }
 
+/// The drawn air of all chambers, in the order of the file.
+std::vector<mesh::Solid> drawn_air(const Robot& robot) {
+    std::vector<mesh::Solid> solids;
+    for (const ChamberSpec& chamber : robot.chambers) {
+        if (const auto* solid = std::get_if<mesh::Solid>(&chamber.air)) solids.push_back(*solid);
+    }
+    return solids;
+}
+
+/// A drawn body without the air that is cut out of it.
+mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>& air) {
+    if (air.empty()) return body;
+    mesh::CombinedSolid cut{mesh::CombinedSolid::Operation::subtract, {body}};
+    cut.parts.insert(cut.parts.end(), air.begin(), air.end());
+    return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
+}
+
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
+    const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<mesh::BodyGeometry> bodies;
     for (const BodySpec& body : robot.bodies) {
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            bodies.push_back({body.name, *solid});
+            bodies.push_back({body.name, without_air(*solid, air)});
         } else {
             Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
             if (!surface) return tl::unexpected(surface.error());
             bodies.push_back({body.name, std::move(*surface)});
         }
     }
+    for (const ChamberSpec& chamber : robot.chambers) {
+        if (const auto* solid = std::get_if<mesh::Solid>(&chamber.air)) bodies.push_back({chamber.name, *solid});
+    }
     mesh::MeshSettings settings;
     settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
     settings.order = robot.mesh.order;
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     if (!mesh) {
-        // The mesher names bodies; the line is that of the last one it names.
+        // The mesher names bodies and chambers; the line is that of the last one it names.
         int line = robot.bodies.front().line;
         for (const BodySpec& body : robot.bodies) {
             if (mesh.error().message.find('"' + body.name + '"') != std::string::npos) line = body.line;
+        }
+        for (const ChamberSpec& chamber : robot.chambers) {
+            if (mesh.error().message.find('"' + chamber.name + '"') != std::string::npos) line = chamber.line;
         }
         return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
     }
     return mesh;
 }
 
-/// Gives every region of the file to the body that names it.
+/// What the regions of a mesh file may be: first the bodies, then the chambers that name one.
+struct RegionUser {
+    std::string_view kind;
+    std::string name;
+    MeshRegion region;  ///< "all": every one
+    int line;
+};
+
+std::vector<RegionUser> region_users(const Robot& robot) {
+    std::vector<RegionUser> users;
+    for (const BodySpec& body : robot.bodies)
+        users.push_back({"body", body.name, std::get<MeshRegion>(body.geometry), body.line});
+    for (const ChamberSpec& chamber : robot.chambers) {
+        if (const auto* region = std::get_if<MeshRegion>(&chamber.air))
+            users.push_back({"chamber", chamber.name, *region, chamber.line});
+    }
+    return users;
+}
+
+bool box_holds_centroid(const BoxSelector& box, const mesh::TetMesh& mesh, std::size_t tet) {
+    Vec3 centroid;
+    for (std::size_t i = 0; i < 4; ++i) centroid += 0.25 * mesh.points[static_cast<std::size_t>(mesh.tet(tet)[i])];
+    return Box3{box.low, box.high}.contains(centroid, 0);
+}
+
+/// Gives user `u` the tets of its region. A region has one user, but a box may take tets from those before it.
+Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vector<RegionUser>& users, std::size_t u,
+                  std::vector<int>& user_of_tet) {
+    const RegionUser& user = users[u];
+    const std::string where = place(robot, user.line, user.kind, user.name);
+    std::size_t found = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const std::string& region = mesh.region_names[static_cast<std::size_t>(mesh.region[t])];
+        if (user.region.name != "all" && user.region.name != region) continue;
+        if (user.region.box && !box_holds_centroid(*user.region.box, mesh, t)) continue;
+        ++found;
+        if (user_of_tet[t] >= 0 && !user.region.box) {
+            const RegionUser& first = users[static_cast<std::size_t>(user_of_tet[t])];
+            return input_error("{}region \"{}\" already belongs to {} \"{}\"", where, region, first.kind, first.name);
+        }
+        user_of_tet[t] = static_cast<int>(u);
+    }
+    if (found > 0) return {};
+    if (user.region.box) return input_error("{}the box holds no centroid of a tetrahedron of the region", where);
+    return input_error("{}the mesh has no region \"{}\"; it has {}", where, user.region.name,
+                       join_names(mesh.region_names));
+}
+
+/// Gives every region of the file to the body or chamber that names it.
 Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
     Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
     if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
-    std::vector<int> body_of_region(mesh->region_names.size(), -1);
-    for (std::size_t b = 0; b < robot.bodies.size(); ++b) {
-        const BodySpec& body = robot.bodies[b];
-        const std::string& wanted = std::get<MeshRegion>(body.geometry).name;
-        bool found = false;
-        for (std::size_t r = 0; r < mesh->region_names.size(); ++r) {
-            if (wanted != "all" && wanted != mesh->region_names[r]) continue;
-            found = true;
-            if (body_of_region[r] >= 0) {
-                return input_error("{}region \"{}\" already belongs to body \"{}\"",
-                                   place(robot, body.line, "body", body.name), mesh->region_names[r],
-                                   robot.bodies[body_of_region[r]].name);
-            }
-            body_of_region[r] = static_cast<int>(b);
-        }
-        if (!found) {
-            return input_error("{}the mesh has no region \"{}\"; it has {}", place(robot, body.line, "body", body.name),
-                               wanted, join_names(mesh->region_names));
-        }
+    const std::vector<RegionUser> users = region_users(robot);
+    std::vector<int> user_of_tet(mesh->tet_count(), -1);
+    for (std::size_t u = 0; u < users.size(); ++u) {
+        if (Status status = claim_tets(robot, *mesh, users, u, user_of_tet); !status)
+            return tl::unexpected(status.error());
     }
     for (std::size_t t = 0; t < mesh->tet_count(); ++t) {
-        const int body = body_of_region[mesh->region[t]];
-        if (body < 0) {
+        if (user_of_tet[t] < 0) {
             return input_error("{}no body names region \"{}\" of the mesh", place(robot, robot.mesh.line, "mesh", ""),
                                mesh->region_names[mesh->region[t]]);
         }
-        mesh->region[t] = body;
     }
+    mesh->region = std::move(user_of_tet);
     mesh->region_names.clear();
-    for (const BodySpec& body : robot.bodies) mesh->region_names.push_back(body.name);
+    for (const RegionUser& user : users) mesh->region_names.push_back(user.name);
     return robot.mesh.order == 2 ? mesh::to_quadratic(*mesh) : std::move(*mesh);
 }
 
@@ -109,6 +166,7 @@ Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
 }
 
 Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {
+    const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<BodySurface> surfaces;
     Result<mesh::TetMesh> regions;
     if (robot.mesh.file) {
@@ -122,7 +180,7 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         Result<mesh::TriMesh> surface;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
             constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
-            surface = mesh::tessellate(*solid, printable_m / robot.unit_m);
+            surface = mesh::tessellate(without_air(*solid, air), printable_m / robot.unit_m);
         } else if (const auto* file = std::get_if<SurfaceFile>(&body.geometry)) {
             surface = read_body_surface(robot, body, *file);
         } else {

@@ -11,10 +11,11 @@
 
 namespace pliant::robot {
 
-/// Meshes the bodies, or reads the mesh file. Metres; region i is body i. Errors name the body and its line.
+/// Meshes the bodies, or reads the mesh file. Metres. Regions: first the bodies, then the chambers whose air is a shape
+/// or a region of the mesh file. Errors name the body and its line.
 [[nodiscard]] Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress);
 
-/// Ties supports, loads, cables and markers to the mesh of build_mesh().
+/// Ties supports, loads, cables, chambers and markers to the mesh of build_mesh().
 [[nodiscard]] Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh);
 
 /// The closed surface of one body as drawn.

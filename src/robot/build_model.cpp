@@ -1,7 +1,9 @@
 // Ties what the robot file names by place (boxes, points, paths) to nodes of the mesh.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/build.hpp"
 #include "sim/attach.hpp"
@@ -12,6 +14,8 @@ namespace {
 
 /// Points this far outside, as a share of the robot's size, still count as on its surface.
 constexpr double surface_share = 1e-3;
+/// The wall of a surface file need not follow the mesh exactly: so far from the bodies, as a share of the robot's size.
+constexpr double wall_reach = 0.03;
 
 /// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -36,8 +40,12 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 
 class ModelBuilder {
 public:
-    ModelBuilder(const Robot& robot, mesh::TetMesh mesh) : robot_(robot), attacher_(nullptr) {
-        description_.mesh = std::move(mesh);
+    ModelBuilder(const Robot& robot, mesh::TetMesh mesh) : robot_(robot), whole_(std::move(mesh)), attacher_(nullptr) {
+        std::vector<bool> solid(whole_.region_names.size(), false);
+        std::fill_n(solid.begin(), robot.bodies.size(), true);
+        mesh::Extract bodies = mesh::extract_regions(whole_, solid);
+        description_.mesh = std::move(bodies.mesh);
+        node_of_whole_ = std::move(bodies.node);
         for (const Vec3& p : description_.mesh.points) box_.add(p);
         tolerance_ = surface_share * box_.diagonal();
         // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
@@ -48,10 +56,13 @@ public:
         const sim::Attacher attacher(description_.mesh);
         attacher_ = &attacher;
         description_.gravity_m_s2 = robot_.gravity_m_s2;
+        description_.gravity_share = robot_.gravity_share;
+        description_.ambient_pressure_Pa = robot_.ambient_pressure_Pa;
         add_materials();
         for (const FixedSpec& fixed : robot_.fixed) add_support(fixed);
         for (const LoadSpec& load : robot_.loads) add_load(load);
         for (const CableSpec& cable : robot_.cables) add_cable(cable);
+        for (const ChamberSpec& chamber : robot_.chambers) add_chamber(chamber);
         for (const MarkerSpec& marker : robot_.markers) add_marker(marker);
         if (!problems_.empty()) return tl::unexpected(Error{Cause::input, problems_});
         Result<sim::Model> model = sim::Model::create(std::move(description_));
@@ -144,7 +155,7 @@ private:
         if (nodes.empty() && problems_.size() == before) {
             problem(fixed.line, "fixed", fixed.name, "catches no node of the mesh; " + show_bounds());
         }
-        description_.supports.push_back({fixed.name, std::move(nodes), robot_.unit_m * fixed.move});
+        description_.supports.push_back({fixed.name, std::move(nodes), robot_.unit_m * fixed.move, fixed.share});
     }
 
     void add_load(const LoadSpec& load) {
@@ -160,8 +171,102 @@ private:
             problem(load.line, "load", load.name, "no face of the outer surface lies inside the box; " + show_bounds());
             return;
         }
+        if (load.pressure_Pa) {
+            description_.pressures.push_back({load.name, pressed_wall(faces), *load.pressure_Pa, load.share});
+            return;
+        }
         sim::SurfaceShares shares = sim::surface_shares(description_.mesh, faces);
-        description_.loads.push_back({load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N});
+        description_.loads.push_back(
+            {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
+    }
+
+    /// Faces of the outer surface as the air outside sees them: their normals point into the body.
+    sim::Wall pressed_wall(std::vector<mesh::Face> faces) const {
+        for (mesh::Face& face : faces) {
+            std::swap(face.nodes[1], face.nodes[2]);
+            std::swap(face.nodes[3], face.nodes[5]);
+        }
+        std::vector<int> same(description_.mesh.points.size());
+        std::iota(same.begin(), same.end(), 0);
+        return sim::wall_of_faces(description_.mesh, faces, same);
+    }
+
+    void add_chamber(const ChamberSpec& spec) {
+        sim::Chamber chamber{spec.name, {}, spec.target};
+        if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
+            chamber.wall = wall_of_file(spec, file->path);
+        else
+            chamber.wall = wall_of_region(spec);
+        if (!chamber.wall.faces.empty()) description_.chambers.push_back(std::move(chamber));
+    }
+
+    /// The boundary of a meshed chamber. A mouth that no body closes must lie in a support that stays where it is.
+    sim::Wall wall_of_region(const ChamberSpec& spec) {
+        const auto name = std::find(whole_.region_names.begin() + static_cast<std::ptrdiff_t>(robot_.bodies.size()),
+                                    whole_.region_names.end(), spec.name);
+        const int region = static_cast<int>(name - whole_.region_names.begin());
+        const std::vector<mesh::Face> faces = mesh::region_faces(whole_, region);
+        sim::Wall wall = sim::wall_of_faces(whole_, faces, node_of_whole_);
+        if (faces.empty()) {
+            problem(spec.line, "chamber", spec.name, "is empty");
+            return {};
+        }
+        check_mouth(spec, wall);
+        return wall;
+    }
+
+    void check_mouth(const ChamberSpec& spec, const sim::Wall& wall) {
+        std::vector<bool> held(description_.mesh.points.size(), false);
+        for (const sim::Support& support : description_.supports) {
+            for (const int node : support.nodes)
+                held[static_cast<std::size_t>(node)] =
+                    support.move_m.x == 0 && support.move_m.y == 0 && support.move_m.z == 0;
+        }
+        std::size_t loose = 0;
+        for (const sim::WallFace& face : wall.faces) {
+            bool open = false;
+            bool fast = true;
+            for (const int point : face) {
+                if (point < 0) continue;
+                const auto& nodes = wall.points[static_cast<std::size_t>(point)].nodes;
+                open = open || nodes.empty();
+                fast = fast && (nodes.empty() || held[static_cast<std::size_t>(nodes[0])]);
+            }
+            loose += open && !fast ? 1 : 0;
+        }
+        if (loose > 0)
+            problem(spec.line, "chamber", spec.name,
+                    fmt::format("{} faces of its wall belong to no body: the chamber is open; close it with a body, or "
+                                "let its mouth lie in a [[fixed]] without move",
+                                loose));
+    }
+
+    /// A closed surface whose points ride on the tets that hold them.
+    sim::Wall wall_of_file(const ChamberSpec& spec, const std::filesystem::path& path) {
+        const Result<mesh::SurfaceFile> file = mesh::read_surface(path);
+        if (!file) {
+            problem(spec.line, "chamber", spec.name, file.error().message);
+            return {};
+        }
+        const mesh::TriMesh surface = mesh::scaled(file->mesh, robot_.unit_m);
+        if (Status closed = mesh::check_closed(surface); !closed) {
+            problem(spec.line, "chamber", spec.name, closed.error().message);
+            return {};
+        }
+        sim::Wall wall;
+        for (const Vec3& p : surface.points) {
+            Result<sim::Attachment> attachment = attacher_->carried_by_tet(p, wall_reach * box_.diagonal());
+            if (!attachment) {
+                problem(spec.line, "chamber", spec.name,
+                        fmt::format("its wall at {} is far from every body; {}", show(p), show_bounds()));
+                return {};
+            }
+            wall.points.push_back(std::move(*attachment));
+        }
+        const bool outwards = mesh::signed_volume(surface) > 0;
+        for (const auto& t : surface.triangles)
+            wall.faces.push_back({t[0], outwards ? t[1] : t[2], outwards ? t[2] : t[1], -1, -1, -1});
+        return wall;
     }
 
     /// Where a straight line from a to b passes through the outer surface, in order, without its ends.
@@ -276,6 +381,8 @@ private:
     }
 
     const Robot& robot_;
+    mesh::TetMesh whole_;             ///< bodies, then chambers
+    std::vector<int> node_of_whole_;  ///< (nodes of whole_) index in the bodies' mesh, or -1
     const sim::Attacher* attacher_;
     sim::Description description_;
     Box3 box_;

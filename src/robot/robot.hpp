@@ -28,12 +28,19 @@ struct MaterialSpec {
     std::optional<std::array<double, 3>> colour;  ///< sRGB, each in [0, 1]
 };
 
-/// Geometry of a body: a solid expression, a surface file, or a region of the mesh file ("all": every region).
+/// In length units.
+struct BoxSelector {
+    Vec3 low, high;
+};
+
+/// Geometry of a body or of air: a solid expression, a surface file, or a region of the mesh file ("all": every
+/// region).
 struct SurfaceFile {
     std::filesystem::path path;
 };
 struct MeshRegion {
     std::string name;
+    std::optional<BoxSelector> box;  ///< only the tets whose centroid lies inside, taken from those named before
 };
 using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion>;
 
@@ -52,9 +59,6 @@ struct MeshSpec {
 };
 
 /// Which part of the robot is meant; in length units.
-struct BoxSelector {
-    Vec3 low, high;
-};
 struct PlaneSelector {
     Vec3 point, normal;
 };
@@ -73,7 +77,8 @@ using Selector = std::variant<BoxSelector, PlaneSelector, SphereSelector, Surfac
 struct FixedSpec {
     std::string name;
     Selector selector;
-    Vec3 move;  ///< length units, at the end of the program
+    Vec3 move;  ///< length units
+    sim::Curve share = sim::ramp(0, 1);
     int line = 0;
 };
 
@@ -81,6 +86,8 @@ struct LoadSpec {
     std::string name;
     BoxSelector box;
     Vec3 force_N;
+    std::optional<double> pressure_Pa;  ///< instead of the force: follows the surface, presses on it where positive
+    sim::Curve share = sim::ramp(0, 1);
     int line = 0;
 };
 
@@ -92,6 +99,14 @@ struct CableSpec {
     bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
     double eyelet_radius = 0;          ///< length units
     sim::CableTarget target;
+    int line = 0;
+};
+
+/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, or a region of the mesh file.
+struct ChamberSpec {
+    std::string name;
+    Geometry air;
+    sim::ChamberTarget target;
     int line = 0;
 };
 
@@ -111,8 +126,11 @@ struct Robot {
     std::vector<FixedSpec> fixed;
     std::vector<LoadSpec> loads;
     std::vector<CableSpec> cables;
+    std::vector<ChamberSpec> chambers;
     std::vector<MarkerSpec> markers;
     Vec3 gravity_m_s2;
+    sim::Curve gravity_share = sim::ramp(0, 1);
+    double ambient_pressure_Pa = 101325;
     sim::Program program;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/config.hpp"
 #include "core/text.hpp"
+#include "robot/program_file.hpp"
 #include "robot/robot.hpp"
 
 namespace pliant::robot {
@@ -115,24 +116,37 @@ int find_material(Reader& reader, const Context& context) {
     return 0;
 }
 
+BoxSelector read_box(Reader& reader) {
+    const auto corners = reader.vectors("box");
+    if (corners.size() != 2) {
+        if (reader.has("box")) reader.problem("box", "needs two corners [[x, y, z], [x, y, z]]");
+        return {};
+    }
+    const auto& [a, b] = std::pair(corners[0], corners[1]);
+    if (a.x > b.x || a.y > b.y || a.z > b.z)
+        reader.problem("box", "the first corner must be the lower one on every axis");
+    return {a, b};
+}
+
 Geometry read_geometry(Reader& reader, Context& context) {
     const bool has_mesh_file = context.robot.mesh.file.has_value();
     if (reader.has("region")) {
         const std::string region = reader.text("region");
         if (!has_mesh_file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
-        return MeshRegion{region};
+        if (reader.has("box")) return MeshRegion{region, read_box(reader)};
+        return MeshRegion{region, {}};
     }
     if (has_mesh_file) {
         reader.problem("", "with a mesh file a body names its region: region = \"...\" or region = \"all\"");
         (void)reader.raw("geometry");
-        return MeshRegion{"all"};
+        return MeshRegion{"all", {}};
     }
     const config::Value* geometry = reader.raw("geometry");
     if (geometry == nullptr) {
         reader.problem("",
                        "\"geometry\" is missing; it is a file such as \"finger.stl\" or a shape such as { box = "
                        "[[0,0,0],[1,1,1]] }");
-        return MeshRegion{"all"};
+        return MeshRegion{"all", {}};
     }
     if (std::holds_alternative<std::string>(geometry->data)) {
         const SurfaceFile surface{beside(context, std::get<std::string>(geometry->data))};
@@ -172,18 +186,6 @@ void read_mesh(Reader& root, Context& context) {
     (void)reader.raw("size");
     if (reader.has("size") && !(mesh.size > 0)) reader.problem("size", "must be above zero");
     reader.finish();
-}
-
-BoxSelector read_box(Reader& reader) {
-    const auto corners = reader.vectors("box");
-    if (corners.size() != 2) {
-        if (reader.has("box")) reader.problem("box", "needs two corners [[x, y, z], [x, y, z]]");
-        return {};
-    }
-    const auto& [a, b] = std::pair(corners[0], corners[1]);
-    if (a.x > b.x || a.y > b.y || a.z > b.z)
-        reader.problem("box", "the first corner must be the lower one on every axis");
-    return {a, b};
 }
 
 Selector read_selector(Reader& reader, const Context& context) {
@@ -250,10 +252,19 @@ void read_loads(Reader& root, Context& context) {
         load.line = reader.line();
         load.name = read_name(reader, taken, "loads");
         load.box = read_box(reader);
-        const auto force = reader.quantities("force", Dimension::force, 3);
-        if (!reader.has("force"))
-            reader.problem("", "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"]");
-        load.force_N = {force[0], force[1], force[2]};
+        if (reader.has("pressure")) {
+            load.pressure_Pa = reader.quantity("pressure", Dimension::pressure);
+            if (reader.has("force")) reader.problem("force", "give either force or pressure");
+            (void)reader.raw("force");
+        } else {
+            const auto force = reader.quantities("force", Dimension::force, 3);
+            if (!reader.has("force"))
+                reader.problem("",
+                               "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"] (or "
+                               "give pressure = \"3 kPa\")");
+            load.force_N = {force[0], force[1], force[2]};
+            (void)reader.raw("pressure");
+        }
         reader.finish();
         context.robot.loads.push_back(std::move(load));
     }
@@ -308,6 +319,64 @@ void read_cables(Reader& root, Context& context) {
     }
 }
 
+sim::ChamberTarget read_chamber_target(Reader& chamber) {
+    using Kind = sim::ChamberTarget::Kind;
+    constexpr std::array<std::string_view, 4> kinds = {"volume_ratio", "volume_change", "pressure", "gas_ratio"};
+    Reader reader = chamber.table("target");
+    const auto given = std::count_if(kinds.begin(), kinds.end(), [&](auto kind) { return reader.has(kind); });
+    if (chamber.has("target") && given != 1)
+        reader.problem("", "takes one of volume_ratio, volume_change, pressure and gas_ratio");
+    sim::ChamberTarget target;
+    if (reader.has("volume_ratio")) target = {Kind::volume_ratio, reader.number("volume_ratio")};
+    if (reader.has("volume_change"))
+        target = {Kind::volume_change_m3, reader.quantity("volume_change", Dimension::volume)};
+    if (reader.has("pressure")) target = {Kind::pressure_Pa, reader.quantity("pressure", Dimension::pressure)};
+    if (reader.has("gas_ratio")) target = {Kind::gas_ratio, reader.number("gas_ratio")};
+    if ((target.kind == Kind::volume_ratio || target.kind == Kind::gas_ratio) && !(target.value > 0))
+        reader.problem("", fmt::format("a ratio of {} is not possible; it must be above zero", target.value));
+    for (const auto kind : kinds) (void)reader.raw(kind);
+    reader.finish();
+    return target;
+}
+
+/// surface = FILE, region = NAME (of the mesh file) or geometry = { shape }, exactly one.
+Geometry read_air(Reader& reader, Context& context) {
+    const int given = int{reader.has("surface")} + int{reader.has("region")} + int{reader.has("geometry")};
+    Geometry air = MeshRegion{};
+    if (given != 1)
+        reader.problem("",
+                       "takes one of geometry (a shape that is cut out of the bodies), surface (a file) and region "
+                       "(of the mesh file)");
+    if (reader.has("surface")) {
+        const SurfaceFile file{beside(context, reader.text("surface"))};
+        need_file(reader, "surface", file.path);
+        air = file;
+    } else if (reader.has("region")) {
+        air = MeshRegion{reader.text("region"), {}};
+        if (!context.robot.mesh.file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
+    } else if (reader.has("geometry")) {
+        air = mesh::read_solid(*reader.raw("geometry"), reader.path() + ".geometry", context.shapes, context.problems);
+        if (context.robot.mesh.file)
+            reader.problem("geometry", "cannot be cut out of a mesh file; name its region or give a surface");
+    }
+    for (const char* key : {"surface", "region", "geometry"}) (void)reader.raw(key);
+    return air;
+}
+
+void read_chambers(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("chamber")) {
+        ChamberSpec chamber;
+        chamber.line = reader.line();
+        chamber.name = read_name(reader, taken, "chambers");
+        chamber.air = read_air(reader, context);
+        (void)reader.choice("model", {"volume"}, "volume");
+        chamber.target = read_chamber_target(reader);
+        reader.finish();
+        context.robot.chambers.push_back(std::move(chamber));
+    }
+}
+
 void read_markers(Reader& root, Context& context) {
     std::set<std::string> taken;
     for (Reader& reader : root.tables("marker")) {
@@ -325,30 +394,6 @@ void read_markers(Reader& root, Context& context) {
         reader.finish();
         context.robot.markers.push_back(std::move(marker));
     }
-}
-
-void read_program(Reader& root, Context& context) {
-    Reader reader = root.table("program", false);
-    sim::Program& program = context.robot.program;
-    program.steps = static_cast<int>(std::clamp<std::int64_t>(reader.integer("steps", 30), -1, 1000000));
-    if (program.steps < 1 || program.steps > 100000) {
-        reader.problem("steps", "must be between 1 and 100000");
-        program.steps = 1;
-    }
-    program.tolerance = reader.number("tolerance", 1e-4);
-    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
-        reader.problem("tolerance", "must be between 1e-10 and 0.1");
-    context.robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
-    const std::string solver = reader.choice("solver", {"auto", "newton", "quasi-newton", "local-global"}, "auto");
-    program.solver = solver == "newton"         ? sim::Solver::newton
-                     : solver == "quasi-newton" ? sim::Solver::quasi_newton
-                     : solver == "local-global" ? sim::Solver::local_global
-                                                : sim::Solver::automatic;
-    program.iteration_limit =
-        static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
-    if (program.iteration_limit < 0)
-        reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
-    reader.finish();
 }
 
 Result<Robot> read_robot(config::Document document, const std::vector<std::string>& assignments) {
@@ -382,8 +427,9 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     read_supports(root, context);
     read_loads(root, context);
     read_cables(root, context);
+    read_chambers(root, context);
     read_markers(root, context);
-    read_program(root, context);
+    read_program(root, robot);
     root.finish();
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());
     return robot;

@@ -20,8 +20,11 @@ void Actuator::add_gradient(std::span<const double> x, double factor, std::span<
 }
 
 void Actuator::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                           const linalg::SymmetricPattern& pattern, std::span<double> values) const {
-    std::visit([&](const auto& geometry) { geometry.add_hessian(x, factor, free_index, pattern, values); }, geometry_);
+                           const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+    if (const auto* path = std::get_if<CablePath>(&geometry_))
+        path->add_hessian(x, factor, free_index, pattern, values);
+    else
+        std::get<ChamberSurface>(geometry_).add_hessian(x, factor, free_index, pattern, values, project);
 }
 
 void Actuator::apply_skew(std::span<const double> x, double factor, std::span<const double> v,

@@ -25,9 +25,10 @@ public:
 
     /// forces (3n) += factor * dg/dx.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
-    /// values += factor * d2g/dx2, for a pattern over free nodes (block 3) that holds the cliques.
+    /// values += factor * d2g/dx2, for a pattern over free nodes (block 3) that holds the cliques. With `project`
+    /// the addition is positive semi-definite (that of a pulling cable always is).
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     /// result (3n) += factor * (skew part of the derivative of the gradient) * v: only a pressed patch with a free rim
     /// has one, its force is not the gradient of g.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,

@@ -1,5 +1,6 @@
 #include "sim/chamber_surface.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -97,6 +98,21 @@ FaceMatrix second_gradient(const WallFace& face, double factor, const std::vecto
     return between;
 }
 
+/// (3 count, 3 count), the nearest positive semi-definite one where asked for.
+Eigen::MatrixXd symmetric_part(const FaceMatrix& blocks, Eigen::Index count, bool project) {
+    Eigen::MatrixXd matrix(3 * count, 3 * count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j < count; ++j) {
+            const auto row = static_cast<std::size_t>(i);
+            const auto column = static_cast<std::size_t>(j);
+            matrix.block<3, 3>(3 * i, 3 * j) = 0.5 * (blocks[row][column] + blocks[column][row].transpose());
+        }
+    }
+    if (!project) return matrix;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 }  // namespace
 
 ChamberSurface::ChamberSurface(const Wall& wall, std::span<const double> rest) : wall_(wall) {
@@ -150,15 +166,16 @@ void ChamberSurface::spread(std::span<const Vec3> on_points, std::span<double> o
 }
 
 void ChamberSurface::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                                 const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+                                 const linalg::SymmetricPattern& pattern, std::span<double> values,
+                                 bool project) const {
     const std::vector<Vec3> points = points_at(x);
     for (const WallFace& face : wall_.faces) {
-        const std::size_t count = points_of(face);
-        const FaceMatrix between = second_gradient(face, factor, points);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t j = 0; j < count; ++j) {
-                const Matrix3 symmetric = 0.5 * (between[i][j] + between[j][i].transpose());
-                add_pair(face[i], face[j], symmetric, free_index, pattern, values);
+        const auto count = static_cast<Eigen::Index>(points_of(face));
+        const Eigen::MatrixXd symmetric = symmetric_part(second_gradient(face, factor, points), count, project);
+        for (Eigen::Index i = 0; i < count; ++i) {
+            for (Eigen::Index j = 0; j < count; ++j) {
+                add_pair(face[static_cast<std::size_t>(i)], face[static_cast<std::size_t>(j)],
+                         symmetric.block<3, 3>(3 * i, 3 * j), free_index, pattern, values);
             }
         }
     }

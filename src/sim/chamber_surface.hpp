@@ -28,9 +28,10 @@ public:
     [[nodiscard]] double volume(std::span<const double> x) const;
     /// forces (3n) += factor * dV/dx.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
-    /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques().
+    /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques(). With
+    /// `project`, each face adds the nearest positive semi-definite matrix instead.
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     /// result (3n) += factor * (what the second gradient lacks where it is made symmetric) * v; zero for closed walls.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;

@@ -75,7 +75,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         wall.append_cliques(free_index, cliques);
         const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
         std::vector<double> hessian(pattern.entries(), 0.0);
-        wall.add_hessian(x, 1, free_index, pattern, hessian);
+        wall.add_hessian(x, 1, free_index, pattern, hessian, false);
 
         // Along one rough direction: the volume is a cubic, so central differences are exact but for rounding.
         std::vector<double> direction(x.size());
@@ -128,7 +128,7 @@ TEST_CASE("an open wall: symmetric and skew part together are the derivative of 
     surface.append_cliques(free_index, cliques);
     const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
     std::vector<double> hessian(pattern.entries(), 0.0);
-    surface.add_hessian(x, 1, free_index, pattern, hessian);
+    surface.add_hessian(x, 1, free_index, pattern, hessian, false);
     std::vector<double> product(x.size(), 0.0);
     for (int column = 0; column < pattern.size(); ++column) {
         for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {

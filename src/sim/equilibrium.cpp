@@ -224,7 +224,7 @@ void Equilibrium::add_tangent(const State& state, const linalg::SymmetricPattern
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
         if (multiplier != 0)
-            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values);
+            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project);
     }
 }
 

@@ -57,7 +57,7 @@ public:
     /// Node lists that the tangent couples, as free indices.
     [[nodiscard]] std::vector<std::vector<int>> cliques() const;
     /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
-    /// the elastic part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
+    /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
     void add_tangent(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values,
                      bool project) const;
 

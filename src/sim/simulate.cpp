@@ -37,7 +37,7 @@ public:
 
     /// Goes to `time` in as many pieces as it takes. False: stuck; `message` says why.
     bool advance(double time, Step& step, const Progress& progress, std::string& message) {
-        const double whole = 1.0 / program_.steps;
+        const double whole = program_.duration / program_.steps;
         double piece = time - time_;
         step.substeps = 0;
         while (time_ < time) {
@@ -190,7 +190,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         const auto begin = std::chrono::steady_clock::now();
         Step step;
         step.index = k;
-        step.time = static_cast<double>(k) / program.steps;
+        step.time = program.duration * static_cast<double>(k) / program.steps;
         std::string message;
         if (!walk.advance(step.time, step, progress, message)) {
             result.converged = false;

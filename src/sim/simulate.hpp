@@ -13,6 +13,7 @@ enum class Solver { automatic, newton, quasi_newton, local_global };
 
 struct Program {
     int steps = 30;
+    double duration = 1;  ///< time at the end; steps are equally long
     double tolerance = 1e-4;
     Solver solver = Solver::automatic;
     int iteration_limit = 0;  ///< per solved step; 0: the solver's own

@@ -35,7 +35,7 @@ struct MarkerState {
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
-    double time = 0;  ///< 0 at rest, 1 at the end of the program
+    double time = 0;  ///< of the program; 0 at rest
     bool converged = true;
     int iterations = 0;
     int substeps = 1;     ///< more than one where the step had to be halved

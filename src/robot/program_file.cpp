@@ -1,0 +1,154 @@
+#include "robot/program_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "core/text.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+
+/// Something that keys can drive: how its value is written, where it starts, and where its curve goes.
+struct Driven {
+    std::string name;
+    std::optional<Dimension> dimension;  ///< of the value; a plain number where there is none
+    double rest = 0;
+    double end = 1;       ///< where it goes without keys
+    double low = -1e300;  ///< values outside are refused
+    double high = 1e300;
+    std::function<void(sim::Curve)> drive;
+};
+
+Driven driven(CableSpec& cable) {
+    using Kind = sim::CableTarget::Kind;
+    Driven d{cable.name, {}, 0, cable.target.value, 0, 1e300, [&](sim::Curve c) { cable.target.keys = std::move(c); }};
+    if (cable.target.kind == Kind::length_ratio) d.rest = 1, d.low = 1e-6, d.high = 1;
+    if (cable.target.kind == Kind::shortening_m) d.dimension = Dimension::length;
+    if (cable.target.kind == Kind::tension_N) d.dimension = Dimension::force;
+    return d;
+}
+
+Driven driven(ChamberSpec& chamber) {
+    using Kind = sim::ChamberTarget::Kind;
+    Driven d;
+    d.name = chamber.name;
+    d.end = chamber.target.value;
+    d.drive = [&](sim::Curve c) { chamber.target.keys = std::move(c); };
+    if (chamber.target.kind == Kind::volume_change_m3) d.dimension = Dimension::volume;
+    if (chamber.target.kind == Kind::pressure_Pa) d.dimension = Dimension::pressure;
+    if (!d.dimension) d.rest = 1, d.low = 1e-6;
+    return d;
+}
+
+std::vector<Driven> everything_driven(Robot& robot) {
+    std::vector<Driven> list;
+    for (CableSpec& cable : robot.cables) list.push_back(driven(cable));
+    for (ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    const auto share = [&](const std::string& name, sim::Curve& curve) {
+        Driven d;
+        d.name = name;
+        d.drive = [&](sim::Curve c) { curve = std::move(c); };
+        list.push_back(std::move(d));
+    };
+    for (LoadSpec& load : robot.loads) share(load.name, load.share);
+    for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
+    share("gravity", robot.gravity_share);
+    return list;
+}
+
+double read_value(Reader& key, const Driven& d) {
+    const double value = d.dimension ? key.quantity(d.name, *d.dimension) : key.number(d.name);
+    if (value < d.low || value > d.high)
+        key.problem(d.name, fmt::format("{} is not possible; {}", value,
+                                        d.high < 1e300 ? "a cable gets shorter: above 0, at most 1"
+                                                       : "it must not be below zero"));
+    return value;
+}
+
+/// The times of the keys, ascending. Keys are in order, or it would be unclear what the robot does between them.
+std::vector<double> read_times(std::vector<Reader>& keys) {
+    std::vector<double> times;
+    for (Reader& key : keys) {
+        const double time = key.quantity("time", Dimension::time);
+        if (time < 0 || (!times.empty() && time <= times.back()))
+            key.problem("time", "keys are in the order of time, none below zero");
+        times.push_back(time);
+    }
+    return times;
+}
+
+/// The curve through the keys that name `d`; from rest at time 0, and without keys straight to its end.
+sim::Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, const Driven& d, double duration) {
+    sim::Curve curve{{0}, {d.rest}};
+    bool named = false;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        if (!keys[k].has(d.name)) continue;
+        named = true;
+        const double value = read_value(keys[k], d);
+        if (times[k] <= 0) {
+            curve.value[0] = value;
+            continue;
+        }
+        if (times[k] <= curve.time.back()) continue;  // out of order: already said
+        curve.time.push_back(times[k]);
+        curve.value.push_back(value);
+    }
+    return named ? curve : sim::Curve{{0, duration}, {d.rest, d.end}};
+}
+
+void read_keys(Reader& program, Robot& robot) {
+    std::vector<Reader> keys = program.tables("key");
+    double duration = program.quantity("duration", Dimension::time, 1);
+    if (!(duration > 0)) program.problem("duration", "must be above zero");
+    const std::vector<double> times = read_times(keys);
+    if (!times.empty() && times.back() > 0) {
+        if (program.has("duration") && duration < times.back()) program.problem("duration", "ends before the last key");
+        if (!program.has("duration")) duration = times.back();
+    }
+    robot.program.duration = duration > 0 ? duration : 1;
+    if (keys.empty() && duration == 1) return;
+    std::vector<Driven> list = everything_driven(robot);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        for (std::size_t j = 0; j < i && !keys.empty(); ++j) {
+            if (list[i].name == list[j].name && keys.front().has(list[i].name))
+                keys.front().problem(list[i].name, "names two things; give them different names");
+        }
+        list[i].drive(read_curve(keys, times, list[i], robot.program.duration));
+    }
+    for (Reader& key : keys) key.finish();
+}
+
+}  // namespace
+
+void read_program(config::Reader& root, Robot& robot) {
+    config::Reader reader = root.table("program", false);
+    sim::Program& program = robot.program;
+    program.steps = static_cast<int>(std::clamp<std::int64_t>(reader.integer("steps", 30), -1, 1000000));
+    if (program.steps < 1 || program.steps > 100000) {
+        reader.problem("steps", "must be between 1 and 100000");
+        program.steps = 1;
+    }
+    program.tolerance = reader.number("tolerance", 1e-4);
+    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
+        reader.problem("tolerance", "must be between 1e-10 and 0.1");
+    robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
+    const std::string solver = reader.choice("solver", {"auto", "newton", "quasi-newton", "local-global"}, "auto");
+    program.solver = solver == "newton"         ? sim::Solver::newton
+                     : solver == "quasi-newton" ? sim::Solver::quasi_newton
+                     : solver == "local-global" ? sim::Solver::local_global
+                                                : sim::Solver::automatic;
+    program.iteration_limit =
+        static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
+    if (program.iteration_limit < 0)
+        reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
+    robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
+    if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is absolute: above zero");
+    read_keys(reader, robot);
+    reader.finish();
+}
+
+}  // namespace pliant::robot
