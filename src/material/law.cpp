@@ -1,49 +1,13 @@
 #include "material/law.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "material/point.hpp"
+
 namespace pliant::material {
 namespace {
-
-using Vector9 = Eigen::Matrix<double, 9, 1>;
-
-Vector9 vec(const Matrix3& A) {
-    return Eigen::Map<const Vector9>(A.data());
-}
-
-/// d J / d F.
-Matrix3 cofactor(const Matrix3& F) {
-    Matrix3 C;
-    C.col(0) = F.col(1).cross(F.col(2));
-    C.col(1) = F.col(2).cross(F.col(0));
-    C.col(2) = F.col(0).cross(F.col(1));
-    return C;
-}
-
-/// Adds s * d^2 J / dF^2: the derivative of column j of the cofactor is a cross product with the columns of dF.
-void add_cofactor_gradient(Matrix9& H, const Matrix3& F, double s) {
-    const auto add_skew = [&](int row_block, int column_block, const linalg::Vector3& v, double sign) {
-        // Block (row, column) of d(cofactor) += sign * [v]x.
-        const double f = s * sign;
-        const int r = 3 * row_block;
-        const int c = 3 * column_block;
-        H(r + 0, c + 1) -= f * v[2];
-        H(r + 0, c + 2) += f * v[1];
-        H(r + 1, c + 0) += f * v[2];
-        H(r + 1, c + 2) -= f * v[0];
-        H(r + 2, c + 0) -= f * v[1];
-        H(r + 2, c + 1) += f * v[0];
-    };
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        const int k = (i + 2) % 3;
-        add_skew(i, k, F.col(j), 1);  // C_i = F_j x F_k
-        add_skew(i, j, F.col(k), -1);
-    }
-}
 
 std::optional<double> psi(const NeoHookean& law, const Matrix3& F) {
     const double J = F.determinant();
@@ -125,12 +89,29 @@ Moduli moduli(double youngs_modulus_Pa, double poisson_ratio) {
     return {youngs_modulus_Pa / (2 * (1 + poisson_ratio)), youngs_modulus_Pa / (3 * (1 - 2 * poisson_ratio))};
 }
 
+double bulk_modulus(double shear_Pa, double poisson_ratio) {
+    return 2 * shear_Pa * (1 + poisson_ratio) / (3 * (1 - 2 * poisson_ratio));
+}
+
+double youngs_modulus(const Moduli& moduli) {
+    return 9 * moduli.bulk_Pa * moduli.shear_Pa / (3 * moduli.bulk_Pa + moduli.shear_Pa);
+}
+
+double poisson_ratio(const Moduli& moduli) {
+    return (3 * moduli.bulk_Pa - 2 * moduli.shear_Pa) / (6 * moduli.bulk_Pa + 2 * moduli.shear_Pa);
+}
+
 NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio) {
     const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
     return {m.shear_Pa, m.bulk_Pa};
 }
 
 StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
+}
+
+Corotated corotated(double youngs_modulus_Pa, double poisson_ratio) {
     const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
     return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
 }
@@ -165,15 +146,26 @@ bool has_energy(const Law& law) {
     return blend == nullptr || blend->a == 1;
 }
 
-double stiffness_bound(const Law& law) {
-    struct Bound {
-        double operator()(const NeoHookean& l) const { return std::max(3 * l.bulk_Pa, 2 * l.shear_Pa); }
-        double operator()(const ShapeBlend& l) const { return l.weight_Pa; }
-        double operator()(const StVenantKirchhoff& l) const {
-            return std::max(3 * l.lame_Pa + 2 * l.shear_Pa, 2 * l.shear_Pa);
+Moduli moduli(const Law& law) {
+    struct Of {
+        Moduli operator()(const NeoHookean& l) const { return {l.shear_Pa, l.bulk_Pa}; }
+        Moduli operator()(const ShapeBlend& l) const { return {l.weight_Pa * l.a / 2, l.weight_Pa / 3}; }
+        Moduli operator()(const StVenantKirchhoff& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
+        Moduli operator()(const MooneyRivlin& l) const { return {2 * (l.c10_Pa + l.c01_Pa), l.bulk_Pa}; }
+        Moduli operator()(const Yeoh& l) const { return {2 * l.c10_Pa, l.bulk_Pa}; }
+        Moduli operator()(const Ogden& l) const {
+            double shear = 0;
+            for (int k = 0; k < l.terms; ++k) shear += l.mu_Pa[k];
+            return {shear, l.bulk_Pa};
         }
+        Moduli operator()(const Corotated& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
     };
-    return std::visit(Bound{}, law);
+    return std::visit(Of{}, law);
+}
+
+double stiffness_bound(const Law& law) {
+    const Moduli m = moduli(law);
+    return std::max(3 * m.bulk_Pa, 2 * m.shear_Pa);
 }
 
 std::string_view name(const Law& law) {
@@ -181,6 +173,10 @@ std::string_view name(const Law& law) {
         std::string_view operator()(const NeoHookean&) const { return "neo-hookean"; }
         std::string_view operator()(const ShapeBlend&) const { return "shape-blend"; }
         std::string_view operator()(const StVenantKirchhoff&) const { return "st-venant-kirchhoff"; }
+        std::string_view operator()(const MooneyRivlin&) const { return "mooney-rivlin"; }
+        std::string_view operator()(const Yeoh&) const { return "yeoh"; }
+        std::string_view operator()(const Ogden&) const { return "ogden"; }
+        std::string_view operator()(const Corotated&) const { return "corotated"; }
     };
     return std::visit(Name{}, law);
 }

@@ -13,9 +13,16 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 namespace {
 
 const std::vector<std::pair<std::string, Law>> laws = {
-    {"neo-hookean, nu 0.3", neo_hookean(12e6, 0.3)},          {"neo-hookean, nu 0.499", neo_hookean(12e6, 0.499)},
-    {"st-venant-kirchhoff", st_venant_kirchhoff(12e6, 0.45)}, {"shape-blend", shape_blend(12e6, 0.45)},
+    {"neo-hookean, nu 0.3", neo_hookean(12e6, 0.3)},
+    {"neo-hookean, nu 0.499", neo_hookean(12e6, 0.499)},
+    {"st-venant-kirchhoff", st_venant_kirchhoff(12e6, 0.45)},
+    {"shape-blend", shape_blend(12e6, 0.45)},
     {"shape-blend, rigid target", ShapeBlend{3e6, 1.0}},
+    {"mooney-rivlin", MooneyRivlin{1.2e6, 0.5e6, 18e6}},
+    {"yeoh", Yeoh{1.2e6, -0.1e6, 0.02e6, 18e6}},
+    {"ogden, one term", Ogden{1, {2e6}, {3.1}, 18e6}},
+    {"ogden, three terms", Ogden{3, {1.5e6, 0.02e6, -0.3e6}, {1.3, 5.0, -2.0}, 18e6}},
+    {"corotated", corotated(12e6, 0.45)},
 };
 
 /// Deformations with det F between about 0.3 and 3, some far from rest.
@@ -102,7 +109,19 @@ TEST_CASE("a rotation of the deformed body rotates the stress and leaves the ene
 TEST_CASE("small strains follow Hooke's law with the given E and nu") {
     const double E = 12e6;
     const double nu = 0.4;
-    for (const Law& law : {Law(neo_hookean(E, nu)), Law(shape_blend(E, nu)), Law(st_venant_kirchhoff(E, nu))}) {
+    const auto [mu, K] = moduli(E, nu);
+    CHECK(bulk_modulus(mu, nu) == doctest::Approx(K));
+    const std::vector<Law> same = {neo_hookean(E, nu),
+                                   shape_blend(E, nu),
+                                   st_venant_kirchhoff(E, nu),
+                                   corotated(E, nu),
+                                   MooneyRivlin{0.35 * mu, 0.15 * mu, K},
+                                   Yeoh{mu / 2, 0.3 * mu, 0.1 * mu, K},
+                                   Ogden{2, {1.5 * mu, -0.5 * mu}, {1.7, 4.0}, K}};
+    for (const Law& law : same) {
+        CAPTURE(name(law));
+        CHECK(youngs_modulus(moduli(law)) == doctest::Approx(E));
+        CHECK(poisson_ratio(moduli(law)) == doctest::Approx(nu));
         const double strain = 1e-7;  // uniaxial stress: sideways contraction nu
         const Matrix3 F = Eigen::Vector3d(1 + strain, 1 - nu * strain, 1 - nu * strain).asDiagonal();
         const Matrix3 P = stress(law, F);
@@ -110,6 +129,130 @@ TEST_CASE("small strains follow Hooke's law with the given E and nu") {
         CHECK(std::fabs(P(1, 1)) < 1e-5 * E * strain);
         const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(tangent(law, Matrix3::Identity()));
         CHECK(eigen.eigenvalues().maxCoeff() == doctest::Approx(stiffness_bound(law)));
+    }
+}
+
+TEST_CASE("a rotation of the body before it is deformed changes nothing: the laws are isotropic") {
+    const Matrix3 Q = some_rotation();
+    for (const auto& [name, law] : laws) {
+        CAPTURE(name);
+        for (const Matrix3& F : deformations()) {
+            CHECK((stress(law, F * Q) - stress(law, F) * Q).norm() < 1e-11 * (scale(law) + stress(law, F).norm()));
+            if (has_energy(law)) CHECK(*energy(law, F * Q) == doctest::Approx(*energy(law, F)).epsilon(1e-11));
+        }
+    }
+}
+
+namespace {
+
+/// Nominal stress along the first axis of an incompressible body, from its energy w(l1, l2, l3) by hand.
+struct ClosedForm {
+    std::string name;
+    Law law;
+    double (*uniaxial)(double l);     ///< stretches l, l^(-1/2), l^(-1/2)
+    double (*equibiaxial)(double l);  ///< stretches l, l, l^(-2)
+    double (*shear)(double g);        ///< P_12 of F = I + g e1 e2^T
+};
+
+// The bulk modulus is 1e7 times the shear modulus, so J - 1 is of the order of 1e-7 to 1e-6.
+constexpr double stiff = 2e13;
+
+const std::vector<ClosedForm> closed_forms = {
+    {"neo-hookean", NeoHookean{2e6, stiff}, [](double l) { return 2e6 * (l - 1 / (l * l)); },
+     [](double l) { return 2e6 * (l - std::pow(l, -5)); }, [](double g) { return 2e6 * g; }},
+    {"mooney-rivlin", MooneyRivlin{0.7e6, 0.3e6, stiff},
+     [](double l) { return 2 * (l - 1 / (l * l)) * (0.7e6 + 0.3e6 / l); },
+     [](double l) { return 2 * (l - std::pow(l, -5)) * (0.7e6 + 0.3e6 * l * l); },
+     [](double g) { return 2 * (0.7e6 + 0.3e6) * g; }},
+    {"yeoh", Yeoh{1e6, -0.05e6, 0.01e6, stiff},
+     [](double l) {
+         const double x = l * l + 2 / l - 3;
+         return 2 * (l - 1 / (l * l)) * (1e6 - 0.1e6 * x + 0.03e6 * x * x);
+     },
+     [](double l) {
+         const double x = 2 * l * l + std::pow(l, -4) - 3;
+         return 2 * (l - std::pow(l, -5)) * (1e6 - 0.1e6 * x + 0.03e6 * x * x);
+     },
+     [](double g) { return 2 * g * (1e6 - 0.1e6 * g * g + 0.03e6 * g * g * g * g); }},
+    {"ogden", Ogden{2, {1.8e6, 0.2e6}, {1.3, 5.0}, stiff},
+     [](double l) {
+         return 2 * 1.8e6 / 1.3 * (std::pow(l, 0.3) - std::pow(l, -1.65)) +
+                2 * 0.2e6 / 5 * (std::pow(l, 4) - std::pow(l, -3.5));
+     },
+     [](double l) {
+         return 2 * 1.8e6 / 1.3 * (std::pow(l, 0.3) - std::pow(l, -3.6)) +
+                2 * 0.2e6 / 5 * (std::pow(l, 4) - std::pow(l, -11));
+     },
+     [](double g) {
+         // dw/dg with l - 1/l = g, so dl/dg = l^2 / (1 + l^2).
+         const double l = g / 2 + std::sqrt(1 + g * g / 4);
+         const double slope = 2 * 1.8e6 / 1.3 * (std::pow(l, 0.3) - std::pow(l, -2.3)) +
+                              2 * 0.2e6 / 5 * (std::pow(l, 4) - std::pow(l, -6));
+         return slope * l * l / (1 + l * l);
+     }},
+};
+
+/// The stretch sideways that leaves no stress there, with the stretch along the other axes given; nearly 1/(l1 l2).
+Matrix3 stretched(const Law& law, double l, bool both) {
+    double side = both ? 1 / (l * l) : 1 / std::sqrt(l);
+    for (int i = 0; i < 50; ++i) {
+        const Matrix3 F = Eigen::Vector3d(l, both ? l : side, side).asDiagonal();
+        const Matrix9 H = tangent(law, F);
+        const double slope = both ? H(8, 8) : H(8, 8) + H(8, 4);
+        side -= stress(law, F)(2, 2) / slope;
+    }
+    return Eigen::Vector3d(l, both ? l : side, side).asDiagonal();
+}
+
+}  // namespace
+
+TEST_CASE("nearly incompressible bodies follow the closed forms of tension, compression, balloon and shear") {
+    for (const ClosedForm& form : closed_forms) {
+        CAPTURE(form.name);
+        for (const double l : {0.6, 0.9, 1.2, 1.7, 2.5}) {
+            CAPTURE(l);
+            CHECK(stress(form.law, stretched(form.law, l, false))(0, 0) ==
+                  doctest::Approx(form.uniaxial(l)).epsilon(1e-5));
+            CHECK(stress(form.law, stretched(form.law, l, true))(0, 0) ==
+                  doctest::Approx(form.equibiaxial(l)).epsilon(1e-5));
+        }
+        for (const double g : {0.1, 0.8, 2.0}) {
+            Matrix3 F = Matrix3::Identity();
+            F(0, 1) = g;
+            CAPTURE(g);
+            CHECK(stress(form.law, F)(0, 1) == doctest::Approx(form.shear(g)).epsilon(1e-9));
+        }
+    }
+}
+
+TEST_CASE("corotated: closed forms for a bar that keeps its width, and for a change of volume") {
+    const Corotated law{2e6, 5e6};
+    for (const double l : {0.6, 1.0, 1.8}) {
+        const Matrix3 bar = Eigen::Vector3d(l, 1, 1).asDiagonal();
+        CHECK(stress(law, bar)(0, 0) == doctest::Approx(2 * 2e6 * (l - 1) + 5e6 * (l - 1)).scale(1e6));
+        CHECK(stress(law, bar)(1, 1) == doctest::Approx(5e6 * (l - 1) * l).scale(1e6));
+        const Matrix3 ball = l * Matrix3::Identity();
+        const double J = l * l * l;
+        CHECK(stress(law, ball)(2, 2) == doctest::Approx(4e6 * (l - 1) + 5e6 * (J - 1) * l * l).scale(1e6));
+    }
+}
+
+TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches are equal or nearly so") {
+    const Law ogden = Ogden{2, {1.4e6, 0.6e6}, {2.0, -2.0}, 18e6};
+    const Law mooney = MooneyRivlin{0.7e6, 0.3e6, 18e6};
+    std::vector<Matrix3> list = deformations();
+    const Matrix3 Q = some_rotation();
+    for (const double gap : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3}) {
+        for (const double l : {0.7, 1.0, 1.6}) {
+            list.emplace_back(Q * Eigen::Vector3d(l, l + gap, 1.1).asDiagonal() * Q);
+            list.emplace_back(Eigen::Vector3d(l, l * (1 + gap), l * (1 - gap)).asDiagonal());
+        }
+    }
+    for (const Matrix3& F : list) {
+        CHECK(*energy(ogden, F) == doctest::Approx(*energy(mooney, F)).epsilon(1e-11).scale(1e6));
+        CHECK((stress(ogden, F) - stress(mooney, F)).norm() < 1e-11 * scale(mooney));
+        const Matrix9 H = tangent(mooney, F);
+        CHECK((tangent(ogden, F) - H).norm() < 1e-11 * H.norm());
     }
 }
 
