@@ -46,6 +46,7 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
         simulation.materials.push_back(std::move(material));
     }
     for (const robot::BodySpec& body : robot.bodies) simulation.region_material.push_back(body.material);
+    simulation.region_material.resize(model.mesh().region_names.size(), -1);  // actuated space carries no material
     simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));

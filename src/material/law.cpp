@@ -159,6 +159,7 @@ Moduli moduli(const Law& law) {
             return {shear, l.bulk_Pa};
         }
         Moduli operator()(const Corotated& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
+        Moduli operator()(const ScaledTarget& l) const { return {l.weight_Pa / 2, l.weight_Pa / 3}; }
     };
     return std::visit(Of{}, law);
 }
@@ -177,6 +178,7 @@ std::string_view name(const Law& law) {
         std::string_view operator()(const Yeoh&) const { return "yeoh"; }
         std::string_view operator()(const Ogden&) const { return "ogden"; }
         std::string_view operator()(const Corotated&) const { return "corotated"; }
+        std::string_view operator()(const ScaledTarget&) const { return "scaled-target"; }
     };
     return std::visit(Name{}, law);
 }

@@ -7,6 +7,7 @@
 #include "mesh/mesher.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
+#include "robot/regions.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -37,11 +38,12 @@ double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
     return std::max({box.size().x, box.size().y, box.size().z}) / 24;
 }
 
-/// The drawn air of all chambers, in the order of the file.
+/// The drawn air of all chambers and gaps, in the order of the mesh's regions.
 std::vector<mesh::Solid> drawn_air(const Robot& robot) {
     std::vector<mesh::Solid> solids;
-    for (const ChamberSpec& chamber : robot.chambers) {
-        if (const auto* solid = std::get_if<mesh::Solid>(&chamber.air)) solids.push_back(*solid);
+    for (const Region& region : regions_of(robot)) {
+        if (region.use == Region::Use::body) continue;
+        if (const auto* solid = std::get_if<mesh::Solid>(region.geometry)) solids.push_back(*solid);
     }
     return solids;
 }
@@ -66,44 +68,23 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
             bodies.push_back({body.name, std::move(*surface)});
         }
     }
-    for (const ChamberSpec& chamber : robot.chambers) {
-        if (const auto* solid = std::get_if<mesh::Solid>(&chamber.air)) bodies.push_back({chamber.name, *solid});
+    for (const Region& region : regions_of(robot)) {
+        if (region.use != Region::Use::body)
+            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry)});
     }
     mesh::MeshSettings settings;
     settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
     settings.order = robot.mesh.order;
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     if (!mesh) {
-        // The mesher names bodies and chambers; the line is that of the last one it names.
+        // The mesher names bodies, chambers and gaps; the line is that of the last one it names.
         int line = robot.bodies.front().line;
-        for (const BodySpec& body : robot.bodies) {
-            if (mesh.error().message.find('"' + body.name + '"') != std::string::npos) line = body.line;
-        }
-        for (const ChamberSpec& chamber : robot.chambers) {
-            if (mesh.error().message.find('"' + chamber.name + '"') != std::string::npos) line = chamber.line;
+        for (const Region& region : regions_of(robot)) {
+            if (mesh.error().message.find(fmt::format("\"{}\"", region.name)) != std::string::npos) line = region.line;
         }
         return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
     }
     return mesh;
-}
-
-/// What the regions of a mesh file may be: first the bodies, then the chambers that name one.
-struct RegionUser {
-    std::string_view kind;
-    std::string name;
-    MeshRegion region;  ///< "all": every one
-    int line;
-};
-
-std::vector<RegionUser> region_users(const Robot& robot) {
-    std::vector<RegionUser> users;
-    for (const BodySpec& body : robot.bodies)
-        users.push_back({"body", body.name, std::get<MeshRegion>(body.geometry), body.line});
-    for (const ChamberSpec& chamber : robot.chambers) {
-        if (const auto* region = std::get_if<MeshRegion>(&chamber.air))
-            users.push_back({"chamber", chamber.name, *region, chamber.line});
-    }
-    return users;
 }
 
 bool box_holds_centroid(const BoxSelector& box, const mesh::TetMesh& mesh, std::size_t tet) {
@@ -113,33 +94,33 @@ bool box_holds_centroid(const BoxSelector& box, const mesh::TetMesh& mesh, std::
 }
 
 /// Gives user `u` the tets of its region. A region has one user, but a box may take tets from those before it.
-Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vector<RegionUser>& users, std::size_t u,
+Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vector<Region>& users, std::size_t u,
                   std::vector<int>& user_of_tet) {
-    const RegionUser& user = users[u];
+    const Region& user = users[u];
+    const auto& wanted = std::get<MeshRegion>(*user.geometry);
     const std::string where = place(robot, user.line, user.kind, user.name);
     std::size_t found = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         const std::string& region = mesh.region_names[static_cast<std::size_t>(mesh.region[t])];
-        if (user.region.name != "all" && user.region.name != region) continue;
-        if (user.region.box && !box_holds_centroid(*user.region.box, mesh, t)) continue;
+        if (wanted.name != "all" && wanted.name != region) continue;
+        if (wanted.box && !box_holds_centroid(*wanted.box, mesh, t)) continue;
         ++found;
-        if (user_of_tet[t] >= 0 && !user.region.box) {
-            const RegionUser& first = users[static_cast<std::size_t>(user_of_tet[t])];
+        if (user_of_tet[t] >= 0 && !wanted.box) {
+            const Region& first = users[static_cast<std::size_t>(user_of_tet[t])];
             return input_error("{}region \"{}\" already belongs to {} \"{}\"", where, region, first.kind, first.name);
         }
         user_of_tet[t] = static_cast<int>(u);
     }
     if (found > 0) return {};
-    if (user.region.box) return input_error("{}the box holds no centroid of a tetrahedron of the region", where);
-    return input_error("{}the mesh has no region \"{}\"; it has {}", where, user.region.name,
-                       join_names(mesh.region_names));
+    if (wanted.box) return input_error("{}the box holds no centroid of a tetrahedron of the region", where);
+    return input_error("{}the mesh has no region \"{}\"; it has {}", where, wanted.name, join_names(mesh.region_names));
 }
 
-/// Gives every region of the file to the body or chamber that names it.
+/// Gives every region of the file to the body, chamber or gap that names it.
 Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
     Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
     if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
-    const std::vector<RegionUser> users = region_users(robot);
+    const std::vector<Region> users = regions_of(robot);
     std::vector<int> user_of_tet(mesh->tet_count(), -1);
     for (std::size_t u = 0; u < users.size(); ++u) {
         if (Status status = claim_tets(robot, *mesh, users, u, user_of_tet); !status)
@@ -153,7 +134,7 @@ Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
     }
     mesh->region = std::move(user_of_tet);
     mesh->region_names.clear();
-    for (const RegionUser& user : users) mesh->region_names.push_back(user.name);
+    for (const Region& user : users) mesh->region_names.emplace_back(user.name);
     return robot.mesh.order == 2 ? mesh::to_quadratic(*mesh) : std::move(*mesh);
 }
 

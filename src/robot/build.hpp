@@ -11,8 +11,7 @@
 
 namespace pliant::robot {
 
-/// Meshes the bodies, or reads the mesh file. Metres. Regions: first the bodies, then the chambers whose air is a shape
-/// or a region of the mesh file. Errors name the body and its line.
+/// Meshes the bodies, or reads the mesh file. Metres. Regions as in regions_of(). Errors name the body and its line.
 [[nodiscard]] Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress);
 
 /// Ties supports, loads, cables, chambers and markers to the mesh of build_mesh().

@@ -1,11 +1,14 @@
 // Ties what the robot file names by place (boxes, points, paths) to nodes of the mesh.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/build.hpp"
+#include "robot/passage.hpp"
+#include "robot/regions.hpp"
 #include "sim/attach.hpp"
 #include "sim/loads.hpp"
 
@@ -41,11 +44,12 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 class ModelBuilder {
 public:
     ModelBuilder(const Robot& robot, mesh::TetMesh mesh) : robot_(robot), whole_(std::move(mesh)), attacher_(nullptr) {
-        std::vector<bool> solid(whole_.region_names.size(), false);
-        std::fill_n(solid.begin(), robot.bodies.size(), true);
-        mesh::Extract bodies = mesh::extract_regions(whole_, solid);
-        description_.mesh = std::move(bodies.mesh);
-        node_of_whole_ = std::move(bodies.node);
+        std::vector<bool> keep;
+        for (const Region& region : regions_of(robot)) keep.push_back(region.has_elements);
+        mesh::Extract kept = mesh::extract_regions(whole_, keep);
+        description_.mesh = std::move(kept.mesh);
+        node_of_whole_ = std::move(kept.node);
+        bodies_ = tets_of_bodies();
         for (const Vec3& p : description_.mesh.points) box_.add(p);
         tolerance_ = surface_share * box_.diagonal();
         // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
@@ -53,7 +57,7 @@ public:
     }
 
     Result<sim::Model> build() {
-        const sim::Attacher attacher(description_.mesh);
+        const sim::Attacher attacher(bodies_);
         attacher_ = &attacher;
         description_.gravity_m_s2 = robot_.gravity_m_s2;
         description_.gravity_share = robot_.gravity_share;
@@ -90,6 +94,41 @@ private:
         for (const MaterialSpec& m : robot_.materials)
             description_.materials.push_back({m.name, m.law, m.density_kg_m3});
         for (const BodySpec& body : robot_.bodies) description_.material_of_region.push_back(body.material);
+        for (const Region& region : regions_of(robot_)) {
+            if (region.use == Region::Use::body || !region.has_elements) continue;
+            description_.material_of_region.push_back(static_cast<int>(description_.materials.size()));
+            description_.materials.push_back({std::string(region.name), material::ScaledTarget{softest_Pa()}, 0});
+        }
+    }
+
+    /// The tets that carry material, on the nodes of the description's mesh.
+    mesh::TetMesh tets_of_bodies() const {
+        const mesh::TetMesh& all = description_.mesh;
+        mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names};
+        for (std::size_t t = 0; t < all.tet_count(); ++t) {
+            if (all.region[t] >= static_cast<int>(robot_.bodies.size())) continue;
+            bodies.region.push_back(all.region[t]);
+            bodies.nodes.insert(bodies.nodes.end(), all.tet(t).begin(), all.tet(t).end());
+        }
+        return bodies;
+    }
+
+    /// Young's modulus of the softest body: meshed space resists as much, with a Poisson ratio of zero.
+    double softest_Pa() const {
+        double softest = std::numeric_limits<double>::infinity();
+        for (const BodySpec& body : robot_.bodies) {
+            const MaterialSpec& material = robot_.materials[static_cast<std::size_t>(body.material)];
+            softest = std::min(softest, material::youngs_modulus(material::moduli(material.law)));
+        }
+        return softest;
+    }
+
+    /// Index of a region of the whole mesh among those that were kept, whose material is its target shape.
+    int material_of(std::size_t region) const {
+        const auto regions = regions_of(robot_);
+        std::size_t kept = 0;
+        for (std::size_t r = 0; r < region; ++r) kept += regions[r].has_elements ? 1 : 0;
+        return description_.material_of_region[kept];
     }
 
     Box3 box_of(const BoxSelector& selector) const {
@@ -161,7 +200,7 @@ private:
     void add_load(const LoadSpec& load) {
         const Box3 box = box_of(load.box);
         std::vector<mesh::Face> faces;
-        for (const mesh::Face& face : mesh::boundary_faces(description_.mesh)) {
+        for (const mesh::Face& face : mesh::boundary_faces(bodies_)) {
             const auto inside = [&](int i) {
                 return box.contains(description_.mesh.points[face.nodes[i]], box_margin_);
             };
@@ -197,14 +236,38 @@ private:
             chamber.wall = wall_of_file(spec, file->path);
         else
             chamber.wall = wall_of_region(spec);
-        if (!chamber.wall.faces.empty()) description_.chambers.push_back(std::move(chamber));
+        if (chamber.wall.faces.empty()) return;
+        if (spec.elements) {
+            const std::size_t region = region_of(Region::Use::chamber, spec.name);
+            const auto actuator = static_cast<int>(description_.cables.size() + description_.chambers.size());
+            description_.growths.push_back({material_of(region), {}, actuator});
+        }
+        description_.chambers.push_back(std::move(chamber));
+    }
+
+    std::size_t region_of(Region::Use use, std::string_view name) const {
+        const auto regions = regions_of(robot_);
+        const auto found = std::find_if(regions.begin(), regions.end(),
+                                        [&](const Region& r) { return r.use == use && r.name == name; });
+        return static_cast<std::size_t>(found - regions.begin());
+    }
+
+    /// T3.5: every gap that the cable passes shrinks along it.
+    void drive_by_gaps(const CableSpec& spec, const std::vector<Vec3>& points) {
+        const std::size_t before = description_.growths.size();
+        for (const GapSpec& gap : robot_.gaps) {
+            const std::size_t region = region_of(Region::Use::gap, gap.name);
+            const Passage passage = passage_through(whole_, static_cast<int>(region), points);
+            const auto actuator = static_cast<int>(description_.cables.size());
+            if (passage.length > 0) description_.growths.push_back({material_of(region), passage.direction, actuator});
+        }
+        if (description_.growths.size() == before)
+            problem(spec.line, "cable", spec.name, "passes no [[gap]], which model = \"gap-elements\" needs");
     }
 
     /// The boundary of a meshed chamber. A mouth that no body closes must lie in a support that stays where it is.
     sim::Wall wall_of_region(const ChamberSpec& spec) {
-        const auto name = std::find(whole_.region_names.begin() + static_cast<std::ptrdiff_t>(robot_.bodies.size()),
-                                    whole_.region_names.end(), spec.name);
-        const int region = static_cast<int>(name - whole_.region_names.begin());
+        const int region = static_cast<int>(region_of(Region::Use::chamber, spec.name));
         const std::vector<mesh::Face> faces = mesh::region_faces(whole_, region);
         sim::Wall wall = sim::wall_of_faces(whole_, faces, node_of_whole_);
         if (faces.empty()) {
@@ -274,7 +337,7 @@ private:
         std::vector<double> hits;
         const auto& p = description_.mesh.points;
         const Vec3 d = b - a;
-        for (const mesh::Face& face : mesh::boundary_faces(description_.mesh)) {
+        for (const mesh::Face& face : mesh::boundary_faces(bodies_)) {
             // Moeller and Trumbore 1997; edges count, so that no hit falls between two triangles.
             const Vec3 e1 = p[face.nodes[1]] - p[face.nodes[0]];
             const Vec3 e2 = p[face.nodes[2]] - p[face.nodes[0]];
@@ -337,6 +400,7 @@ private:
             cable.points.push_back(std::move(*attachment));
         }
         check_shortening(spec, points);
+        if (spec.gap_elements) drive_by_gaps(spec, points);
         description_.cables.push_back(std::move(cable));
     }
 
@@ -364,8 +428,8 @@ private:
         }
         const Box3 box = box_of(std::get<BoxSelector>(spec.place));
         std::vector<bool> corner(description_.mesh.points.size(), false);
-        for (std::size_t t = 0; t < description_.mesh.tet_count(); ++t) {
-            for (std::size_t a = 0; a < 4; ++a) corner[description_.mesh.tet(t)[a]] = true;
+        for (std::size_t t = 0; t < bodies_.tet_count(); ++t) {
+            for (std::size_t a = 0; a < 4; ++a) corner[bodies_.tet(t)[a]] = true;
         }
         sim::Attachment mean;
         for (std::size_t n = 0; n < corner.size(); ++n) {
@@ -381,8 +445,9 @@ private:
     }
 
     const Robot& robot_;
-    mesh::TetMesh whole_;             ///< bodies, then chambers
-    std::vector<int> node_of_whole_;  ///< (nodes of whole_) index in the bodies' mesh, or -1
+    mesh::TetMesh whole_;             ///< regions as in regions_of()
+    std::vector<int> node_of_whole_;  ///< (nodes of whole_) index in the description's mesh, or -1
+    mesh::TetMesh bodies_;            ///< the description's mesh without actuated space
     const sim::Attacher* attacher_;
     sim::Description description_;
     Box3 box_;

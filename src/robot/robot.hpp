@@ -99,6 +99,14 @@ struct CableSpec {
     bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
     double eyelet_radius = 0;          ///< length units
     sim::CableTarget target;
+    bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
+    int line = 0;
+};
+
+/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, or a region.
+struct GapSpec {
+    std::string name;
+    Geometry space;
     int line = 0;
 };
 
@@ -107,6 +115,7 @@ struct ChamberSpec {
     std::string name;
     Geometry air;
     sim::ChamberTarget target;
+    bool elements = false;  ///< the thesis' model (T3.6) instead of the volume constraint
     int line = 0;
 };
 
@@ -127,6 +136,7 @@ struct Robot {
     std::vector<LoadSpec> loads;
     std::vector<CableSpec> cables;
     std::vector<ChamberSpec> chambers;
+    std::vector<GapSpec> gaps;
     std::vector<MarkerSpec> markers;
     Vec3 gravity_m_s2;
     sim::Curve gravity_share = sim::ramp(0, 1);

@@ -310,10 +310,12 @@ void read_cables(Reader& root, Context& context) {
         cable.anchor = anchor == "first" ? CableSpec::Anchor::first
                                          : (anchor == "last" ? CableSpec::Anchor::last : CableSpec::Anchor::none);
         cable.guides_at_crossings = reader.choice("guides", {"points", "crossings"}, "points") == "crossings";
-        (void)reader.choice("model", {"length"}, "length");
+        cable.gap_elements = reader.choice("model", {"length", "gap-elements"}, "length") == "gap-elements";
         cable.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
         if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
         cable.target = read_target(reader);
+        if (cable.gap_elements && cable.target.kind == sim::CableTarget::Kind::tension_N)
+            reader.problem("target", "model = \"gap-elements\" knows lengths only: length_ratio or shortening");
         reader.finish();
         context.robot.cables.push_back(std::move(cable));
     }
@@ -370,11 +372,35 @@ void read_chambers(Reader& root, Context& context) {
         chamber.line = reader.line();
         chamber.name = read_name(reader, taken, "chambers");
         chamber.air = read_air(reader, context);
-        (void)reader.choice("model", {"volume"}, "volume");
+        chamber.elements = reader.choice("model", {"volume", "elements"}, "volume") == "elements";
+        if (chamber.elements && std::holds_alternative<SurfaceFile>(chamber.air))
+            reader.problem("surface", "model = \"elements\" needs meshed air: geometry or region");
         chamber.target = read_chamber_target(reader);
+        const auto kind = chamber.target.kind;
+        if (chamber.elements && kind != sim::ChamberTarget::Kind::volume_ratio &&
+            kind != sim::ChamberTarget::Kind::volume_change_m3)
+            reader.problem("target", "model = \"elements\" knows volumes only: volume_ratio or volume_change");
         reader.finish();
         context.robot.chambers.push_back(std::move(chamber));
     }
+}
+
+void read_gaps(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("gap")) {
+        GapSpec gap;
+        gap.line = reader.line();
+        gap.name = read_name(reader, taken, "gaps");
+        gap.space = read_air(reader, context);
+        if (std::holds_alternative<SurfaceFile>(gap.space))
+            reader.problem("surface", "a gap must be meshed: give geometry or region");
+        reader.finish();
+        context.robot.gaps.push_back(std::move(gap));
+    }
+    const auto& cables = context.robot.cables;
+    const auto uses = [](const CableSpec& cable) { return cable.gap_elements; };
+    if (context.robot.gaps.empty() && std::any_of(cables.begin(), cables.end(), uses))
+        root.problem("", "a cable has model = \"gap-elements\", but there is no [[gap]]");
 }
 
 void read_markers(Reader& root, Context& context) {
@@ -428,6 +454,7 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     read_loads(root, context);
     read_cables(root, context);
     read_chambers(root, context);
+    read_gaps(root, context);
     read_markers(root, context);
     read_program(root, robot);
     root.finish();

@@ -20,14 +20,14 @@ public:
 
     /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
     /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
-    [[nodiscard]] bool refresh(const State& state, const Controls&, bool cautious) override {
+    [[nodiscard]] bool refresh(const State& state, const Controls& controls, bool cautious) override {
         if (system_->has_skew()) state_ = state;
-        assemble(state, false, values_);
+        assemble(state, controls, false, values_);
         if (!cautious && factor_.factorise(values_)) {
             share_ = smallest_share;
             return true;
         }
-        assemble(state, true, projected_);
+        assemble(state, controls, true, projected_);
         for (double share = cautious ? 1 : std::max(0.5 * share_, smallest_share);; share = std::min(2 * share, 1.0)) {
             blended_.resize(values_.size());
             for (std::size_t k = 0; k < values_.size(); ++k)
@@ -61,9 +61,9 @@ private:
         return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
     }
 
-    void assemble(const State& state, bool project, std::vector<double>& values) const {
+    void assemble(const State& state, const Controls& controls, bool project, std::vector<double>& values) const {
         values.assign(pattern_.entries(), 0.0);
-        system_->add_tangent(state, pattern_, values, project);
+        system_->add_tangent(state, controls, pattern_, values, project);
     }
 
     static constexpr double smallest_share = 1.0 / 16;

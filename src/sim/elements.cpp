@@ -121,10 +121,10 @@ Matrix3 Elements::deformation_gradient(std::size_t tet, int point, std::span<con
     return F;
 }
 
-Elements::Evaluation Elements::evaluate_tet(std::size_t tet, std::span<const double> x, double* forces) const {
+Elements::Evaluation Elements::evaluate_tet(std::size_t tet, std::span<const double> x, const material::Law& law,
+                                            double* forces) const {
     Evaluation result;
     result.min_J = std::numeric_limits<double>::infinity();
-    const material::Law& elastic = law(tet);
     for (int q = 0; q < points_per_tet_; ++q) {
         const Matrix3 F = deformation_gradient(tet, q, x);
         const double J = F.determinant();
@@ -132,9 +132,9 @@ Elements::Evaluation Elements::evaluate_tet(std::size_t tet, std::span<const dou
         result.min_J = J > 0 ? std::min(result.min_J, J) : (J <= 0 ? std::min(result.min_J, J) : -1);
         if (!(result.min_J > 0)) return result;
         const double volume = point_volume(tet, q);
-        if (const auto density = material::energy(elastic, F)) result.energy_J += volume * *density;
+        if (const auto density = material::energy(law, F)) result.energy_J += volume * *density;
         if (forces == nullptr) continue;
-        const Matrix3 P = volume * material::stress(elastic, F);
+        const Matrix3 P = volume * material::stress(law, F);
         const double* g = gradients(tet, q);
         for (int a = 0; a < nodes_per_tet_; ++a) {
             for (int i = 0; i < 3; ++i) {
@@ -145,7 +145,8 @@ Elements::Evaluation Elements::evaluate_tet(std::size_t tet, std::span<const dou
     return result;
 }
 
-Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces) const {
+Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces,
+                                        std::span<const material::Law> laws) const {
     const std::size_t pieces = (tet_count() + tets_per_piece - 1) / tets_per_piece;
     std::vector<Evaluation> partial(pieces);
     const std::size_t width = 3 * static_cast<std::size_t>(nodes_per_tet_);
@@ -154,7 +155,8 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
         Evaluation& sum = partial[begin / tets_per_piece];
         sum.min_J = std::numeric_limits<double>::infinity();
         for (std::size_t t = begin; t < end; ++t) {
-            const Evaluation one = evaluate_tet(t, x, forces.empty() ? nullptr : buffer.data() + t * width);
+            const Evaluation one =
+                evaluate_tet(t, x, law_among(laws, t), forces.empty() ? nullptr : buffer.data() + t * width);
             sum.energy_J += one.energy_J;
             sum.min_J = std::min(sum.min_J, one.min_J);
             if (!(sum.min_J > 0)) return;
@@ -178,12 +180,13 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
     return total;
 }
 
-void Elements::tet_tangent(std::size_t tet, std::span<const double> x, bool project, double* K) const {
+void Elements::tet_tangent(std::size_t tet, std::span<const double> x, const material::Law& law, bool project,
+                           double* K) const {
     const auto width = static_cast<std::size_t>(3 * nodes_per_tet_);
     std::fill(K, K + width * width, 0.0);
     std::array<std::array<double, max_tet_unknowns>, 9> HB;  // column 3b + k: change of P with unknown k of node b
     for (int q = 0; q < points_per_tet_; ++q) {
-        Matrix9 H = material::tangent(law(tet), deformation_gradient(tet, q, x));
+        Matrix9 H = material::tangent(law, deformation_gradient(tet, q, x));
         H = project ? linalg::project_to_positive(H) : Matrix9(0.5 * (H + H.transpose()));
         H *= point_volume(tet, q);
         const double* g = gradients(tet, q);
@@ -210,7 +213,8 @@ void Elements::tet_tangent(std::size_t tet, std::span<const double> x, bool proj
 }
 
 void Elements::add_tangent(std::span<const double> x, const std::vector<int>& free_index,
-                           const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+                           const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+                           std::span<const material::Law> laws) const {
     // Batches bound the memory of the element matrices; adding them in order keeps the result reproducible.
     constexpr std::size_t batch = 2048;
     const auto width = static_cast<std::size_t>(3 * nodes_per_tet_);
@@ -219,7 +223,8 @@ void Elements::add_tangent(std::span<const double> x, const std::vector<int>& fr
     for (std::size_t first = 0; first < tet_count(); first += batch) {
         const std::size_t count = std::min(batch, tet_count() - first);
         parallel_for(count, 32, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) tet_tangent(first + t, x, project, matrices.data() + t * size);
+            for (std::size_t t = begin; t < end; ++t)
+                tet_tangent(first + t, x, law_among(laws, first + t), project, matrices.data() + t * size);
         });
         for (std::size_t t = 0; t < count; ++t) {
             const double* K = matrices.data() + t * size;

@@ -25,12 +25,15 @@ public:
         double min_J = 1;     ///< over all integration points; if it is not positive, nothing else is computed
     };
     /// Adds the internal forces (3n) at node positions `x` (3n). Without `forces` only energy and min_J are found.
-    Evaluation evaluate(std::span<const double> x, std::span<double> forces) const;
+    /// `laws` (materials), where given, stand in for the model's: targets of actuated space change with the program.
+    Evaluation evaluate(std::span<const double> x, std::span<double> forces,
+                        std::span<const material::Law> laws = {}) const;
 
     /// Adds the tangent stiffness to `values` of a pattern over free nodes (block 3). With `project`, every integration
     /// point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+                     std::span<const material::Law> laws = {}) const;
 
     /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient) for a pattern
     /// of block 1; W = stiffness_bound(law) times volume.
@@ -64,8 +67,12 @@ private:
     Status integrate_tet(const Description& description, std::size_t tet);
     void link_nodes(std::size_t node_count);
     /// Upper triangle by blocks of 3, row by row, (3 nodes_per_tet)^2.
-    void tet_tangent(std::size_t tet, std::span<const double> x, bool project, double* K) const;
-    Evaluation evaluate_tet(std::size_t tet, std::span<const double> x, double* forces) const;
+    void tet_tangent(std::size_t tet, std::span<const double> x, const material::Law& law, bool project,
+                     double* K) const;
+    Evaluation evaluate_tet(std::size_t tet, std::span<const double> x, const material::Law& law, double* forces) const;
+    [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t tet) const {
+        return laws.empty() ? law(tet) : laws[static_cast<std::size_t>(law_[tet])];
+    }
 
     int nodes_per_tet_ = 4;
     int points_per_tet_ = 1;

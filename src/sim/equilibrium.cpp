@@ -54,6 +54,8 @@ void Equilibrium::add_actuators() {
     for (const Cable& cable : d.cables) actuators_.emplace_back(CablePath(cable, rest), rest);
     for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
     for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
+    grows_.assign(actuators_.size(), false);
+    for (const Growth& growth : d.growths) grows_[static_cast<std::size_t>(growth.actuator)] = true;
 }
 
 bool Equilibrium::rim_is_held(const Wall& wall) const {
@@ -77,47 +79,64 @@ Eigen::VectorXd Equilibrium::external_at(double time) const {
     return force;
 }
 
-Controls Equilibrium::controls(double time) const {
+std::vector<material::Law> Equilibrium::laws_at(std::span<const double> stretch) const {
     const Description& d = model_->description();
+    std::vector<material::Law> laws;
+    if (d.growths.empty()) return laws;
+    for (const Material& material : d.materials) laws.push_back(material.law);
+    for (const Growth& growth : d.growths) {
+        const double scale = stretch.empty() ? 1 : stretch[static_cast<std::size_t>(growth.actuator)];
+        linalg::Matrix3 target = linalg::Matrix3::Identity();
+        if (norm(growth.direction) > 0)
+            target += (scale - 1) * vector(growth.direction) * vector(growth.direction).transpose();
+        else
+            target *= scale;
+        std::get<material::ScaledTarget>(laws[static_cast<std::size_t>(growth.material)]).target = target;
+    }
+    return laws;
+}
+
+Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
+    const Description& d = model_->description();
+    const double rest = actuators_[actuator].rest_measure();
+    if (actuator < d.cables.size()) {
+        const CableTarget& target = d.cables[actuator].target;
+        const double value = target.at(time);
+        if (target.kind == CableTarget::Kind::tension_N) return {Drive::Kind::multiplier, value};
+        return {Drive::Kind::measure, target.kind == CableTarget::Kind::length_ratio ? value * rest : rest - value};
+    }
+    const std::size_t chamber = actuator - d.cables.size();
+    if (chamber < d.chambers.size()) {
+        const ChamberTarget& target = d.chambers[chamber].target;
+        const double value = target.at(time);
+        switch (target.kind) {
+            case ChamberTarget::Kind::volume_ratio:
+                return {Drive::Kind::measure, value * rest};
+            case ChamberTarget::Kind::volume_change_m3:
+                return {Drive::Kind::measure, rest + value};
+            case ChamberTarget::Kind::pressure_Pa:
+                return {Drive::Kind::multiplier, -value};
+            case ChamberTarget::Kind::gas_ratio:
+                return {Drive::Kind::gas, value * d.ambient_pressure_Pa * rest};
+        }
+    }
+    const PressureLoad& load = d.pressures[chamber - d.chambers.size()];
+    return {Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa};
+}
+
+double Equilibrium::wanted_ratio(std::size_t actuator, double time) const {
+    return drive_at(actuator, time).value / actuators_[actuator].rest_measure();
+}
+
+Controls Equilibrium::controls(double time, std::span<const double> stretch) const {
     Controls controls;
     controls.time = time;
     controls.external_N = external_at(time);
-    for (const Support& support : d.supports) controls.support_share.push_back(support.share.at(time));
-    for (const Cable& cable : d.cables) {
-        const double rest = actuators_[controls.drives.size()].rest_measure();
-        const double value = cable.target.at(time);
-        switch (cable.target.kind) {
-            case CableTarget::Kind::length_ratio:
-                controls.drives.push_back({Drive::Kind::measure, value * rest});
-                break;
-            case CableTarget::Kind::shortening_m:
-                controls.drives.push_back({Drive::Kind::measure, rest - value});
-                break;
-            case CableTarget::Kind::tension_N:
-                controls.drives.push_back({Drive::Kind::multiplier, value});
-                break;
-        }
-    }
-    for (const Chamber& chamber : d.chambers) {
-        const double rest = actuators_[controls.drives.size()].rest_measure();
-        const double value = chamber.target.at(time);
-        switch (chamber.target.kind) {
-            case ChamberTarget::Kind::volume_ratio:
-                controls.drives.push_back({Drive::Kind::measure, value * rest});
-                break;
-            case ChamberTarget::Kind::volume_change_m3:
-                controls.drives.push_back({Drive::Kind::measure, rest + value});
-                break;
-            case ChamberTarget::Kind::pressure_Pa:
-                controls.drives.push_back({Drive::Kind::multiplier, -value});
-                break;
-            case ChamberTarget::Kind::gas_ratio:
-                controls.drives.push_back({Drive::Kind::gas, value * d.ambient_pressure_Pa * rest});
-                break;
-        }
-    }
-    for (const PressureLoad& load : d.pressures)
-        controls.drives.push_back({Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa});
+    controls.laws = laws_at(stretch);
+    for (const Support& support : model_->description().supports)
+        controls.support_share.push_back(support.share.at(time));
+    for (std::size_t a = 0; a < actuators_.size(); ++a)
+        controls.drives.push_back(grows_[a] ? Drive{Drive::Kind::multiplier, 0} : drive_at(a, time));
     return controls;
 }
 
@@ -156,7 +175,7 @@ double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
     Evaluation e;
     Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
-    const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
+    const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal), controls.laws);
     e.min_J = elastic.min_J;
     if (!(e.min_J > 0)) return e;
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
@@ -196,7 +215,7 @@ void Equilibrium::fill_residual(const State& state, const Controls& controls, co
 
 Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls,
                                       const Eigen::VectorXd& prices) const {
-    const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {});
+    const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {}, controls.laws);
     Merit merit{elastic.min_J, 0};
     if (!(merit.min_J > 0)) return merit;
     merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_);
@@ -218,9 +237,9 @@ std::vector<std::vector<int>> Equilibrium::cliques() const {
     return cliques;
 }
 
-void Equilibrium::add_tangent(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values,
-                              bool project) const {
-    model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project);
+void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
+                              std::span<double> values, bool project) const {
+    model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
         if (multiplier != 0)

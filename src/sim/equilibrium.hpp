@@ -15,6 +15,7 @@ struct Controls {
     Eigen::VectorXd external_N;         ///< (3n) dead loads and gravity
     std::vector<double> support_share;  ///< (supports) of their prescribed motion
     std::vector<Drive> drives;          ///< (actuators)
+    std::vector<material::Law> laws;    ///< (materials) where target shapes change with time; else empty
 };
 
 /// What a solver changes: node positions and the multiplier of every actuator.
@@ -41,7 +42,10 @@ class Equilibrium {
 public:
     explicit Equilibrium(const Model& model);
 
-    [[nodiscard]] Controls controls(double time) const;
+    /// `stretch` (actuators): scale of the target shapes that each one drives, 1 at rest.
+    [[nodiscard]] Controls controls(double time, std::span<const double> stretch = {}) const;
+    /// Where an actuator is driven by its measure: what it shall be, relative to rest.
+    [[nodiscard]] double wanted_ratio(std::size_t actuator, double time) const;
     [[nodiscard]] State rest() const;
     /// Puts the nodes of the supports where `controls` wants them.
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
@@ -58,8 +62,8 @@ public:
     [[nodiscard]] std::vector<std::vector<int>> cliques() const;
     /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
     /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
-    void add_tangent(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values,
-                     bool project) const;
+    void add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
+                     std::span<double> values, bool project) const;
 
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.
@@ -85,6 +89,8 @@ public:
 private:
     void add_actuators();
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
+    [[nodiscard]] std::vector<material::Law> laws_at(std::span<const double> stretch) const;
+    [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
     /// Energy of an actuator whose measure is not driven, at measure g.
     [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
@@ -96,6 +102,7 @@ private:
     std::vector<Actuator> actuators_;
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share
+    std::vector<bool> grows_;        ///< (actuators) drives target shapes, and has no force of its own
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
     bool conservative_ = true;
     double force_floor_ = 0;  ///< forces below this are rounding, not load

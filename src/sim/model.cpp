@@ -86,6 +86,19 @@ Status check_chamber(const Chamber& chamber, int nodes) {
     return {};
 }
 
+Status check_growths(const Description& d) {
+    for (const Growth& growth : d.growths) {
+        const bool driven =
+            growth.material >= 0 && growth.material < static_cast<int>(d.materials.size()) &&
+            std::holds_alternative<material::ScaledTarget>(d.materials[static_cast<std::size_t>(growth.material)].law);
+        if (!driven) return input_error("a growth needs a material whose law is scaled-target");
+        const auto actuators = static_cast<int>(d.cables.size() + d.chambers.size());
+        if (growth.actuator < 0 || growth.actuator >= actuators)
+            return input_error("a growth names actuator {} of {}", growth.actuator, actuators);
+    }
+    return {};
+}
+
 Status check_loads(const Description& d, int nodes) {
     for (const Load& load : d.loads) {
         const Attachment spread{load.nodes, load.shares, {}};
@@ -169,6 +182,7 @@ Result<Model> Model::create(Description description) {
     const int nodes = static_cast<int>(description.mesh.points.size());
     Status status = check_mesh(description);
     if (status) status = check_loads(description, nodes);
+    if (status) status = check_growths(description);
     for (std::size_t c = 0; status && c < description.cables.size(); ++c)
         status = check_cable(description.cables[c], nodes);
     for (std::size_t c = 0; status && c < description.chambers.size(); ++c)

@@ -100,6 +100,15 @@ struct Chamber {
     ChamberTarget target;
 };
 
+/// How the thesis' actuators drive the target shape of one material (a material::ScaledTarget): its rest shape is
+/// scaled along `direction` or, where that is zero, in all directions, by as much as it takes for the actuator's
+/// measure (a cable's length, a chamber's volume) to be what its target wants. The actuator itself then has no force.
+struct Growth {
+    int material = 0;
+    Vec3 direction;    ///< of length 1, or zero
+    int actuator = 0;  ///< first the cables, then the chambers
+};
+
 /// A point of the material whose position is reported.
 struct Marker {
     std::string name;
@@ -115,6 +124,7 @@ struct Description {
     std::vector<PressureLoad> pressures;
     std::vector<Cable> cables;
     std::vector<Chamber> chambers;
+    std::vector<Growth> growths;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -15,6 +16,10 @@ namespace pliant::sim {
 namespace {
 
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
+
+constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
+constexpr double growth_tolerance = 1e-4;
+constexpr int growth_rounds = 1000;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -31,6 +36,7 @@ public:
           state_(system_.rest()),
           previous_(state_) {
         curvature_ = make_curvature(program.solver);
+        if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
 
     [[nodiscard]] std::string_view solver_name() const { return curvature_->name(); }
@@ -43,7 +49,10 @@ public:
         while (time_ < time) {
             const double target = time_ + piece >= time - 1e-9 * whole ? time : time_ + piece;
             State next = state_;
-            const StepOutcome outcome = attempt(target, next, progress);
+            const std::vector<double> stretch = stretch_;
+            const StepOutcome outcome =
+                stretch_.empty() ? attempt(target, next, progress) : grow(target, next, progress);
+            if (!outcome.converged) stretch_ = stretch;
             step.iterations += outcome.iterations;
             if (outcome.converged) {
                 previous_ = std::move(state_);
@@ -115,10 +124,59 @@ private:
         return conservative ? make_newton(system_) : make_quasi_newton(laplacian_);
     }
 
+    /// The thesis' actuators: target shapes are scaled in small steps until every constraint holds (T3.5, T3.6).
+    StepOutcome grow(double time, State& next, const Progress& progress) {
+        StepOutcome outcome = attempt(time, next, progress);
+        std::vector<double> slope(stretch_.size(), 0.0);
+        for (int round = 0; outcome.converged && round < growth_rounds; ++round) {
+            const std::vector<double> before = growth_errors(time, next);
+            if (std::all_of(before.begin(), before.end(), [](double e) { return std::fabs(e) <= growth_tolerance; }))
+                return outcome;
+            std::vector<double> change(stretch_.size(), 0.0);
+            for (std::size_t a = 0; a < stretch_.size(); ++a) {
+                const double wanted = slope[a] > 0 ? -before[a] / slope[a] : -before[a];
+                change[a] = std::clamp(wanted, -largest_growth, largest_growth);
+                stretch_[a] += change[a];
+                if (!(stretch_[a] > largest_growth)) {
+                    outcome.converged = false;
+                    outcome.reason = "the space that drives the actuator would have to vanish";
+                    return outcome;
+                }
+            }
+            const StepOutcome more = solve_step(system_, *curvature_, system_.controls(time, stretch_),
+                                                {program_.tolerance, program_.iteration_limit}, next, progress);
+            outcome.converged = more.converged;
+            outcome.evaluation = more.evaluation;
+            outcome.reason = more.reason;
+            outcome.iterations += more.iterations;
+            const std::vector<double> after = growth_errors(time, next);
+            for (std::size_t a = 0; a < stretch_.size(); ++a) {
+                if (change[a] != 0) slope[a] = (after[a] - before[a]) / change[a];
+            }
+        }
+        if (outcome.converged) {
+            outcome.converged = false;
+            outcome.reason = "scaling its target shapes does not bring an actuator where it is wanted";
+        }
+        return outcome;
+    }
+
+    /// Measured minus wanted ratio of the actuators that scale target shapes; 0 for all others.
+    [[nodiscard]] std::vector<double> growth_errors(double time, const State& state) const {
+        std::vector<double> errors(stretch_.size(), 0.0);
+        const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
+        for (const Growth& growth : model_.description().growths) {
+            const auto a = static_cast<std::size_t>(growth.actuator);
+            const Actuator& actuator = system_.actuators()[a];
+            errors[a] = actuator.measure(x) / actuator.rest_measure() - system_.wanted_ratio(a, time);
+        }
+        return errors;
+    }
+
     /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
     /// out, as it was.
     StepOutcome attempt(double time, State& next, const Progress& progress) {
-        const Controls controls = system_.controls(time);
+        const Controls controls = system_.controls(time, stretch_);
         next = follow_supports(state_, controls);
         if (previous_time_ < time_) {
             State onward = state_;
@@ -170,6 +228,7 @@ private:
     double time_ = 0;
     double previous_time_ = 0;
     Evaluation evaluation_;
+    std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
 };
 

@@ -1,0 +1,28 @@
+#include "robot/regions.hpp"
+
+#include <algorithm>
+
+namespace pliant::robot {
+
+std::vector<Region> regions_of(const Robot& robot) {
+    std::vector<Region> regions;
+    for (std::size_t i = 0; i < robot.bodies.size(); ++i) {
+        const BodySpec& body = robot.bodies[i];
+        regions.push_back({Region::Use::body, i, "body", body.name, &body.geometry, body.line, true});
+    }
+    for (std::size_t i = 0; i < robot.chambers.size(); ++i) {
+        const ChamberSpec& chamber = robot.chambers[i];
+        if (std::holds_alternative<SurfaceFile>(chamber.air)) continue;
+        regions.push_back(
+            {Region::Use::chamber, i, "chamber", chamber.name, &chamber.air, chamber.line, chamber.elements});
+    }
+    const bool gaps_act =
+        std::any_of(robot.cables.begin(), robot.cables.end(), [](const CableSpec& c) { return c.gap_elements; });
+    for (std::size_t i = 0; i < robot.gaps.size(); ++i) {
+        const GapSpec& gap = robot.gaps[i];
+        regions.push_back({Region::Use::gap, i, "gap", gap.name, &gap.space, gap.line, gaps_act});
+    }
+    return regions;
+}
+
+}  // namespace pliant::robot
