@@ -1,0 +1,103 @@
+// Which boxes overlap: a tree whose shape is fixed once and whose boxes are fitted to every new state.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/vec3.hpp"
+
+namespace pliant::sim::contact {
+
+/// An axis-aligned box, closed on all sides; empty until a point is added.
+struct Bounds {
+    std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    std::array<double, 3> high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+    void add(const Vec3& p) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = p[k] < low[k] ? p[k] : low[k];
+            high[k] = p[k] > high[k] ? p[k] : high[k];
+        }
+    }
+    void add(const Bounds& b) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = b.low[k] < low[k] ? b.low[k] : low[k];
+            high[k] = b.high[k] > high[k] ? b.high[k] : high[k];
+        }
+    }
+    void widen(double margin) {
+        for (std::size_t k = 0; k < 3; ++k) low[k] -= margin, high[k] += margin;
+    }
+    [[nodiscard]] bool overlaps(const Bounds& b) const {
+        // Without branches: the outcome is hard to predict and the six comparisons are cheap.
+        return (low[0] <= b.high[0]) & (b.low[0] <= high[0]) & (low[1] <= b.high[1]) & (b.low[1] <= high[1]) &
+               (low[2] <= b.high[2]) & (b.low[2] <= high[2]);
+    }
+};
+
+/// The shape of the tree: items in the order of leaves of eight, and the nodes over them. Immutable.
+class BoxTree {
+public:
+    static constexpr std::size_t leaf_size = 8;
+
+    BoxTree() = default;
+    /// Halves the items along the longest side of their centres' box until eight are left.
+    explicit BoxTree(std::span<const Bounds> items);
+
+    /// The boxes of one state; items are in the order of the tree.
+    struct Fit {
+        std::vector<Bounds> items, nodes;
+    };
+    /// `items` in their own order, as many as the tree was made of.
+    [[nodiscard]] Fit fit(std::span<const Bounds> items) const;
+
+    [[nodiscard]] std::size_t leaf_count() const { return (order_.size() + leaf_size - 1) / leaf_size; }
+    [[nodiscard]] std::span<const int> leaf(std::size_t l) const {
+        const std::size_t begin = l * leaf_size, end = begin + leaf_size;
+        return {order_.data() + begin, (end < order_.size() ? end : order_.size()) - begin};
+    }
+
+    /// Calls visit(l) for each leaf whose box overlaps `box`, in ascending order, from leaf `first` on.
+    template <class Visit>
+    void visit_leaves(const Fit& fit, const Bounds& box, std::size_t first, Visit&& visit) const {
+        for (std::size_t n = 0; n < nodes_.size();) {
+            const Node& node = nodes_[n];
+            const bool enter = node.end_leaf > first && fit.nodes[n].overlaps(box);
+            if (enter && node.next == n + 1) visit(node.end_leaf - 1);
+            n = enter ? n + 1 : node.next;
+        }
+    }
+
+    /// Calls visit(i, j) for the overlapping items i of leaf `l` of this tree and j of `other`, whose order is fixed.
+    /// A tree against itself gives each pair once.
+    template <class Visit>
+    void visit_overlaps(const Fit& fit, std::size_t l, const BoxTree& other, const Fit& other_fit,
+                        Visit&& visit) const {
+        const bool same = this == &other;
+        const std::span<const int> mine = leaf(l);
+        const Bounds* boxes = fit.items.data() + l * leaf_size;
+        Bounds all;
+        for (std::size_t i = 0; i < mine.size(); ++i) all.add(boxes[i]);
+        other.visit_leaves(other_fit, all, same ? l : 0, [&](std::size_t m) {
+            const std::span<const int> theirs = other.leaf(m);
+            const Bounds* other_boxes = other_fit.items.data() + m * leaf_size;
+            for (std::size_t i = 0; i < mine.size(); ++i)
+                for (std::size_t j = same && l == m ? i + 1 : 0; j < theirs.size(); ++j)
+                    if (boxes[i].overlaps(other_boxes[j])) visit(mine[i], theirs[j]);
+        });
+    }
+
+private:
+    /// In preorder: the left child follows its parent; `next` is the first node that is not below this one.
+    struct Node {
+        std::size_t next, end_leaf;
+    };
+    std::size_t split(std::span<const Vec3> centres, std::size_t begin, std::size_t end);
+
+    std::vector<int> order_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace pliant::sim::contact

@@ -1,0 +1,274 @@
+// What needs a look at every two features that are near each other: pairs, steps, crossings.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "sim/contact/contact.hpp"
+#include "sim/contact/intersection.hpp"
+
+namespace pliant::sim::contact {
+
+namespace {
+
+/// A tenth: the share of its present distance that a step leaves to every pair.
+constexpr double kept_share = 0.1;
+
+Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
+    return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
+}
+
+/// Boxes of the features' points at x and, where dx is given, at x + dx.
+template <class Nodes>
+std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const double> x, std::span<const double> dx,
+                             double margin) {
+    std::vector<Bounds> boxes(features.size());
+    for (std::size_t f = 0; f < features.size(); ++f) {
+        const auto add = [&](int node) {
+            const Vec3 p = node_at(x, node);
+            boxes[f].add(p);
+            if (!dx.empty()) boxes[f].add(p + node_at(dx, node));
+        };
+        if constexpr (std::is_same_v<Nodes, int>) {
+            add(features[f]);
+        } else {
+            for (const int node : features[f]) add(node);
+        }
+        boxes[f].widen(margin);
+    }
+    return boxes;
+}
+
+/// Features of one kind of one side.
+struct Group {
+    const BoxTree* tree;
+    BoxTree::Fit fit;
+};
+
+}  // namespace
+
+class Contact::Search {
+public:
+    enum class What { pairs, crossings };
+
+    /// `margin`: how far apart features may be and still be found.
+    Search(const Contact& contact, std::span<const double> x, std::span<const double> dx, double margin, What what,
+           bool self) {
+        const Side &robot = contact.robot_, &others = contact.others_;
+        const auto points = [&](const Side& s) { return group(s.points, s.surface.points, x, dx, margin / 2); };
+        const auto edges = [&](const Side& s) { return group(s.edges, s.surface.edges, x, dx, margin / 2); };
+        const auto triangles = [&](const Side& s) {
+            return group(s.triangles, s.surface.triangles, x, dx, margin / 2);
+        };
+        const bool crossings = what == What::crossings;
+        groups_[0] = {crossings ? edges(robot) : points(robot), crossings ? edges(others) : points(others)};
+        groups_[1] = {triangles(robot), triangles(others)};
+        const Kind kind = crossings ? Kind::edge_triangle : Kind::point_triangle;
+        if (self) add(kind, robot, robot, groups_[0][0], groups_[1][0]);
+        add(kind, robot, others, groups_[0][0], groups_[1][1]);
+        add(kind, others, robot, groups_[0][1], groups_[1][0]);
+        if (crossings) return;
+        groups_[2] = {edges(robot), edges(others)};
+        if (self) add(Kind::edge_edge, robot, robot, groups_[2][0], groups_[2][0]);
+        add(Kind::edge_edge, robot, others, groups_[2][0], groups_[2][1]);
+    }
+
+    enum class Kind { point_triangle, edge_edge, edge_triangle };
+    /// Two features; of the first two kinds they share no node.
+    struct Candidate {
+        Kind kind = Kind::point_triangle;
+        std::array<int, 5> nodes{};  ///< 4 of the first two kinds
+        double area_m2 = 0;          ///< of the smaller feature
+
+        [[nodiscard]] Features features() const {
+            return kind == Kind::edge_edge ? Features::edge_edge : Features::point_triangle;
+        }
+        [[nodiscard]] double squared_distance(std::span<const double> x) const {
+            const Stencil at = stencil_at(std::span(nodes).first<4>(), x);
+            return contact::squared_distance(nearest(features(), at), at);
+        }
+    };
+
+    /// Calls visit(candidate, result) for all, each piece of leaves with its own `start`; the results in order.
+    template <class Result, class Visit>
+    [[nodiscard]] std::vector<Result> run(const Result& start, const Visit& visit) const {
+        constexpr std::size_t grain = 64;
+        std::vector<Result> results((leaf_count_ + grain - 1) / grain, start);
+        parallel_for(leaf_count_, grain, [&](std::size_t begin, std::size_t end) {
+            Result& result = results[begin / grain];
+            for (const Family& family : families_) {
+                const std::size_t from = std::max(begin, family.first_leaf);
+                const std::size_t to = std::min(end, family.first_leaf + family.first->tree->leaf_count());
+                for (std::size_t l = from; l < to; ++l)
+                    family.first->tree->visit_overlaps(
+                        family.first->fit, l - family.first_leaf, *family.second->tree, family.second->fit,
+                        [&](int i, int j) { offer(family, i, j, [&](const Candidate& c) { visit(c, result); }); });
+            }
+        });
+        return results;
+    }
+
+private:
+    struct Family {
+        Kind kind;
+        const Side *first_side, *second_side;
+        const Group *first, *second;
+        std::size_t first_leaf;  ///< leaves of all families are numbered through
+    };
+
+    template <class Nodes>
+    static Group group(const BoxTree& tree, const std::vector<Nodes>& features, std::span<const double> x,
+                       std::span<const double> dx, double margin) {
+        return {&tree, tree.fit(boxes_of(features, x, dx, margin))};
+    }
+
+    void add(Kind kind, const Side& first_side, const Side& second_side, const Group& first, const Group& second) {
+        if (first.tree->leaf_count() == 0 || second.tree->leaf_count() == 0) return;
+        families_.push_back({kind, &first_side, &second_side, &first, &second, leaf_count_});
+        leaf_count_ += first.tree->leaf_count();
+    }
+
+    template <class Visit>
+    void offer(const Family& f, int i, int j, const Visit& visit) const {
+        const Surface &a = f.first_side->surface, &b = f.second_side->surface;
+        switch (f.kind) {
+            case Kind::point_triangle: {
+                const int p = a.points[i];
+                const auto& t = b.triangles[j];
+                if (p == t[0] || p == t[1] || p == t[2]) return;
+                const double area = std::min(f.first_side->areas.points[i], f.second_side->areas.triangles[j]);
+                visit(Candidate{f.kind, {p, t[0], t[1], t[2], -1}, area});
+                return;
+            }
+            case Kind::edge_edge: {
+                const auto &e = a.edges[i], &g = b.edges[j];
+                if (e[0] == g[0] || e[0] == g[1] || e[1] == g[0] || e[1] == g[1]) return;
+                const double area = std::min(f.first_side->areas.edges[i], f.second_side->areas.edges[j]);
+                visit(Candidate{f.kind, {e[0], e[1], g[0], g[1], -1}, area});
+                return;
+            }
+            case Kind::edge_triangle: {
+                const auto& e = a.edges[i];
+                const auto& t = b.triangles[j];
+                visit(Candidate{f.kind, {e[0], e[1], t[0], t[1], t[2]}, 0});
+                return;
+            }
+        }
+    }
+
+    std::array<std::array<Group, 2>, 3> groups_{};  ///< points or edges, triangles, edges; robot, obstacles
+    std::vector<Family> families_;
+    std::size_t leaf_count_ = 0;
+};
+
+Pairs Contact::find(std::span<const double> x) const {
+    const double most = settings_.distance_m;
+    const Search search(*this, x, {}, most, Search::What::pairs, settings_.self);
+    const auto consider = [&](const Search::Candidate& c, Pairs& found) {
+        const double squared = c.squared_distance(x);
+        if (squared >= most * most) return;
+        const double apart = std::sqrt(c.squared_distance(rest_)), reach = std::min(most, 0.5 * apart);
+        if (apart > touching_m_ && squared < reach * reach)
+            found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
+    };
+    Pairs pairs;
+    for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    find_planes(x, pairs);
+    return pairs;
+}
+
+Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const {
+    Pair pair;
+    pair.kind = edges ? PairKind::edge_edge : PairKind::point_triangle;
+    std::copy_n(nodes.begin(), 4, pair.nodes.begin());
+    const int first = obstacle_of_node_[nodes[0]], second = obstacle_of_node_[nodes[3]];
+    pair.obstacle = std::max(first, second);
+    pair.robot_first = first < 0;
+    pair.reach_m = reach_m;
+    // Every place of a surface counts as part of a point and of a triangle, and again as part of an edge.
+    pair.area_m2 = area_m2 / 2;
+    const Vec3 u = node_at(rest_, nodes[1]) - node_at(rest_, nodes[0]);
+    const Vec3 v = node_at(rest_, nodes[3]) - node_at(rest_, nodes[2]);
+    pair.parallel_m4 = 1e-3 * dot(u, u) * dot(v, v);
+    return pair;
+}
+
+void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
+    for (const Plane& plane : planes_) {
+        for (std::size_t i = 0; i < robot_.surface.points.size(); ++i) {
+            const int point = robot_.surface.points[i];
+            Pair pair;
+            pair.kind = PairKind::point_plane;
+            pair.nodes = {point, plane.node, plane.node, plane.node};
+            pair.obstacle = plane.obstacle;
+            pair.normal = plane.normal;
+            pair.reach_m = std::min(settings_.distance_m, 0.5 * distance(pair, stencil_at(pair.nodes, rest_)));
+            pair.area_m2 = robot_.areas.points[i];
+            if (distance(pair, stencil_at(pair.nodes, x)) < pair.reach_m) pairs.push_back(pair);
+        }
+    }
+}
+
+double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
+    const Search search(*this, x, dx, kept_share * settings_.distance_m, Search::What::pairs, settings_.self);
+    const auto limit = [&](const Search::Candidate& c, double& step) {
+        const double t =
+            contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
+        if (t < step && std::sqrt(c.squared_distance(rest_)) > touching_m_) step = t;
+    };
+    double step = largest_plane_step(x, dx);
+    for (const double piece : search.run(step, limit)) step = std::min(step, piece);
+    return step;
+}
+
+double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
+    double step = 1;
+    for (const Plane& plane : planes_) {
+        for (const int point : robot_.surface.points) {
+            const double now = dot(plane.normal, node_at(x, point) - node_at(x, plane.node));
+            const double closing = dot(plane.normal, node_at(dx, plane.node) - node_at(dx, point));
+            if (now - closing < kept_share * now)
+                step = std::min(step, (1 - kept_share) * std::max(now, 0.0) / closing);
+        }
+    }
+    return step;
+}
+
+std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool self) const {
+    using Found = std::optional<Crossing>;
+    const Search search(*this, x, {}, 0, Search::What::crossings, self);
+    const auto test = [&](const Search::Candidate& c, Found& found) {
+        const auto& n = c.nodes;
+        const bool joined =
+            std::find(n.begin() + 2, n.end(), n[0]) != n.end() || std::find(n.begin() + 2, n.end(), n[1]) != n.end();
+        if (found || joined) return;
+        if (segment_crosses_triangle(node_at(x, n[0]), node_at(x, n[1]), node_at(x, n[2]), node_at(x, n[3]),
+                                     node_at(x, n[4])))
+            found = {{n[0], n[1]}, {n[2], n[3], n[4]}, std::max(obstacle_of_node_[n[0]], obstacle_of_node_[n[2]])};
+    };
+    for (const Found& piece : search.run(Found{}, test))
+        if (piece) return piece;
+    return {};
+}
+
+std::optional<Crossing> Contact::crossing(std::span<const double> x) const {
+    return first_crossing(x, settings_.self);
+}
+
+std::optional<int> Contact::obstacle_touched_at_rest() const {
+    int touched = -1;
+    for (const Plane& plane : planes_)
+        for (const int point : robot_.surface.points)
+            if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) <= touching_m_)
+                touched = plane.obstacle;
+    const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
+    const auto test = [&](const Search::Candidate& c, int& found) {
+        if (std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+            found = std::max(obstacle_of_node_[c.nodes[0]], obstacle_of_node_[c.nodes[3]]);
+    };
+    for (const int piece : search.run(-1, test)) touched = std::max(touched, piece);
+    if (const auto crossed = first_crossing(rest_, false)) touched = crossed->obstacle;
+    return touched < 0 ? std::nullopt : std::optional<int>(touched);
+}
+
+}  // namespace pliant::sim::contact

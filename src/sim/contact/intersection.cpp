@@ -1,0 +1,16 @@
+#include "sim/contact/intersection.hpp"
+
+namespace pliant::sim::contact {
+
+bool segment_crosses_triangle(const Vec3& a, const Vec3& b, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
+    const Vec3 normal = cross(t1 - t0, t2 - t0);
+    if (!(dot(a - t0, normal) * dot(b - t0, normal) < 0)) return false;
+    // Seen along the segment, all three sides must run round it in the same sense.
+    const Vec3 d = b - a;
+    const double s0 = dot(d, cross(t0 - a, t1 - a));
+    const double s1 = dot(d, cross(t1 - a, t2 - a));
+    const double s2 = dot(d, cross(t2 - a, t0 - a));
+    return (s0 > 0 && s1 > 0 && s2 > 0) || (s0 < 0 && s1 < 0 && s2 < 0);
+}
+
+}  // namespace pliant::sim::contact
