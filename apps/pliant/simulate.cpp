@@ -69,6 +69,14 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
         fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
                    1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
     }
+    for (const auto& c : last.contacts) {
+        fmt::print("obstacle {}: presses on the robot with ({:.4f}, {:.4f}, {:.4f}) N\n", c.name, c.force_N.x,
+                   c.force_N.y, c.force_N.z);
+    }
+    if (model.contact() != nullptr && last.self_contact_N > 0) {
+        fmt::print("self-contact: {:.4f} N in all, nearest {:.4f} mm\n", last.self_contact_N,
+                   1e3 * last.smallest_distance_m);
+    }
     for (const auto& s : last.supports) {
         fmt::print("support {}: force ({:.4f}, {:.4f}, {:.4f}) N\n", s.name, s.force_N.x, s.force_N.y, s.force_N.z);
     }

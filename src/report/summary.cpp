@@ -1,5 +1,6 @@
 #include "report/summary.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pliant::report {
@@ -39,6 +40,13 @@ Json step_json(const sim::Step& step) {
     out["supports"] = Json::object();
     for (const auto& support : step.supports) {
         out["supports"][support.name] = {{"force_N", vector_json(support.force_N, 1)}};
+    }
+    if (!step.contacts.empty() || step.self_contact_N > 0) {
+        out["contacts"] = Json::object();
+        for (const auto& contact : step.contacts)
+            out["contacts"][contact.name] = {{"force_N", vector_json(contact.force_N, 1)}};
+        out["self_contact_N"] = step.self_contact_N;
+        if (std::isfinite(step.smallest_distance_m)) out["smallest_distance_mm"] = mm_per_m * step.smallest_distance_m;
     }
     out["markers"] = Json::object();
     for (const auto& marker : step.markers) out["markers"][marker.name] = vector_json(marker.position_m, mm_per_m);

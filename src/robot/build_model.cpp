@@ -7,6 +7,7 @@
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/build.hpp"
+#include "robot/build_contact.hpp"
 #include "robot/passage.hpp"
 #include "robot/regions.hpp"
 #include "sim/attach.hpp"
@@ -69,6 +70,11 @@ public:
         for (const ChamberSpec& chamber : robot_.chambers) add_chamber(chamber);
         for (const MarkerSpec& marker : robot_.markers) add_marker(marker);
         if (!problems_.empty()) return tl::unexpected(Error{Cause::input, problems_});
+        if (robot_.contact) {
+            Result<sim::ContactRules> contact = build_contact(robot_, bodies_);
+            if (!contact) return tl::unexpected(contact.error());
+            description_.contact = std::move(*contact);
+        }
         Result<sim::Model> model = sim::Model::create(std::move(description_));
         if (!model)
             return tl::unexpected(Error{model.error().cause, robot_.file.string() + ": " + model.error().message});

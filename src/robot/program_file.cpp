@@ -56,6 +56,7 @@ std::vector<Driven> everything_driven(Robot& robot) {
     };
     for (LoadSpec& load : robot.loads) share(load.name, load.share);
     for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
+    for (ObstacleSpec& obstacle : robot.obstacles) share(obstacle.name, obstacle.share);
     share("gravity", robot.gravity_share);
     return list;
 }

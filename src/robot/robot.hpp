@@ -119,6 +119,25 @@ struct ChamberSpec {
     int line = 0;
 };
 
+/// A rigid thing that the robot may touch.
+struct ObstacleSpec {
+    std::string name;
+    std::variant<mesh::Solid, SurfaceFile, PlaneSelector> shape;  ///< of the plane's half-space the normal points out
+    double friction = 0;
+    Vec3 move;  ///< length units
+    sim::Curve share = sim::ramp(0, 1);
+    int line = 0;
+};
+
+struct ContactSpec {
+    bool self = true;
+    double distance = 0;                 ///< length units; 0: a thousandth of the robot's size
+    std::optional<double> stiffness_Pa;  ///< else a tenth of the softest Young's modulus
+    double friction = 0;                 ///< of the robot against itself
+    double slip = 0;                     ///< length units; 0: a hundredth of the distance
+    int line = 0;
+};
+
 struct MarkerSpec {
     std::string name;
     std::variant<Vec3, BoxSelector> place;
@@ -137,6 +156,8 @@ struct Robot {
     std::vector<CableSpec> cables;
     std::vector<ChamberSpec> chambers;
     std::vector<GapSpec> gaps;
+    std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle
+    std::vector<ObstacleSpec> obstacles;
     std::vector<MarkerSpec> markers;
     Vec3 gravity_m_s2;
     sim::Curve gravity_share = sim::ramp(0, 1);

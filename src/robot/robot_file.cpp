@@ -5,6 +5,7 @@
 
 #include "core/config.hpp"
 #include "core/text.hpp"
+#include "robot/contact_file.hpp"
 #include "robot/program_file.hpp"
 #include "robot/robot.hpp"
 
@@ -455,6 +456,7 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     read_cables(root, context);
     read_chambers(root, context);
     read_gaps(root, context);
+    read_contact(root, robot, context.shapes, problems);
     read_markers(root, context);
     read_program(root, robot);
     root.finish();

@@ -21,6 +21,7 @@ public:
     /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
     /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
     [[nodiscard]] bool refresh(const State& state, const Controls& controls, bool cautious) override {
+        make_room_for_contact(state, controls);
         if (system_->has_skew()) state_ = state;
         assemble(state, controls, false, values_);
         if (!cautious && factor_.factorise(values_)) {
@@ -61,12 +62,43 @@ private:
         return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
     }
 
+    /// Contact couples nodes that no element does: where a pair is new, the pattern is made and analysed again.
+    void make_room_for_contact(const State& state, const Controls& controls) {
+        bool grown = false;
+        for (std::vector<int>& clique : system_->contact_cliques(state, controls)) {
+            if (holds(clique)) continue;
+            touching_.push_back(std::move(clique));
+            grown = true;
+        }
+        if (!grown) return;
+        auto cliques = system_->cliques();
+        cliques.insert(cliques.end(), touching_.begin(), touching_.end());
+        pattern_ = linalg::make_pattern(system_->model().free_count(), 3, cliques);
+        factor_ = linalg::Cholesky(pattern_);
+        // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
+        if (touching_.size() > most_remembered) touching_.clear();
+    }
+
+    /// True if the pattern couples all nodes of a clique.
+    [[nodiscard]] bool holds(const std::vector<int>& clique) const {
+        for (const int i : clique) {
+            for (const int j : clique) {
+                if (j < 0 || i < j) continue;
+                const auto begin = pattern_.node_row.begin() + pattern_.node_start[static_cast<std::size_t>(j)];
+                const auto end = pattern_.node_row.begin() + pattern_.node_start[static_cast<std::size_t>(j) + 1];
+                if (!std::binary_search(begin, end, i)) return false;
+            }
+        }
+        return true;
+    }
+
     void assemble(const State& state, const Controls& controls, bool project, std::vector<double>& values) const {
         values.assign(pattern_.entries(), 0.0);
         system_->add_tangent(state, controls, pattern_, values, project);
     }
 
     static constexpr double smallest_share = 1.0 / 16;
+    static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
 
@@ -77,7 +109,8 @@ private:
     std::vector<double> blended_;
     double share_ = smallest_share;  ///< of the projection that was needed last
     linalg::Cholesky factor_;
-    State state_;  ///< where the tangent was made; kept only where its skew part is needed
+    std::vector<std::vector<int>> touching_;  ///< pairs in contact that the pattern has room for
+    State state_;                             ///< where the tangent was made; kept only where its skew part is needed
 };
 
 }  // namespace

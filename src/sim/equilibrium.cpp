@@ -133,6 +133,7 @@ Controls Equilibrium::controls(double time, std::span<const double> stretch) con
     controls.time = time;
     controls.external_N = external_at(time);
     controls.laws = laws_at(stretch);
+    controls.obstacles = obstacles_at(time);
     for (const Support& support : model_->description().supports)
         controls.support_share.push_back(support.share.at(time));
     for (std::size_t a = 0; a < actuators_.size(); ++a)
@@ -179,6 +180,7 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     e.min_J = elastic.min_J;
     if (!(e.min_J > 0)) return e;
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
+    add_contact(state.x, controls, internal, e.energy_J);
     fill_actuators(state, controls, e);
     fill_residual(state, controls, internal, e);
     return e;
@@ -218,7 +220,7 @@ Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& 
     const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {}, controls.laws);
     Merit merit{elastic.min_J, 0};
     if (!(merit.min_J > 0)) return merit;
-    merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_);
+    merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_) + contact_energy(x, controls);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const Drive& drive = controls.drives[a];
         const double g = actuators_[a].measure(view(x));
@@ -231,6 +233,104 @@ Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& 
     return merit;
 }
 
+std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
+    std::vector<double> all(x.data(), x.data() + x.size());
+    all.insert(all.end(), obstacles.data(), obstacles.data() + obstacles.size());
+    return all;
+}
+
+Eigen::VectorXd Equilibrium::obstacles_at(double time) const {
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return {};
+    const int first = contact->robot_node_count();
+    Eigen::VectorXd positions(3 * (contact->node_count() - first));
+    const auto& obstacles = model_->description().contact->obstacles;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+        const Eigen::Vector3d move = obstacles[k].share.at(time) * vector(obstacles[k].move_m);
+        for (int node = contact->first_node(k); node < contact->first_node(k + 1); ++node) {
+            const Eigen::Map<const Eigen::Vector3d> rest(contact->rest().data() + 3 * static_cast<std::size_t>(node));
+            positions.segment<3>(3 * (node - first)) = rest + move;
+        }
+    }
+    return positions;
+}
+
+double Equilibrium::contact_energy(const Eigen::VectorXd& x, const Controls& controls) const {
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return 0;
+    const std::vector<double> all = with_obstacles(x, controls.obstacles);
+    return contact->energy(contact->find(all), all) + (controls.friction ? controls.friction->energy(all) : 0);
+}
+
+void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
+                              double& energy) const {
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return;
+    const std::vector<double> all = with_obstacles(x, controls.obstacles);
+    const contact::Pairs pairs = contact->find(all);
+    std::vector<double> gradient(all.size(), 0.0);
+    contact->add_gradient(pairs, all, gradient);
+    energy += contact->energy(pairs, all);
+    if (controls.friction) {
+        controls.friction->add_gradient(all, gradient);
+        energy += controls.friction->energy(all);
+    }
+    forces += Eigen::Map<const Eigen::VectorXd>(gradient.data(), forces.size());
+}
+
+double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
+                                 const Eigen::VectorXd& obstacle_motion) const {
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return 1;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(controls.obstacles.size());
+    return contact->largest_step(with_obstacles(x, controls.obstacles),
+                                 with_obstacles(motion, obstacle_motion.size() > 0 ? obstacle_motion : none));
+}
+
+std::shared_ptr<const contact::Friction> Equilibrium::freeze_friction(const State& state, const State& start,
+                                                                      const Controls& controls,
+                                                                      const Controls& start_controls) const {
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return nullptr;
+    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+    return std::make_shared<const contact::Friction>(
+        contact->freeze(contact->find(x), x, with_obstacles(start.x, start_controls.obstacles)));
+}
+
+bool Equilibrium::has_friction() const {
+    const auto& rules = model_->description().contact;
+    if (!rules) return false;
+    return rules->settings.friction > 0 ||
+           std::any_of(rules->obstacles.begin(), rules->obstacles.end(),
+                       [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
+}
+
+contact::Forces Equilibrium::contact_forces(const State& state, const Controls& controls) const {
+    const contact::Contact* contact = model_->contact();
+    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+    return contact->forces(contact->find(x), x, controls.friction.get());
+}
+
+std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls) const {
+    std::vector<std::vector<int>> cliques;
+    const contact::Contact* contact = model_->contact();
+    if (contact == nullptr) return cliques;
+    const auto add = [&](std::span<const int> nodes) {
+        std::vector<int> clique;
+        for (const int node : nodes) {
+            if (node < model_->node_count()) clique.push_back(model_->free_index()[static_cast<std::size_t>(node)]);
+        }
+        cliques.push_back(std::move(clique));
+    };
+    const contact::Pairs pairs = contact->find(with_obstacles(state.x, controls.obstacles));
+    for (const contact::Pair& pair : pairs) add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count())});
+    if (controls.friction) {
+        for (const contact::FrozenPair& pair : controls.friction->pairs())
+            add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count)});
+    }
+    return cliques;
+}
+
 std::vector<std::vector<int>> Equilibrium::cliques() const {
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
@@ -240,6 +340,18 @@ std::vector<std::vector<int>> Equilibrium::cliques() const {
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
                               std::span<double> values, bool project) const {
     model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
+    if (const contact::Contact* contact = model_->contact()) {
+        const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+        const auto& free_index = model_->free_index();
+        const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
+            if (a >= model_->node_count() || b >= model_->node_count()) return;
+            const int i = free_index[static_cast<std::size_t>(a)];
+            const int j = free_index[static_cast<std::size_t>(b)];
+            if (j >= 0 && i >= j) pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+        };
+        contact->visit_hessian(contact->find(x), x, project, add);
+        if (controls.friction) controls.friction->visit_hessian(x, add);
+    }
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
         if (multiplier != 0)

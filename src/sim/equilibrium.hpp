@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "sim/actuator.hpp"
@@ -16,6 +17,9 @@ struct Controls {
     std::vector<double> support_share;  ///< (supports) of their prescribed motion
     std::vector<Drive> drives;          ///< (actuators)
     std::vector<material::Law> laws;    ///< (materials) where target shapes change with time; else empty
+    Eigen::VectorXd obstacles;          ///< (3 obstacle nodes) where the obstacles are
+    /// Friction as frozen at some state of this step; none before contact.
+    std::shared_ptr<const contact::Friction> friction = nullptr;
 };
 
 /// What a solver changes: node positions and the multiplier of every actuator.
@@ -58,12 +62,27 @@ public:
     };
     [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, const Eigen::VectorXd& prices) const;
 
-    /// Node lists that the tangent couples, as free indices.
+    /// Node lists that the tangent couples, as free indices: of the body and its actuators, and of what touches at one
+    /// state.
     [[nodiscard]] std::vector<std::vector<int>> cliques() const;
+    [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls) const;
     /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
     /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
+
+    /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
+    /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
+    [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
+                                      const Eigen::VectorXd& obstacle_motion = {}) const;
+    /// Friction for a step that began at `start`, with the contact forces of `state`. Nothing without contact.
+    [[nodiscard]] std::shared_ptr<const contact::Friction> freeze_friction(const State& state, const State& start,
+                                                                           const Controls& controls,
+                                                                           const Controls& start_controls) const;
+    /// True if something rubs.
+    [[nodiscard]] bool has_friction() const;
+    /// Contact forces of a state, for results. Precondition: the model has contact.
+    [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
 
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.
@@ -94,6 +113,11 @@ private:
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
     /// Energy of an actuator whose measure is not driven, at measure g.
     [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
+    /// Robot nodes, then those of the obstacles: what contact knows as x.
+    [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
+    [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
+    void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;
+    [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
     void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
     void fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
                        Evaluation& e) const;

@@ -170,6 +170,14 @@ Status check_held(const Description& d) {
                        mesh.tet_count());
 }
 
+Result<contact::Contact> create_contact(const Description& d) {
+    std::vector<double> rest;
+    for (const Vec3& p : d.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+    std::vector<contact::Obstacle> obstacles;
+    for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
+    return contact::Contact::create(d.contact->surface, std::move(obstacles), d.contact->settings, rest);
+}
+
 }  // namespace
 
 Model::Model() = default;
@@ -194,6 +202,11 @@ Result<Model> Model::create(Description description) {
     Result<Elements> elements = Elements::create(model.description_);
     if (!elements) return tl::unexpected(elements.error());
     model.elements_ = std::make_unique<Elements>(std::move(*elements));
+    if (model.description_.contact) {
+        Result<contact::Contact> contact = create_contact(model.description_);
+        if (!contact) return tl::unexpected(contact.error());
+        model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
+    }
     return model;
 }
 

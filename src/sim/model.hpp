@@ -13,6 +13,7 @@
 #include "core/vec3.hpp"
 #include "material/law.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "sim/contact/contact.hpp"
 #include "sim/curve.hpp"
 
 namespace pliant::sim {
@@ -109,6 +110,20 @@ struct Growth {
     int actuator = 0;  ///< first the cables, then the chambers
 };
 
+/// A rigid thing that the robot may touch; it is at rest + share * move.
+struct Obstacle {
+    contact::Obstacle body;
+    Vec3 move_m;
+    Curve share = ramp(0, 1);
+};
+
+/// What can touch what.
+struct ContactRules {
+    contact::Surface surface;    ///< of the robot's bodies
+    contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
+    std::vector<Obstacle> obstacles;
+};
+
 /// A point of the material whose position is reported.
 struct Marker {
     std::string name;
@@ -125,6 +140,7 @@ struct Description {
     std::vector<Cable> cables;
     std::vector<Chamber> chambers;
     std::vector<Growth> growths;
+    std::optional<ContactRules> contact = std::nullopt;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
@@ -142,6 +158,8 @@ public:
     [[nodiscard]] const Description& description() const { return description_; }
     [[nodiscard]] const mesh::TetMesh& mesh() const { return description_.mesh; }
     [[nodiscard]] const Elements& elements() const { return *elements_; }
+    /// Nothing where nothing can touch.
+    [[nodiscard]] const contact::Contact* contact() const { return contact_.get(); }
     [[nodiscard]] int node_count() const { return static_cast<int>(description_.mesh.points.size()); }
     [[nodiscard]] int free_count() const { return free_count_; }
     /// (n), index among the free nodes, or -1 for nodes held by a support.
@@ -151,6 +169,7 @@ private:
     Model();
     Description description_;
     std::unique_ptr<Elements> elements_;
+    std::unique_ptr<contact::Contact> contact_;
     std::vector<int> free_index_;
     int free_count_ = 0;
 };

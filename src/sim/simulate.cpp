@@ -18,6 +18,7 @@ namespace {
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
+constexpr int friction_rounds = 10;
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
 
@@ -34,7 +35,8 @@ public:
           system_(model),
           laplacian_(model),
           state_(system_.rest()),
-          previous_(state_) {
+          previous_(state_),
+          controls_(system_.controls(0)) {
         curvature_ = make_curvature(program.solver);
         if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
@@ -58,6 +60,7 @@ public:
                 previous_ = std::move(state_);
                 previous_time_ = time_;
                 state_ = std::move(next);
+                controls_ = solved_controls_;
                 time_ = target;
                 evaluation_ = outcome.evaluation;
                 ++step.substeps;
@@ -85,9 +88,19 @@ public:
             else
                 step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, -multiplier});
         }
+        if (model_.contact() != nullptr) describe_contact(step);
         for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});
         for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
         for (int n = 0; n < model_.node_count(); ++n) step.positions.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
+    }
+
+    void describe_contact(Step& step) const {
+        const contact::Forces forces = system_.contact_forces(state_, controls_);
+        const auto& obstacles = model_.description().contact->obstacles;
+        for (std::size_t k = 0; k < obstacles.size(); ++k)
+            step.contacts.push_back({obstacles[k].body.name, forces.on_robot_N[k]});
+        step.self_contact_N = forces.self_N;
+        step.smallest_distance_m = forces.smallest_distance_m;
     }
 
     /// A gap that has closed between two guide points: from here on the flanks would touch.
@@ -104,7 +117,7 @@ public:
         }
     }
 
-    void evaluate_rest() { evaluation_ = system_.evaluate(state_, system_.controls(0)); }
+    void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
     std::unique_ptr<Curvature> make_curvature(Solver solver) const {
@@ -143,8 +156,8 @@ private:
                     return outcome;
                 }
             }
-            const StepOutcome more = solve_step(system_, *curvature_, system_.controls(time, stretch_),
-                                                {program_.tolerance, program_.iteration_limit}, next, progress);
+            Controls controls = system_.controls(time, stretch_);
+            const StepOutcome more = settle_friction(controls, next, progress);
             outcome.converged = more.converged;
             outcome.evaluation = more.evaluation;
             outcome.reason = more.reason;
@@ -173,11 +186,19 @@ private:
         return errors;
     }
 
-    /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
-    /// out, as it was.
     StepOutcome attempt(double time, State& next, const Progress& progress) {
-        const Controls controls = system_.controls(time, stretch_);
-        next = follow_supports(state_, controls);
+        Controls controls = system_.controls(time, stretch_);
+        StepOutcome outcome;
+        outcome.reason = predict(time, controls, next);
+        if (!outcome.reason.empty()) return outcome;
+        curvature_->restart();
+        return settle_friction(controls, next, progress);
+    }
+
+    /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
+    /// out or pass through something, as it was. Returns why there is no start.
+    [[nodiscard]] std::string predict(double time, const Controls& controls, State& next) const {
+        const State still = follow_supports(state_, controls);
         if (previous_time_ < time_) {
             State onward = state_;
             const double factor = (time - time_) / (time_ - previous_time_);
@@ -188,17 +209,43 @@ private:
                 tension = std::max(tension, 0.0);
             }
             system_.place_supports(controls, onward.x);
-            if (system_.evaluate(onward, controls).min_J > 0) next = std::move(onward);
+            if (system_.evaluate(onward, controls).min_J > 0 && passes(onward, controls)) {
+                next = std::move(onward);
+                return {};
+            }
         }
-        const Evaluation start = system_.evaluate(next, controls);
-        if (!(start.min_J > 0)) {
-            StepOutcome outcome;
-            outcome.reason = "the prescribed motion turns a tetrahedron inside out";
-            return outcome;
+        next = still;
+        if (!(system_.evaluate(next, controls).min_J > 0))
+            return "the prescribed motion turns a tetrahedron inside out";
+        return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
+    }
+
+    /// True if the way from the last state to `next` meets nothing.
+    [[nodiscard]] bool passes(const State& next, const Controls& controls) const {
+        return system_.largest_step(state_.x, next.x - state_.x, controls_, controls.obstacles - controls_.obstacles) >=
+               1;
+    }
+
+    /// Friction depends on the contact forces, which depend on friction: frozen, solved, and frozen anew until both
+    /// agree (the lagging of Li et al. 2020, section 5).
+    StepOutcome settle_friction(Controls& controls, State& next, const Progress& progress) {
+        controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
+        StepOutcome total;
+        for (int round = 0; round < friction_rounds; ++round) {
+            StepOutcome outcome = solve_step(system_, *curvature_, controls,
+                                             {program_.tolerance, program_.iteration_limit}, next, progress);
+            outcome.iterations += total.iterations;
+            total = std::move(outcome);
+            if (!total.converged || !system_.has_friction()) break;
+            controls.friction = system_.freeze_friction(next, state_, controls, controls_);
+            Evaluation settled = system_.evaluate(next, controls);
+            if (settled.residual <= program_.tolerance) {
+                total.evaluation = std::move(settled);
+                break;
+            }
         }
-        curvature_->restart();
-        return solve_step(system_, *curvature_, controls, {program_.tolerance, program_.iteration_limit}, next,
-                          progress);
+        solved_controls_ = controls;
+        return total;
     }
 
     [[nodiscard]] State follow_supports(const State& from, const Controls& controls) const {
@@ -225,6 +272,8 @@ private:
     std::unique_ptr<Curvature> curvature_;
     State state_;
     State previous_;
+    Controls controls_;         ///< of the last converged state
+    Controls solved_controls_;  ///< of the state that was solved last
     double time_ = 0;
     double previous_time_ = 0;
     Evaluation evaluation_;

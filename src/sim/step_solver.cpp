@@ -191,7 +191,10 @@ private:
         }
         const double slope = direction.slope_J - cost;
         const bool conservative = system_.conservative();
-        for (double alpha = 1; alpha > smallest_step; alpha *= 0.5) {
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
+        system_.add_free(direction.dx, 1, motion);
+        const double longest = system_.largest_step(state_.x, motion, controls_);
+        for (double alpha = longest; alpha > smallest_step; alpha *= 0.5) {
             State next = state_;
             system_.add_free(direction.dx, alpha, next.x);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);

@@ -1,6 +1,7 @@
 // What a simulation gives back, step by step. Everything in SI; positions of all nodes of the mesh.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct MarkerState {
     Vec3 position_m;
 };
 
+struct ContactState {
+    std::string name;  ///< of the obstacle
+    Vec3 force_N;      ///< pressure and friction of the obstacle on the robot
+};
+
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
@@ -45,6 +51,9 @@ struct Step {
     std::vector<CableState> cables;
     std::vector<ChamberState> chambers;
     std::vector<SupportState> supports;
+    std::vector<ContactState> contacts;  ///< (obstacles)
+    double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
+    double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of what is near enough to act
     std::vector<MarkerState> markers;
     std::vector<Vec3> positions;  ///< (n, 3)
 };

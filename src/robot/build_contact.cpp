@@ -1,0 +1,68 @@
+#include "robot/build_contact.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/mesher.hpp"
+#include "mesh/surface_file.hpp"
+
+namespace pliant::robot {
+namespace {
+
+constexpr double distance_share = 1e-3;  // of the robot's size
+constexpr double slip_share = 1e-2;      // of the distance
+constexpr double stiffness_share = 0.1;  // of the softest Young's modulus
+constexpr double chord_share = 0.1;      // of the distance: how far a round obstacle may leave its surface
+
+Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& spec, double distance_m) {
+    Result<mesh::TriMesh> surface;
+    if (const auto* solid = std::get_if<mesh::Solid>(&spec.shape)) {
+        surface = mesh::tessellate(*solid, chord_share * distance_m / robot.unit_m);
+    } else {
+        Result<mesh::SurfaceFile> file = mesh::read_surface(std::get<SurfaceFile>(spec.shape).path);
+        if (!file) return tl::unexpected(file.error());
+        surface = std::move(file->mesh);
+    }
+    if (!surface) return surface;
+    return mesh::scaled(std::move(*surface), robot.unit_m);
+}
+
+double softest_Pa(const Robot& robot) {
+    double softest = std::numeric_limits<double>::infinity();
+    for (const BodySpec& body : robot.bodies) {
+        const MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
+        softest = std::min(softest, material::youngs_modulus(material::moduli(material.law)));
+    }
+    return softest;
+}
+
+}  // namespace
+
+Result<sim::ContactRules> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
+    const ContactSpec& spec = *robot.contact;
+    Box3 box;
+    for (const Vec3& p : bodies.points) box.add(p);
+    sim::ContactRules rules;
+    rules.surface = sim::contact::robot_surface(bodies);
+    rules.settings.self = spec.self;
+    rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : distance_share * box.diagonal();
+    rules.settings.slip_m = spec.slip > 0 ? spec.slip * robot.unit_m : slip_share * rules.settings.distance_m;
+    rules.settings.stiffness_Pa = spec.stiffness_Pa.value_or(stiffness_share * softest_Pa(robot));
+    rules.settings.friction = spec.friction;
+    for (const ObstacleSpec& obstacle : robot.obstacles) {
+        sim::contact::Obstacle body{obstacle.name, {}, obstacle.friction};
+        if (const auto* plane = std::get_if<PlaneSelector>(&obstacle.shape)) {
+            body.shape = sim::contact::HalfSpace{robot.unit_m * plane->point, plane->normal / norm(plane->normal)};
+        } else {
+            Result<mesh::TriMesh> surface = obstacle_surface(robot, obstacle, rules.settings.distance_m);
+            if (!surface)
+                return input_error("{}:{}: obstacle \"{}\": {}", robot.file.string(), obstacle.line, obstacle.name,
+                                   surface.error().message);
+            body.shape = std::move(*surface);
+        }
+        rules.obstacles.push_back({std::move(body), robot.unit_m * obstacle.move, obstacle.share});
+    }
+    return rules;
+}
+
+}  // namespace pliant::robot
