@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/text.hpp"
@@ -58,6 +59,7 @@ std::vector<Driven> everything_driven(Robot& robot) {
     for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
     for (ObstacleSpec& obstacle : robot.obstacles) share(obstacle.name, obstacle.share);
     share("gravity", robot.gravity_share);
+    if (robot.program.dynamics) list.back().rest = 1;
     return list;
 }
 
@@ -111,7 +113,7 @@ void read_keys(Reader& program, Robot& robot) {
         if (!program.has("duration")) duration = times.back();
     }
     robot.program.duration = duration > 0 ? duration : 1;
-    if (keys.empty() && duration == 1) return;
+    if (keys.empty() && duration == 1 && !robot.program.dynamics) return;
     std::vector<Driven> list = everything_driven(robot);
     for (std::size_t i = 0; i < list.size(); ++i) {
         for (std::size_t j = 0; j < i && !keys.empty(); ++j) {
@@ -124,6 +126,30 @@ void read_keys(Reader& program, Robot& robot) {
 }
 
 }  // namespace
+
+/// Mass and damping take part where a time step is given. Gravity then acts from the beginning.
+void read_dynamics(Reader& program, Robot& robot) {
+    const bool moving = program.has("time_step");
+    if (moving) robot.program.dynamics = sim::Dynamics{};
+    const double mass = program.number("mass_damping", 0);
+    const double stiffness = program.number("stiffness_damping", 0);
+    if (mass < 0) program.problem("mass_damping", "must not be negative (1/s)");
+    if (stiffness < 0) program.problem("stiffness_damping", "must not be negative (s)");
+    if (!moving && (mass > 0 || stiffness > 0)) program.problem("", "damping has no meaning without time_step");
+    if (moving) robot.program.dynamics->damping = {mass, stiffness};
+}
+
+/// As many steps of `time_step` as fit into the duration.
+void spread_steps(Reader& program, Robot& robot) {
+    const double step = program.quantity("time_step", Dimension::time);
+    if (program.has("steps")) program.problem("steps", "follows from time_step and duration; give one of them");
+    const double steps = step > 0 ? std::round(robot.program.duration / step) : 0;
+    if (!(steps >= 1 && steps <= 1e6)) {
+        program.problem("time_step", "must be above zero, and fit 1 to 1000000 times into the duration");
+        return;
+    }
+    robot.program.steps = static_cast<int>(steps);
+}
 
 void read_program(config::Reader& root, Robot& robot) {
     config::Reader reader = root.table("program", false);
@@ -148,7 +174,9 @@ void read_program(config::Reader& root, Robot& robot) {
         reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
     robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
     if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is absolute: above zero");
+    read_dynamics(reader, robot);
     read_keys(reader, robot);
+    if (robot.program.dynamics) spread_steps(reader, robot);
     reader.finish();
 }
 

@@ -44,6 +44,25 @@ Eigen::Matrix<double, Eigen::Dynamic, 4> shape_gradients(int order, const Baryce
     return gradients;
 }
 
+/// Integral of N_a N_b over a straight tet, as a share of its volume (Zienkiewicz and Taylor, The Finite Element
+/// Method).
+Eigen::MatrixXd mass_shares(int nodes) {
+    if (nodes == 4) return (Eigen::MatrixXd::Ones(4, 4) + Eigen::MatrixXd::Identity(4, 4)) / 20;
+    Eigen::MatrixXd shares(10, 10);
+    shares.topLeftCorner(4, 4) = Eigen::MatrixXd::Ones(4, 4) + 5 * Eigen::MatrixXd::Identity(4, 4);
+    for (int e = 0; e < 6; ++e) {
+        const auto& [p, q] = mesh::edge_corners[static_cast<std::size_t>(e)];
+        for (int corner = 0; corner < 4; ++corner)
+            shares(4 + e, corner) = shares(corner, 4 + e) = corner == p || corner == q ? -4 : -6;
+        for (int f = 0; f < 6; ++f) {
+            const auto& [r, s] = mesh::edge_corners[static_cast<std::size_t>(f)];
+            const bool shared = p == r || p == s || q == r || q == s;
+            shares(4 + e, 4 + f) = e == f ? 32 : (shared ? 16 : 8);
+        }
+    }
+    return shares / 420;
+}
+
 }  // namespace
 
 Result<Elements> Elements::create(const Description& description) {
@@ -71,6 +90,7 @@ Status Elements::integrate_tet(const Description& description, std::size_t tet) 
     const auto nodes = mesh.tet(tet);
     const double density = description.materials[law_[tet]].density_kg_m3;
     const auto points = integration_points(mesh.order);
+    tet_mass_.push_back(0);
     for (const Barycentric& b : points) {
         const auto dN = shape_gradients(mesh.order, b);
         Eigen::Matrix<double, 3, 4> dX = Eigen::Matrix<double, 3, 4>::Zero();
@@ -93,6 +113,7 @@ Status Elements::integrate_tet(const Description& description, std::size_t tet) 
             gradient_.insert(gradient_.end(), {gradient[0], gradient[1], gradient[2]});
         }
         volume_.push_back(determinant / 6 / static_cast<double>(points.size()));
+        tet_mass_.back() += density * volume_.back();
         const auto N = mesh::shape_functions(mesh.order, b);
         for (int a = 0; a < nodes_per_tet_; ++a) node_mass_[nodes[a]] += density * volume_.back() * N[a];
     }
@@ -279,6 +300,38 @@ void Elements::apply_laplacian(std::span<const double> u, std::span<double> resu
                 double* r = result.data() + 3 * static_cast<std::size_t>(nodes[a]);
                 for (int i = 0; i < 3; ++i)
                     r[i] += G(i, 0) * g[3 * a] + G(i, 1) * g[3 * a + 1] + G(i, 2) * g[3 * a + 2];
+            }
+        }
+    }
+}
+
+void Elements::add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
+                        std::span<double> values, double factor) const {
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        const int* nodes = nodes_.data() + t * static_cast<std::size_t>(nodes_per_tet_);
+        for (int b = 0; b < nodes_per_tet_; ++b) {
+            const int j = free_index[nodes[b]];
+            for (int a = 0; j >= 0 && a < nodes_per_tet_; ++a) {
+                const int i = free_index[nodes[a]];
+                if (i < j) continue;
+                const double entry = factor * tet_mass_[t] * shares(a, b);
+                pattern.add_block(values, i, j, [&](int r, int c) { return r == c ? entry : 0.0; });
+            }
+        }
+    }
+}
+
+void Elements::apply_mass(std::span<const double> u, std::span<double> result) const {
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        const int* nodes = nodes_.data() + t * static_cast<std::size_t>(nodes_per_tet_);
+        for (int a = 0; a < nodes_per_tet_; ++a) {
+            double* r = result.data() + 3 * static_cast<std::size_t>(nodes[a]);
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const double mass = tet_mass_[t] * shares(a, b);
+                const double* v = u.data() + 3 * static_cast<std::size_t>(nodes[b]);
+                for (int i = 0; i < 3; ++i) r[i] += mass * v[i];
             }
         }
     }

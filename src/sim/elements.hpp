@@ -42,6 +42,12 @@ public:
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 
+    /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
+    /// block 3, and result (3n) += M u.
+    void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
+                  double factor) const;
+    void apply_mass(std::span<const double> u, std::span<double> result) const;
+
     /// Integral of density times N_a: what gravity multiplies, (n) kg.
     [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
     [[nodiscard]] bool has_energy() const { return has_energy_; }
@@ -82,6 +88,7 @@ private:
     std::vector<double> gradient_;  ///< (m, points, nodes_per_tet, 3): grad N_a, 1/m
     std::vector<double> volume_;    ///< (m, points): integration weights, m^3
     std::vector<double> node_mass_;
+    std::vector<double> tet_mass_;  ///< (m) kg
     std::vector<material::Law> laws_;
     // For each node the places in the per-tet force buffer that add up to its force, in the order of the tets.
     std::vector<int> use_start_;

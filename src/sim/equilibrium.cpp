@@ -181,6 +181,10 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     if (!(e.min_J > 0)) return e;
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
     add_contact(state.x, controls, internal, e.energy_J);
+    if (controls.inertia) {
+        e.energy_J += controls.inertia->energy(state.x);
+        controls.inertia->add_gradient(state.x, internal);
+    }
     fill_actuators(state, controls, e);
     fill_residual(state, controls, internal, e);
     return e;
@@ -215,12 +219,20 @@ void Equilibrium::fill_residual(const State& state, const Controls& controls, co
     e.residual = balancing > 0 ? unbalanced / balancing : 0;
 }
 
+double Equilibrium::potential_energy(const State& state, const Controls& controls) const {
+    Controls still = controls;
+    still.friction = nullptr;
+    return model_->elements().evaluate(view(state.x), {}, controls.laws).energy_J -
+           controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
+}
+
 Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls,
                                       const Eigen::VectorXd& prices) const {
     const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {}, controls.laws);
     Merit merit{elastic.min_J, 0};
     if (!(merit.min_J > 0)) return merit;
     merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_) + contact_energy(x, controls);
+    if (controls.inertia) merit.value_J += controls.inertia->energy(x);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const Drive& drive = controls.drives[a];
         const double g = actuators_[a].measure(view(x));
@@ -340,6 +352,7 @@ std::vector<std::vector<int>> Equilibrium::cliques() const {
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
                               std::span<double> values, bool project) const {
     model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
+    if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
         const auto& free_index = model_->free_index();

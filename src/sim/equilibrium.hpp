@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/actuator.hpp"
+#include "sim/inertia.hpp"
 #include "sim/model.hpp"
 
 namespace pliant::sim {
@@ -20,6 +21,7 @@ struct Controls {
     Eigen::VectorXd obstacles;          ///< (3 obstacle nodes) where the obstacles are
     /// Friction as frozen at some state of this step; none before contact.
     std::shared_ptr<const contact::Friction> friction = nullptr;
+    std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
 };
 
 /// What a solver changes: node positions and the multiplier of every actuator.
@@ -61,6 +63,9 @@ public:
         double value_J = 0;
     };
     [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, const Eigen::VectorXd& prices) const;
+
+    /// Elastic and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
+    [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
     /// Node lists that the tangent couples, as free indices: of the body and its actuators, and of what touches at one
     /// state.

@@ -10,6 +10,7 @@
 
 #include "material/law.hpp"
 #include "sim/curvature.hpp"
+#include "sim/elements.hpp"
 #include "sim/step_solver.hpp"
 
 namespace pliant::sim {
@@ -38,6 +39,8 @@ public:
           previous_(state_),
           controls_(system_.controls(0)) {
         curvature_ = make_curvature(program.solver);
+        const Eigen::VectorXd still = Eigen::VectorXd::Zero(state_.x.size());
+        history_ = {state_.x, still, state_.x, still, 0};
         if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
 
@@ -57,6 +60,7 @@ public:
             if (!outcome.converged) stretch_ = stretch;
             step.iterations += outcome.iterations;
             if (outcome.converged) {
+                if (program_.dynamics) remember(next, target - time_);
                 previous_ = std::move(state_);
                 previous_time_ = time_;
                 state_ = std::move(next);
@@ -76,6 +80,8 @@ public:
     void describe(Step& step) const {
         step.residual = evaluation_.residual;
         step.min_J = evaluation_.min_J;
+        step.energy_J = system_.potential_energy(state_, controls_);
+        if (program_.dynamics) step.kinetic_energy_J = kinetic_energy();
         const auto& d = model_.description();
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
         for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
@@ -92,6 +98,13 @@ public:
         for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});
         for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
         for (int n = 0; n < model_.node_count(); ++n) step.positions.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
+    }
+
+    [[nodiscard]] double kinetic_energy() const {
+        Eigen::VectorXd momentum = Eigen::VectorXd::Zero(history_.v.size());
+        model_.elements().apply_mass({history_.v.data(), static_cast<std::size_t>(history_.v.size())},
+                                     {momentum.data(), static_cast<std::size_t>(momentum.size())});
+        return 0.5 * history_.v.dot(momentum);
     }
 
     void describe_contact(Step& step) const {
@@ -137,6 +150,27 @@ private:
         return conservative ? make_newton(system_) : make_quasi_newton(laplacian_);
     }
 
+    [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) const {
+        const Damping& damping = program_.dynamics->damping;
+        std::shared_ptr<StiffnessMatrix> stiffness;
+        if (damping.stiffness_s > 0) {
+            stiffness = std::make_shared<StiffnessMatrix>();
+            stiffness->pattern =
+                linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(model_.free_index()));
+            stiffness->values.assign(stiffness->pattern.entries(), 0.0);
+            const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
+            model_.elements().add_tangent(x, model_.free_index(), stiffness->pattern, stiffness->values, true,
+                                          controls_.laws);
+        }
+        return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history_, dt, damping,
+                                               std::move(stiffness));
+    }
+
+    void remember(const State& next, double dt) {
+        History now{next.x, solved_controls_.inertia->velocity(next.x), history_.x, history_.v, dt};
+        history_ = std::move(now);
+    }
+
     /// The thesis' actuators: target shapes are scaled in small steps until every constraint holds (T3.5, T3.6).
     StepOutcome grow(double time, State& next, const Progress& progress) {
         StepOutcome outcome = attempt(time, next, progress);
@@ -157,6 +191,7 @@ private:
                 }
             }
             Controls controls = system_.controls(time, stretch_);
+            controls.inertia = solved_controls_.inertia;
             const StepOutcome more = settle_friction(controls, next, progress);
             outcome.converged = more.converged;
             outcome.evaluation = more.evaluation;
@@ -188,6 +223,7 @@ private:
 
     StepOutcome attempt(double time, State& next, const Progress& progress) {
         Controls controls = system_.controls(time, stretch_);
+        if (program_.dynamics) controls.inertia = make_inertia(time - time_);
         StepOutcome outcome;
         outcome.reason = predict(time, controls, next);
         if (!outcome.reason.empty()) return outcome;
@@ -277,6 +313,7 @@ private:
     double time_ = 0;
     double previous_time_ = 0;
     Evaluation evaluation_;
+    History history_;               ///< of a motion in time
     std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
 };

@@ -1,9 +1,11 @@
 // Runs a program: from rest to the targets, step by step.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/progress.hpp"
+#include "sim/inertia.hpp"
 #include "sim/model.hpp"
 #include "sim/trajectory.hpp"
 
@@ -11,14 +13,21 @@ namespace pliant::sim {
 
 enum class Solver { automatic, newton, quasi_newton, local_global };
 
+/// Motion in time instead of rest at every instant.
+struct Dynamics {
+    Damping damping;
+};
+
 struct Program {
     int steps = 30;
     double duration = 1;  ///< time at the end; steps are equally long
     double tolerance = 1e-4;
     Solver solver = Solver::automatic;
+    std::optional<Dynamics> dynamics = std::nullopt;
     int iteration_limit = 0;  ///< per solved step; 0: the solver's own
 };
 
+/// With dynamics, time is in seconds: the robot starts at rest and undeformed, and its mass and damping take part.
 /// A step that does not converge is halved, and halved again, down to 1/64 of a step. A program that cannot finish
 /// keeps the steps that converged and says in Trajectory::message at which step it stopped and why.
 [[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress);

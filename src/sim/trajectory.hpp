@@ -47,7 +47,9 @@ struct Step {
     int substeps = 1;     ///< more than one where the step had to be halved
     double residual = 0;  ///< norm of the out-of-balance force over the norm of the forces that balance
     double wall_s = 0;
-    double min_J = 1;  ///< smallest det F over all integration points
+    double min_J = 1;             ///< smallest det F over all integration points
+    double energy_J = 0;          ///< elastic and contact energy, minus the work of dead loads and gravity
+    double kinetic_energy_J = 0;  ///< of a motion in time
     std::vector<CableState> cables;
     std::vector<ChamberState> chambers;
     std::vector<SupportState> supports;
