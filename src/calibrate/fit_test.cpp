@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -28,7 +29,7 @@ double mooney(double l) {
 }
 double yeoh(double l) {
     const double x = l * l + 2 / l - 3;
-    return 2 * (l - 1 / (l * l)) * (0.11e6 - 0.01e6 * x + 0.003e6 * x * x);
+    return 2 * (l - 1 / (l * l)) * (0.11e6 - 2 * 0.01e6 * x + 3 * 0.003e6 * x * x);
 }
 double ogden(double l) {
     return 2 * 0.3e6 / 1.3 * (std::pow(l, 0.3) - std::pow(l, -1.65)) +
@@ -104,8 +105,8 @@ TEST_CASE("a law that loses stability inside the data is reported, one that keep
     CHECK(unstable_ranges(soft, 1, 1.2).empty());
     // Negative c01: pulled it is stable, as a balloon it is not.
     const auto balloon = unstable_ranges(material::MooneyRivlin{0.2e6, -0.02e6, 1e7}, 1, 3.5);
-    REQUIRE_FALSE(balloon.empty());
-    CHECK(balloon[0].find("balloon") != std::string::npos);
+    CHECK(std::any_of(balloon.begin(), balloon.end(),
+                      [](const std::string& text) { return text.find("balloon") != std::string::npos; }));
 }
 
 TEST_CASE("too little data is an error, not a fit") {
@@ -130,5 +131,6 @@ TEST_CASE("the block for the robot file") {
           "0.49\n");
     const Fit neo = fit_of(made_test([](double l) { return 0.4e6 * (l - 1 / (l * l)); }, 0), FitLaw::neo_hookean);
     CHECK(material_toml(neo, "cast").find("youngs_modulus = \"1.192 MPa\"") != std::string::npos);  // 2 mu (1 + nu)
+    CHECK(material_toml(y, "Skin 20 \"M\"").find("[material.\"Skin 20 \\\"M\\\"\"]") == 0);
     CHECK(fit_json(y, made_test(yeoh, 0)).find("\"confidence_95\"") != std::string::npos);
 }

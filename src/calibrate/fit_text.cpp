@@ -1,4 +1,6 @@
 // A fit as people, robot files and programs read it.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +16,20 @@ std::string pressure(double value_Pa) {
     return fmt::format("{:.5g} Pa", value_Pa);
 }
 
+/// A key of TOML: quoted where it is more than letters, digits, - and _.
+std::string toml_key(const std::string& name) {
+    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '-' || c == '_';
+    });
+    if (bare) return name;
+    std::string quoted = "\"";
+    for (const char c : name) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        if (static_cast<unsigned char>(c) >= ' ') quoted += c;
+    }
+    return quoted + "\"";
+}
+
 std::string join(const std::vector<std::string>& list) {
     std::string text;
     for (const std::string& entry : list) text += (text.empty() ? "" : ", ") + entry;
@@ -24,7 +40,7 @@ std::string join(const std::vector<std::string>& list) {
 
 std::string material_toml(const Fit& fit, const std::string& name) {
     const double nu = material::poisson_ratio(material::moduli(fit.law));
-    std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", name, material::name(fit.law));
+    std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", toml_key(name), material::name(fit.law));
     std::vector<std::string> mu;
     std::vector<std::string> alpha;
     for (const Constant& c : fit.constants) {

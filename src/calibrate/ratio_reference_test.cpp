@@ -27,7 +27,8 @@ TEST_CASE("the shape parameter that matches CalculiX' displacement, to 0.1 %") {
 
 TEST_CASE("the neo-Hookean bar moves its interface as CalculiX says, to 0.1 %") {
     RatioOptions options;
+    options.cells = {24, 3, 3};  // as in CalculiX; on 48 x 5 x 5 cells it moves 0.4 % less
     const auto u = reference_displacement_mm(options, 3.75);
     REQUIRE(u);
-    CHECK(*u == doctest::Approx(5.1608).epsilon(1e-3));
+    CHECK(*u == doctest::Approx(5.16075).epsilon(1e-3));
 }

@@ -44,7 +44,7 @@ bool is_pressure(const std::string& constant) {
 }
 
 std::string line(const LibraryMaterial& m) {
-    return fmt::format("{:<18} {:<14} {:>9.4g} {:>8.4g} {:>9.4g} {:>14}  {:.2f} to {:.2f}\n", m.spec.name,
+    return fmt::format("{:<20} {:<14} {:>9.4g} {:>8.4g} {:>9.4g} {:>14}  {:.2f} to {:.2f}\n", m.spec.name,
                        material::name(m.spec.law), m.spec.youngs_modulus_Pa / 1e6, m.spec.poisson_ratio,
                        m.spec.density_kg_m3, m.hardness, m.stretch[0], m.stretch[1]);
 }
@@ -52,7 +52,7 @@ std::string line(const LibraryMaterial& m) {
 }  // namespace
 
 std::string library_text() {
-    std::string text = fmt::format("{:<18} {:<14} {:>9} {:>8} {:>9} {:>14}  {}\n", "material", "law", "E0 MPa", "nu",
+    std::string text = fmt::format("{:<20} {:<14} {:>9} {:>8} {:>9} {:>14}  {}\n", "material", "law", "E0 MPa", "nu",
                                    "kg/m^3", "hardness", "stretch");
     for (const LibraryFile& file : library_files()) {
         if (const auto material = library_material(file.name)) text += line(*material);
