@@ -16,6 +16,7 @@ struct ConstantsOf {
     }
     Constants operator()(const material::NeoHookean&) const { return two_moduli(); }
     Constants operator()(const material::ShapeBlend&) const { return two_moduli(); }
+    Constants operator()(const material::ScaledTarget&) const { return two_moduli(); }  // of actuators, never listed
     Constants operator()(const material::StVenantKirchhoff&) const { return two_moduli(); }
     Constants operator()(const material::Corotated&) const { return two_moduli(); }
     Constants operator()(const material::MooneyRivlin& l) const {
