@@ -148,8 +148,6 @@ void read_bodies(Reader& root, Context& context) {
         context.robot.bodies.push_back(std::move(body));
     }
     if (context.robot.bodies.empty()) root.problem("", "there is no body; add [[body]]");
-    if (context.robot.materials.empty())
-        root.problem("", "there is no material; add a table [material.NAME], or name one of the library in a body");
 }
 
 void read_mesh(Reader& root, Context& context) {
