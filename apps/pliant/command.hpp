@@ -27,6 +27,8 @@ void add_slice(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
 void add_print(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
+void add_materials(CLI::App& app, int& status);
+void add_calibrate(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
 

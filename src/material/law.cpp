@@ -129,15 +129,20 @@ double shape_parameter_small_strain(double material_ratio) {
     return (3 * material_ratio - 1) / 2;
 }
 
+// The law of nearly every robot, asked at every point, is looked for first: a visit over all laws costs 10 % more
+// there.
 std::optional<double> energy(const Law& law, const Matrix3& F) {
+    if (const auto* common = std::get_if<NeoHookean>(&law)) return psi(*common, F);
     return std::visit([&](const auto& l) { return psi(l, F); }, law);
 }
 
 Matrix3 stress(const Law& law, const Matrix3& F) {
+    if (const auto* common = std::get_if<NeoHookean>(&law)) return first_piola(*common, F);
     return std::visit([&](const auto& l) { return first_piola(l, F); }, law);
 }
 
 Matrix9 tangent(const Law& law, const Matrix3& F) {
+    if (const auto* common = std::get_if<NeoHookean>(&law)) return first_piola_gradient(*common, F);
     return std::visit([&](const auto& l) { return first_piola_gradient(l, F); }, law);
 }
 

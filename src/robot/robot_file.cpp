@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "core/config.hpp"
 #include "core/text.hpp"
 #include "robot/contact_file.hpp"
+#include "robot/material_file.hpp"
+#include "robot/material_library.hpp"
 #include "robot/program_file.hpp"
 #include "robot/robot.hpp"
 
@@ -41,79 +42,57 @@ std::string read_name(Reader& reader, std::set<std::string>& taken, std::string_
     return name;
 }
 
-std::optional<std::array<double, 3>> read_colour(Reader& reader) {
-    if (!reader.has("colour")) return (void)reader.raw("colour"), std::nullopt;
-    const std::string text = reader.text("colour");
-    std::array<double, 3> rgb{};
-    bool good = text.size() == 7 && text[0] == '#';
-    for (std::size_t i = 0; good && i < 3; ++i) {
-        int value = 0;
-        const char* first = text.data() + 1 + 2 * i;
-        const auto [end, code] = std::from_chars(first, first + 2, value, 16);
-        good = code == std::errc() && end == first + 2;
-        rgb[i] = value / 255.0;
-    }
-    if (!good) reader.problem("colour", "write a colour as \"#rrggbb\"");
-    return rgb;
-}
-
-/// Law and elastic constants of one material.
-void read_law(Reader& reader, MaterialSpec& material) {
-    const std::string law = reader.choice("law", {"neo-hookean", "shape-blend", "st-venant-kirchhoff"}, "neo-hookean");
-    const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
-    const double E = material.youngs_modulus_Pa = reader.has("youngs_modulus")
-                                                      ? reader.quantity("youngs_modulus", Dimension::pressure, 1)
-                                                      : reader.quantity("youngs_modulus", Dimension::pressure);
-    if (!(nu > -1 && nu < 0.5)) {
-        reader.problem("poisson_ratio",
-                       fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
-        return;
-    }
-    if (reader.has("youngs_modulus") && !(E > 0)) reader.problem("youngs_modulus", "must be above zero");
-    material.law = material::neo_hookean(E, nu);
-    if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
-    if (law != "shape-blend") return;
-    if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
-    material::ShapeBlend blend = material::shape_blend(E, nu);
-    if (reader.has("shape_parameter")) {
-        // The thesis' way: one weight for all materials, R_omega tells them apart.
-        const double R = reader.number("shape_parameter");
-        if (!(R >= 1))
-            reader.problem("shape_parameter", "R_omega is 1 (rigid) or more");
-        else
-            blend.a = 1 / R;
-    }
-    material.law = blend;
+MaterialSpec read_one_material(Reader& reader, const std::string& name) {
+    MaterialSpec material = read_material(reader, name);
+    reader.finish();
+    return material;
 }
 
 void read_materials(Reader& root, Context& context) {
+    const config::Value* tables = root.raw("material");
     for (auto& [name, reader] : root.named_tables("material")) {
-        MaterialSpec material;
-        material.name = name;
-        read_law(reader, material);
-        material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
-        if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
-        material.resin = reader.text("resin", name);
-        material.colour = read_colour(reader);
-        reader.finish();
-        context.robot.materials.push_back(std::move(material));
+        if (!reader.has("base")) {
+            context.robot.materials.push_back(read_one_material(reader, name));
+            (void)reader.raw("base");
+            continue;
+        }
+        const std::string base = reader.text("base");
+        if (const Result<LibraryMaterial> found = library_material(base); !found) {
+            if (!base.empty()) reader.problem("base", found.error().message);
+            context.robot.materials.emplace_back().name = name;
+            continue;
+        }
+        for (const auto& [key, own] : std::get<config::Table>(tables->data)) {
+            if (key != name) continue;
+            const config::Value merged = with_base(own, base);
+            Reader whole(merged, context.problems, reader.path());
+            context.robot.materials.push_back(read_one_material(whole, name));
+        }
     }
-    if (context.robot.materials.empty()) root.problem("", "there is no material; add a table [material.NAME]");
 }
 
-int find_material(Reader& reader, const Context& context) {
+/// A material of the robot file, or else of the library.
+int find_material(Reader& reader, Context& context) {
     const std::string wanted = reader.text("material");
+    std::vector<MaterialSpec>& materials = context.robot.materials;
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < context.robot.materials.size(); ++i) {
-        names.push_back(context.robot.materials[i].name);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        names.push_back(materials[i].name);
         if (names.back() == wanted) return static_cast<int>(i);
     }
-    if (reader.has("material") && !names.empty()) {
-        const std::string near = nearest_name(wanted, names);
-        reader.problem("material", near.empty()
-                                       ? fmt::format("no material \"{}\"; there is {}", wanted, join_names(names))
-                                       : fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
+    if (wanted.empty()) return 0;
+    if (Result<LibraryMaterial> found = library_material(wanted)) {
+        materials.push_back(std::move(found->spec));
+        return static_cast<int>(materials.size()) - 1;
     }
+    const std::string near = nearest_name(wanted, names);
+    if (!near.empty())
+        reader.problem("material", fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
+    else if (names.empty())
+        reader.problem("material", fmt::format("no material \"{}\" in the library{}", wanted, library_hint(wanted)));
+    else
+        reader.problem("material", fmt::format("no material \"{}\"; there is {}, and the library{}", wanted,
+                                               join_names(names), library_hint(wanted)));
     return 0;
 }
 

@@ -1,5 +1,5 @@
 // The reference problems of the test suite: structured meshes, the .tet files and the CSV tables they are held against.
-// Used by tests and benchmarks only.
+// Used by tests, benchmarks and calibrate (the bar of kuhn_box).
 #pragma once
 
 #include <functional>

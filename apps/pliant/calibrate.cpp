@@ -1,0 +1,201 @@
+// pliant calibrate: constants of materials from tests. `ratio` is the thesis' bar, `tensile` a measured curve.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "calibrate/fit.hpp"
+#include "calibrate/ratio.hpp"
+#include "command.hpp"
+#include "core/files.hpp"
+#include "report/plot.hpp"
+
+namespace pliant::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Files {
+    std::string folder;  ///< empty: nothing is written
+    Output output;
+};
+
+Status write_results(const Files& files, const std::string& json, const std::string& csv, const report::Plot& plot) {
+    if (files.folder.empty()) return {};
+    const Result<std::string> png = report::plot_png(plot);
+    if (!png) return tl::unexpected(png.error());
+    return write_folder(files.folder, "calibration.json", [&](const fs::path& folder) -> Status {
+        if (Status status = write_file(folder / "calibration.json", json); !status) return status;
+        if (Status status = write_file(folder / "calibration.csv", csv); !status) return status;
+        return write_file(folder / "calibration.png", *png);
+    });
+}
+
+void print(const Files& files, const std::string& text, const std::string& json) {
+    if (files.output.json)
+        fmt::print("{}\n", json);
+    else if (!files.output.quiet)
+        fmt::print("{}", text);
+}
+
+struct RatioCommand : Files {
+    calibrate::RatioOptions options;
+    std::vector<int> cells = {48, 5, 5};
+};
+
+report::Plot ratio_plot(const calibrate::RatioResult& result) {
+    report::Plot plot{"Shape parameter of the soft half", "material ratio R_m", "R_omega", {}};
+    report::Series found{"found", {}, true};
+    report::Series curve{"quadratic through them", {}, false};
+    report::Series thesis{"T3.8", {}, false};
+    report::Series small{"small strains, (3 R_m - 1) / 2", {}, false};
+    double most = 1;
+    for (const auto& row : result.rows) {
+        found.points.push_back({row.material_ratio, row.shape_parameter});
+        most = std::max(most, row.material_ratio);
+    }
+    for (int i = 0; i <= 100; ++i) {
+        const double R = 1 + (most - 1) * i / 100;
+        if (result.curve)
+            curve.points.push_back({R, ((*result.curve)[0] * R + (*result.curve)[1]) * R + (*result.curve)[2]});
+        thesis.points.push_back({R, material::shape_parameter_of_thesis(R)});
+        small.points.push_back({R, material::shape_parameter_small_strain(R)});
+    }
+    plot.series = {found, thesis, small};
+    if (result.curve) plot.series.insert(plot.series.begin() + 1, curve);
+    return plot;
+}
+
+Status run_ratio(RatioCommand& command) {
+    std::copy(command.cells.begin(), command.cells.end(), command.options.cells.begin());
+    const auto progress = terminal_progress(command.output);
+    const auto result = calibrate::calibrate_ratio(command.options, *progress);
+    if (!result) return tl::unexpected(result.error());
+    const std::string json = calibrate::ratio_json(*result, command.options);
+    print(command, calibrate::ratio_text(*result), json);
+    return write_results(command, json, calibrate::ratio_csv(*result), ratio_plot(*result));
+}
+
+struct TensileCommand : Files {
+    std::string file;
+    std::string name;
+    std::string law = "neo-hookean";
+    calibrate::FitOptions options;
+    double most_stretch = 0;
+};
+
+/// Rows up to a stretch: a law with few constants cannot follow a rubber to its end.
+calibrate::TensileTest up_to(const calibrate::TensileTest& test, double most_stretch) {
+    if (most_stretch == 0) return test;
+    calibrate::TensileTest part;
+    for (std::size_t i = 0; i < test.stretch.size(); ++i) {
+        if (test.stretch[i] > most_stretch) continue;
+        part.stretch.push_back(test.stretch[i]);
+        part.stress_Pa.push_back(test.stress_Pa[i]);
+    }
+    return part;
+}
+
+report::Plot tensile_plot(const TensileCommand& command, const calibrate::TensileTest& test,
+                          const calibrate::Fit& fit) {
+    report::Series measured{"measured", {}, true};
+    report::Series fitted{std::string(material::name(fit.law)), {}, false};
+    double low = 1;
+    double high = 1;
+    for (std::size_t i = 0; i < test.stretch.size(); ++i) {
+        measured.points.push_back({test.stretch[i], test.stress_Pa[i] / 1e6});
+        low = std::min(low, test.stretch[i]);
+        high = std::max(high, test.stretch[i]);
+    }
+    for (int i = 0; i <= 200; ++i) {
+        const double l = low + (high - low) * i / 200;
+        fitted.points.push_back({l, calibrate::uniaxial_stress_Pa(fit.law, l) / 1e6});
+    }
+    return {command.name, "stretch", "nominal stress (MPa)", {measured, fitted}};
+}
+
+std::string tensile_csv(const calibrate::TensileTest& test, const calibrate::Fit& fit) {
+    std::string text = "stretch,stress (Pa),fitted stress (Pa)\n";
+    for (std::size_t i = 0; i < test.stretch.size(); ++i)
+        text += fmt::format("{:.9g},{:.9g},{:.9g}\n", test.stretch[i], test.stress_Pa[i], fit.stress_Pa[i]);
+    return text;
+}
+
+Status run_tensile(TensileCommand& command) {
+    using calibrate::FitLaw;
+    const std::map<std::string, FitLaw> laws = {{"neo-hookean", FitLaw::neo_hookean},
+                                                {"mooney-rivlin", FitLaw::mooney_rivlin},
+                                                {"yeoh", FitLaw::yeoh},
+                                                {"ogden", FitLaw::ogden}};
+    command.options.law = laws.at(command.law);
+    const Result<std::string> text = read_file(command.file);
+    if (!text) return tl::unexpected(text.error());
+    const auto all = calibrate::parse_tensile_csv(*text, command.file);
+    if (!all) return tl::unexpected(all.error());
+    const calibrate::TensileTest test = up_to(*all, command.most_stretch);
+    const auto fit = calibrate::fit(test, command.options);
+    if (!fit) return tl::unexpected(Error{fit.error().cause, command.file + ": " + fit.error().message});
+    const std::string json = calibrate::fit_json(*fit, test);
+    print(command, calibrate::fit_text(*fit) + "\n" + calibrate::material_toml(*fit, command.name), json);
+    return write_results(command, json, tensile_csv(test, *fit), tensile_plot(command, test, *fit));
+}
+
+void add_files(CLI::App& command, Files& files) {
+    command.add_option("-o,--output", files.folder, "folder for calibration.json, .csv and .png");
+    add_output_options(command, files.output, true);
+}
+
+void add_ratio(CLI::App& parent, int& status) {
+    auto c = std::make_shared<RatioCommand>();
+    CLI::App* command = parent.add_subcommand("ratio", "the thesis' shape parameter for a ratio of materials");
+    command->add_option("--ratios", c->options.ratios, "material ratios, stiff over soft")->delimiter(',')->required();
+    command->add_option("--strain", c->options.strain, "of the whole bar")->capture_default_str();
+    command->add_option("--poisson", c->options.poisson_ratio, "of the neo-Hookean reference")->capture_default_str();
+    command->add_option("--interface", c->options.interface, "where the stiff part ends, 0 to 1")
+        ->capture_default_str();
+    command->add_option("--cells", c->cells, "of the 100 x 10 x 10 mm bar, six tets each")
+        ->delimiter(',')
+        ->expected(3)
+        ->capture_default_str();
+    add_files(*command, *c);
+    command->footer("Example: pliant calibrate ratio --ratios 1,2,3.75,6,8 -o ratio");
+    command->callback([c, &status] {
+        const Status result = run_ratio(*c);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+void add_tensile(CLI::App& parent, int& status) {
+    auto c = std::make_shared<TensileCommand>();
+    CLI::App* command = parent.add_subcommand("tensile", "constants of a law from a tensile test");
+    command->add_option("data", c->file, "CSV: stretch or strain, and nominal stress with its unit")->required();
+    command->add_option("--law", c->law, "elastic law")
+        ->check(CLI::IsMember({"neo-hookean", "mooney-rivlin", "yeoh", "ogden"}))
+        ->capture_default_str();
+    command->add_option("--terms", c->options.terms, "of Ogden's law")->check(CLI::Range(1, 3))->capture_default_str();
+    command->add_option("--max-stretch", c->most_stretch, "leave out rows beyond it")->check(CLI::Range(1.0, 100.0));
+    command->add_option("--poisson", c->options.poisson_ratio, "for the robot file; the fit is incompressible")
+        ->check(CLI::Range(0.0, 0.4999))
+        ->capture_default_str();
+    command->add_option("--name", c->name, "of the material (default: of the file)");
+    add_files(*command, *c);
+    command->footer("Example: pliant calibrate tensile pull.csv --law yeoh --max-stretch 3 -o fit");
+    command->callback([c, &status] {
+        if (c->name.empty()) c->name = fs::path(c->file).stem().string();
+        const Status result = run_tensile(*c);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, int& status) {
+    CLI::App* command = app.add_subcommand("calibrate", "constants of materials from tests");
+    command->require_subcommand(1);
+    command->footer("Example: pliant calibrate tensile pull.csv --law yeoh");
+    add_ratio(*command, status);
+    add_tensile(*command, status);
+}
+
+}  // namespace pliant::app

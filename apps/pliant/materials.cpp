@@ -1,0 +1,48 @@
+// pliant materials: the library of materials that robot files may name.
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "command.hpp"
+#include "robot/material_library.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::vector<std::string> names;
+    Output output;
+};
+
+Status list(const Options& options) {
+    std::vector<std::string> names = options.names;
+    if (names.empty()) {
+        for (const robot::LibraryFile& file : robot::library_files()) names.emplace_back(file.name);
+    }
+    std::vector<robot::LibraryMaterial> materials;
+    for (const std::string& name : names) {
+        Result<robot::LibraryMaterial> material = robot::library_material(name);
+        if (!material) return tl::unexpected(material.error());
+        materials.push_back(std::move(*material));
+    }
+    if (options.output.json) return fmt::print("{}\n", robot::library_json(materials)), Status{};
+    if (options.names.empty()) return fmt::print("{}", robot::library_text()), Status{};
+    for (const robot::LibraryMaterial& material : materials) fmt::print("{}", robot::material_text(material));
+    return {};
+}
+
+}  // namespace
+
+void add_materials(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("materials", "the library of materials that robot files may name");
+    command->add_option("names", options->names, "show these with constants and sources");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant materials ecoflex-00-30");
+    command->callback([options, &status] {
+        const Status result = list(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,15 @@
+# Writes a C++ source that holds the files of data/materials, by name without ".toml", as bytes:
+#   cmake -DOUTPUT=x.cpp -DFOLDER=data/materials -P EmbedMaterials.cmake
+file(GLOB files "${FOLDER}/*.toml")
+list(SORT files)
+set(text "// Made by cmake/EmbedMaterials.cmake.\n#include \"robot/material_library.hpp\"\n\n")
+string(APPEND text "namespace pliant::robot {\n\nstd::span<const LibraryFile> library_files() {\n")
+string(APPEND text "    static constexpr LibraryFile files[] = {\n")
+foreach(file IN LISTS files)
+  get_filename_component(name "${file}" NAME_WLE)
+  file(READ "${file}" content HEX)
+  string(REGEX REPLACE "(..)" "\\\\x\\1" content "${content}")
+  string(APPEND text "        {\"${name}\", \"${content}\"},\n")
+endforeach()
+string(APPEND text "    };\n    return files;\n}\n\n}  // namespace pliant::robot\n")
+file(WRITE "${OUTPUT}" "${text}")

@@ -1,0 +1,80 @@
+#include "calibrate/ratio.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace pliant;
+using namespace pliant::calibrate;
+
+namespace {
+
+RatioOptions coarse() {
+    RatioOptions options;
+    options.cells = {12, 2, 2};
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("equal materials: the interface of a long bar moves half as far as its end") {
+    RatioOptions options = coarse();
+    const auto u = reference_displacement_mm(options, 1);
+    REQUIRE(u);
+    CHECK(*u == doctest::Approx(15).epsilon(1e-4));
+    const auto R = match_shape_parameter(options, 15, 2);
+    REQUIRE(R);
+    CHECK(*R == doctest::Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a match gives the displacement that was asked for") {
+    const RatioOptions options = coarse();
+    const auto R = match_shape_parameter(options, 6, 3);
+    REQUIRE(R);
+    const auto u = blend_displacement_mm(options, *R);
+    REQUIRE(u);
+    CHECK(*u == doctest::Approx(6).epsilon(2e-5));
+    CHECK_FALSE(match_shape_parameter(options, 16, 3));  // more than half: the soft part would have to be the stiffer
+}
+
+TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio 0, where no clamp disturbs") {
+    // Uniaxial stiffness of the blend is 3 w a / (2 + a): of the halves w and 3 w a / (2 + a), so u ratio is known.
+    RatioOptions options = coarse();
+    options.strain = 1e-3;
+    const double R = 4;
+    const auto u = blend_displacement_mm(options, R);
+    REQUIRE(u);
+    const double soft = 3 / (2 * R + 1);
+    // The clamped ends and the interface hold back sideways motion, which ideal bars do not know.
+    CHECK(*u == doctest::Approx(0.1 * soft / (1 + soft)).epsilon(0.04));
+}
+
+TEST_CASE("three ratios make a curve through them") {
+    RatioOptions options = coarse();
+    options.ratios = {1, 2, 4};
+    Progress silent;
+    const auto result = calibrate_ratio(options, silent);
+    REQUIRE_MESSAGE(result, (result ? "" : result.error().message));
+    REQUIRE(result->rows.size() == 3);
+    REQUIRE(result->curve);
+    for (const RatioRow& row : result->rows) {
+        const auto& c = *result->curve;
+        const double on_curve = (c[0] * row.material_ratio + c[1]) * row.material_ratio + c[2];
+        CHECK(on_curve == doctest::Approx(row.shape_parameter));
+    }
+    CHECK(ratio_csv(*result).find("material_ratio,interface_mm") == 0);
+    CHECK(ratio_json(*result, options).find("\"curve\"") != std::string::npos);
+    CHECK(ratio_text(*result).find("T3.8") != std::string::npos);
+}
+
+TEST_CASE("bad options are refused") {
+    Progress silent;
+    RatioOptions options = coarse();
+    CHECK_FALSE(calibrate_ratio(options, silent));
+    options.ratios = {0.5};
+    CHECK_FALSE(calibrate_ratio(options, silent));
+    options.ratios = {2};
+    options.poisson_ratio = 0.5;
+    CHECK_FALSE(calibrate_ratio(options, silent));
+    options.poisson_ratio = 0.45;
+    options.interface = 0.3;  // 3.6 of 12 cells
+    CHECK_FALSE(calibrate_ratio(options, silent));
+}

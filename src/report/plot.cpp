@@ -1,0 +1,110 @@
+#include "report/plot.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pliant::report {
+namespace {
+
+constexpr Colour white = {1, 1, 1};
+constexpr Colour grid = {0.87, 0.88, 0.90};
+constexpr Colour frame = {0.35, 0.38, 0.42};
+// Where the axes stand; the canvas is 1500 by 1000.
+constexpr double left = 140, right = 1460, top = 90, bottom = 880;
+
+/// One axis: values and where they are on the canvas.
+struct Axis {
+    std::vector<double> marks;
+    double from, to;
+    [[nodiscard]] double at(double value) const {
+        return from + (value - marks.front()) / (marks.back() - marks.front()) * (to - from);
+    }
+};
+
+Axis axis_for(const Plot& plot, double Point2::*member, double from, double to) {
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (const Series& series : plot.series) {
+        for (const Point2& p : series.points) {
+            if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+            low = std::min(low, p.*member);
+            high = std::max(high, p.*member);
+        }
+    }
+    return {ticks(low, high), from, to};
+}
+
+void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
+    for (const double value : x.marks) {
+        canvas.line(std::array{Point2{x.at(value), top}, Point2{x.at(value), bottom}}, 1.5, grid);
+        canvas.text({x.at(value), bottom + 34}, fmt::format("{:.6g}", value), {.size = 24, .align = Align::centre});
+    }
+    for (const double value : y.marks) {
+        canvas.line(std::array{Point2{left, y.at(value)}, Point2{right, y.at(value)}}, 1.5, grid);
+        canvas.text({left - 14, y.at(value) + 8}, fmt::format("{:.6g}", value), {.size = 24, .align = Align::right});
+    }
+    const std::array corner = {Point2{left, top}, Point2{left, bottom}, Point2{right, bottom}};
+    canvas.line(corner, 2.5, frame);
+}
+
+void draw_series(Canvas& canvas, const Series& series, const Colour& colour, const Axis& x, const Axis& y) {
+    std::vector<Point2> line;
+    for (const Point2& p : series.points) {
+        if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+        line.push_back({x.at(p.x), y.at(p.y)});
+        if (series.dots) canvas.disc(line.back(), 7, colour);
+    }
+    if (!series.dots && line.size() > 1) canvas.line(line, 4, colour);
+}
+
+void draw_legend(Canvas& canvas, const Plot& plot) {
+    double height = top + 40;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        const Colour colour = palette(static_cast<int>(i));
+        if (plot.series[i].dots)
+            canvas.disc({left + 50, height - 8}, 7, colour);
+        else
+            canvas.line(std::array{Point2{left + 30, height - 8}, Point2{left + 70, height - 8}}, 4, colour);
+        canvas.text({left + 84, height}, plot.series[i].name, {.size = 26});
+        height += 38;
+    }
+}
+
+}  // namespace
+
+std::vector<double> ticks(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high)) return {0, 1};
+    if (!(high - low > 1e-12 * std::max(std::fabs(low), std::fabs(high)))) {
+        const double room = low == 0 ? 1 : 0.5 * std::fabs(low);
+        low -= room;
+        high += room;
+    }
+    const double rough = (high - low) / 6;
+    const double power = std::pow(10, std::floor(std::log10(rough)));
+    const double digit = rough / power;
+    const double step = power * (digit < 1.5 ? 1 : (digit < 3.5 ? 2 : (digit < 7.5 ? 5 : 10)));
+    std::vector<double> marks;
+    const auto first = std::floor(low / step + 1e-9);
+    const auto last = std::ceil(high / step - 1e-9);
+    for (double k = first; k <= last; ++k) marks.push_back(k * step);
+    return marks;
+}
+
+Result<std::string> plot_png(const Plot& plot) {
+    Canvas canvas(1200, 800, white);
+    const Axis x = axis_for(plot, &Point2::x, left, right);
+    const Axis y = axis_for(plot, &Point2::y, bottom, top);
+    draw_grid(canvas, x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i)
+        draw_series(canvas, plot.series[i], palette(static_cast<int>(i)), x, y);
+    draw_legend(canvas, plot);
+    canvas.text({left, 50}, plot.title, {.size = 32, .bold = true});
+    canvas.text({(left + right) / 2, 965}, plot.x_label, {.size = 28, .align = Align::centre});
+    canvas.text({left, 82}, plot.y_label, {.size = 24});
+    return canvas.png();
+}
+
+}  // namespace pliant::report

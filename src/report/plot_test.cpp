@@ -1,0 +1,33 @@
+#include "report/plot.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace pliant::report;
+
+TEST_CASE("ticks are round, cover the range, and are neither few nor many") {
+    CHECK(ticks(0, 6) == std::vector<double>{0, 1, 2, 3, 4, 5, 6});
+    for (const auto& [low, high] :
+         {std::pair(0.013, 0.94), std::pair(-3e6, 8e7), std::pair(5.0, 5.0), std::pair(0.0, 0.0)}) {
+        const auto marks = ticks(low, high);
+        CHECK(marks.front() <= low);
+        CHECK(marks.back() >= high);
+        CHECK(marks.size() >= 4);
+        CHECK(marks.size() <= 11);
+    }
+    CHECK(ticks(NAN, 1).size() == 2);
+}
+
+TEST_CASE("a plot is a PNG of its size, and shows its lines") {
+    const Plot plot{"title", "x", "y", {{"line", {{0, 0}, {1, 2}}, false}, {"points", {{0.5, 1.5}, {NAN, 1}}, true}}};
+    const auto png = plot_png(plot);
+    REQUIRE(png);
+    CHECK(png->substr(1, 3) == "PNG");
+    CHECK(static_cast<unsigned char>((*png)[18]) * 256 + static_cast<unsigned char>((*png)[19]) == 1200);
+    Plot empty = plot;
+    empty.series[0].points.clear();
+    const auto other = plot_png(empty);
+    REQUIRE(other);
+    CHECK(*other != *png);
+}

@@ -1,0 +1,12 @@
+// One table of elastic constants: [material.NAME] of a robot file, or a file of the library (data/materials).
+#pragma once
+
+#include "core/config.hpp"
+#include "robot/robot.hpp"
+
+namespace pliant::robot {
+
+/// Law, density, resin and colour of one material; what is wrong goes to the reader's problems. Reads no other keys.
+[[nodiscard]] MaterialSpec read_material(config::Reader& reader, const std::string& name);
+
+}  // namespace pliant::robot
