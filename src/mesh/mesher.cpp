@@ -92,6 +92,7 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
         Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg);
         if (!mesh) return blame(mesh.error());
         mesh->region.assign(mesh->region.size(), static_cast<int>(b));
+        for (std::string& note : mesh->notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
         parts.push_back({settings.order == 2 ? to_quadratic(*mesh) : std::move(*mesh), true});
     }
     return parts;
@@ -105,6 +106,7 @@ TetMesh joined(const std::vector<Part>& parts, int order) {
         mesh.points.insert(mesh.points.end(), part.mesh.points.begin(), part.mesh.points.end());
         for (const int node : part.mesh.nodes) mesh.nodes.push_back(node + offset);
         mesh.region.insert(mesh.region.end(), part.mesh.region.begin(), part.mesh.region.end());
+        mesh.notes.insert(mesh.notes.end(), part.mesh.notes.begin(), part.mesh.notes.end());
     }
     return mesh;
 }
