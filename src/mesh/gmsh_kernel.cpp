@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -447,7 +448,9 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
         add_triangles(surface);
         return mesh_enclosed(size);
     };
-    Result<TetMesh> mesh = in_session("meshing", anew);
+    // Gmsh's parametrisation never comes to an end, or worse, on triangles without area.
+    Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")
+                                                       : in_session("meshing", anew);
     if (!mesh) {
         const std::string reason = mesh.error().message;
         mesh = in_session("meshing", as_drawn);
