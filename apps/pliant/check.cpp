@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "core/config.hpp"
@@ -11,8 +13,6 @@
 #include "job_tools.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
-#include "mesh/surface_file.hpp"
-#include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
 
 namespace pliant::app {
@@ -29,10 +29,14 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
     if (!robot) return tl::unexpected(robot.error());
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, progress);
     if (!mesh) return tl::unexpected(mesh.error());
+    const std::vector<std::string> notes = mesh->notes;
     const Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
     if (!model) return tl::unexpected(model.error());
-    return fmt::format("robot \"{}\": {} bodies, {} materials, {} cables, {} tets", robot->name, robot->bodies.size(),
-                       robot->materials.size(), robot->cables.size(), model->mesh().tet_count());
+    std::string text =
+        fmt::format("robot \"{}\": {} bodies, {} materials, {} cables, {} tets", robot->name, robot->bodies.size(),
+                    robot->materials.size(), robot->cables.size(), model->mesh().tet_count());
+    for (const std::string& note : notes) text += "\n  note: " + note;
+    return text;
 }
 
 Result<std::string> check_printer(const std::string& file) {
@@ -71,25 +75,11 @@ Result<std::string> check_job(const std::string& file) {
                        manifest.name, manifest.layers.size(), images, manifest.materials.size());
 }
 
-Result<std::string> check_mesh(const std::string& file) {
-    if (mesh::looks_like_tet_file(file)) {
-        const Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(file);
-        if (!mesh) return tl::unexpected(mesh.error());
-        return mesh::report_text(mesh::report_on(*mesh));
-    }
-    const Result<mesh::SurfaceFile> surface = mesh::read_surface(file);
-    if (!surface) return tl::unexpected(surface.error());
-    std::string text = fmt::format("surface: {} points, {} triangles, volume {:.6g}", surface->mesh.points.size(),
-                                   surface->mesh.triangles.size(), mesh::signed_volume(surface->mesh));
-    for (const std::string& warning : surface->warnings) text += "\n  warning: " + warning;
-    return text;
-}
-
 Result<std::string> check(const std::string& file, Progress& progress) {
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
     if (extension == ".zip") return check_job(file);
-    return check_mesh(file);
+    return mesh::describe_mesh_file(file);
 }
 
 }  // namespace

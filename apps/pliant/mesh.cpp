@@ -7,7 +7,6 @@
 
 #include "command.hpp"
 #include "mesh/mesh_report.hpp"
-#include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
 
@@ -39,19 +38,10 @@ Status build(const Options& options) {
 }
 
 Status describe(const std::string& file) {
-    if (const auto mesh = mesh::read_tet_mesh(file); mesh) {
-        fmt::print("{}: {}\n", file, mesh::report_text(mesh::report_on(*mesh)));
-        return {};
-    } else if (const auto surface = mesh::read_surface(file); surface) {
-        const Box3 box = mesh::bounds(surface->mesh);
-        fmt::print("{}: surface, {} points, {} triangles, volume {:.6g}, {:.6g} x {:.6g} x {:.6g}\n", file,
-                   surface->mesh.points.size(), surface->mesh.triangles.size(), mesh::signed_volume(surface->mesh),
-                   box.size().x, box.size().y, box.size().z);
-        for (const std::string& warning : surface->warnings) fmt::print("{}: {}\n", file, warning);
-        return {};
-    } else {
-        return tl::unexpected(mesh::looks_like_tet_file(file) ? mesh.error() : surface.error());
-    }
+    const Result<std::string> text = mesh::describe_mesh_file(file);
+    if (!text) return tl::unexpected(text.error());
+    fmt::print("{}: {}\n", file, *text);
+    return {};
 }
 
 Status run(const Options& options) {

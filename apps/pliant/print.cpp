@@ -33,7 +33,8 @@ Result<int> print_on_twin(const Options& options) {
     TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
     const auto images = [&](int layer, int material) { return image_of(job->archive, layer, material); };
     host::PrintRecord record;
-    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record); !printed)
+    const host::LinkOptions link = link_options(job->printer.controller);
+    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
     const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, images);
     if (!report) return tl::unexpected(report.error());

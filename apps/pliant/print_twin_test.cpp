@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
@@ -82,6 +84,28 @@ struct Print {
     }
 };
 
+/// Counts the lines that have been written and not yet answered by an ok.
+class CountingWire final : public host::Wire {
+public:
+    explicit CountingWire(host::Wire& wire) : wire_(wire) {}
+    [[nodiscard]] Status write(std::string_view bytes) override {
+        under_way_ += static_cast<int>(std::count(bytes.begin(), bytes.end(), '\n'));
+        most_ = std::max(most_, under_way_);
+        return wire_.write(bytes);
+    }
+    [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        Result<std::string> said = wire_.read(timeout_s);
+        for (std::size_t at = 0; said && (at = said->find("ok", at)) != std::string::npos; at += 2) --under_way_;
+        return said;
+    }
+    [[nodiscard]] int most() const { return most_; }
+
+private:
+    host::Wire& wire_;
+    int under_way_ = 0;
+    int most_ = 0;
+};
+
 bool holds(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
@@ -105,6 +129,21 @@ TEST_CASE("a two-material job of five layers comes out right") {
     const double soft_mm3 = 0.15875 * 0.15875 * (24 + 6 * 100.0 / 255) * 0.25;
     CHECK(p.report.materials[0].cured_mm3 == doctest::Approx(soft_mm3));
     CHECK(p.report.resins[1].left_ml == doctest::Approx(700 - p.plan.vats[1].resin_ml));
+}
+
+TEST_CASE("no more lines are under way than the printer file allows") {
+    const Print p;
+    for (const int lines : {1, 2, 4}) {
+        machine::Printer printer = p.printer;
+        printer.controller.window_lines = lines;
+        app::TwinBench bench(printer);
+        CountingWire wire(bench.devices().wire);
+        Progress silent;
+        host::PrintRecord record;
+        const host::Devices devices{wire, bench.devices().projector, bench.devices().clock};
+        REQUIRE(host::print_job(p.gcode, halves, devices, silent, record, app::link_options(printer.controller)));
+        CHECK(wire.most() == lines);
+    }
 }
 
 TEST_CASE("the planned time is the machine's, but for where the axes stand when they are homed") {

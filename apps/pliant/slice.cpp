@@ -84,7 +84,7 @@ std::vector<job::Material> with_exposures(const Drawing& drawing, const machine:
                                           std::vector<std::string>& warnings) {
     std::vector<job::Material> materials;
     for (const auto& [material, resin] : drawing.resin_of_material) {
-        const auto same_name = [&](const job::Material& known) { return known.name == material; };
+        const auto same_name = [&name = material](const job::Material& known) { return known.name == name; };
         if (std::any_of(materials.begin(), materials.end(), same_name)) continue;
         job::Material entry;
         entry.name = material;

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -447,8 +448,16 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
         add_triangles(surface);
         return mesh_enclosed(size);
     };
-    Result<TetMesh> mesh = in_session("meshing", anew);
-    if (!mesh) mesh = in_session("meshing", as_drawn);
+    // Gmsh's parametrisation never comes to an end, or worse, on triangles without area.
+    Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")
+                                                       : in_session("meshing", anew);
+    if (!mesh) {
+        const std::string reason = mesh.error().message;
+        mesh = in_session("meshing", as_drawn);
+        if (mesh)
+            mesh->notes.push_back(fmt::format(
+                "the surface keeps the triangles that it was drawn with, whatever the mesh size ({})", reason));
+    }
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);

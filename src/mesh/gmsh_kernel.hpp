@@ -22,7 +22,8 @@ struct NamedSolid {
 [[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order);
 
 /// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
-/// than `angle_deg` stay. A surface that cannot be parametrised keeps its own triangles.
+/// than `angle_deg` stay. A surface that cannot be parametrised keeps its own triangles,
+/// and a note says so.
 [[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg);
 
 /// See mesher.hpp.

@@ -7,6 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/files.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/tet_file.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -37,6 +41,15 @@ double min_dihedral(const TetMesh& mesh, std::size_t t) {
     return smallest;
 }
 
+std::string surface_text(const SurfaceFile& surface) {
+    const Vec3 size = bounds(surface.mesh).size();
+    std::string text = fmt::format("surface, {} points, {} triangles, volume {:.6g}, {:.6g} x {:.6g} x {:.6g}",
+                                   surface.mesh.points.size(), surface.mesh.triangles.size(),
+                                   signed_volume(surface.mesh), size.x, size.y, size.z);
+    for (const std::string& warning : surface.warnings) text += "\n  note: " + warning;
+    return text;
+}
+
 }  // namespace
 
 MeshReport report_on(const TetMesh& mesh) {
@@ -46,6 +59,7 @@ MeshReport report_on(const TetMesh& mesh) {
     report.tets = mesh.tet_count();
     for (const Vec3& p : mesh.points) report.box.add(p);
     report.region_names = mesh.region_names;
+    report.notes = mesh.notes;
     for (std::size_t r = 0; r < mesh.region_names.size(); ++r)
         report.region_volumes.push_back(volume(mesh, static_cast<int>(r)));
     std::vector<double> all;
@@ -71,7 +85,26 @@ std::string report_text(const MeshReport& report) {
     for (std::size_t r = 0; r < report.region_names.size(); ++r) {
         text += fmt::format("\n  region \"{}\": volume {:.6g}", report.region_names[r], report.region_volumes[r]);
     }
+    for (const std::string& note : report.notes) text += "\n  note: " + note;
     return text;
+}
+
+Result<std::string> describe_mesh_file(const std::filesystem::path& path) {
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (looks_like_tet_mesh(*bytes)) {
+        const Result<TetMesh> mesh = parse_tet_mesh(*bytes, path.string());
+        if (!mesh) return tl::unexpected(mesh.error());
+        return report_text(report_on(*mesh));
+    }
+    if (bytes->empty() || looks_like_surface(*bytes)) {
+        const Result<SurfaceFile> surface = parse_surface(*bytes, path.string());
+        if (!surface) return tl::unexpected(surface.error());
+        return surface_text(*surface);
+    }
+    return input_error(
+        "{}: is no mesh that Pliant reads (tet meshes: .vtk, .vtu or .msh; surfaces: .stl, .obj or .ply; by content)",
+        path.string());
 }
 
 }  // namespace pliant::mesh

@@ -1,9 +1,14 @@
 #include "mesh/mesh_report.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "core/files.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/tet_file.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
@@ -17,6 +22,15 @@ TetMesh one_tet(const std::vector<Vec3>& points) {
     mesh.region = {0};
     mesh.region_names = {"a"};
     return mesh;
+}
+
+/// What is said of a file with this content.
+std::string described(std::string_view bytes) {
+    const auto path = std::filesystem::temp_directory_path() / fmt::format("pliant_mesh_report_{}", getpid());
+    REQUIRE(write_file(path, bytes));
+    const Result<std::string> text = describe_mesh_file(path);
+    std::filesystem::remove(path);
+    return text ? *text : text.error().message;
 }
 
 }  // namespace
@@ -39,4 +53,27 @@ TEST_CASE("the text names size, regions and quality; an empty mesh has a report 
     CHECK(text.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
     CHECK(text.find("region \"a\": volume 0.166667") != std::string::npos);
     CHECK(report_on({}).tets == 0);
+}
+
+TEST_CASE("a file is described by what it holds, with what was odd about it") {
+    const TetMesh inside_out = one_tet({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}});
+    const std::string tets = described(vtk_text(inside_out));
+    CHECK(tets.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
+    CHECK(tets.find("\n  note: 1 of 1 tets were inside out and were turned") != std::string::npos);
+    CHECK(described("v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n").find("surface, 3 points, 1 triangles") == 0);
+    const std::string open =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    CHECK(described(open).find("note: ") != std::string::npos);
+}
+
+TEST_CASE("a file that no reader knows is told so with all formats; a known one that is broken by its reader") {
+    for (const std::string& junk : {std::string("hello"), std::string(200, 'x')}) {
+        const std::string text = described(junk);
+        CHECK(text.find("is no mesh that Pliant reads") != std::string::npos);
+        for (const char* format : {".vtk", ".vtu", ".msh", ".stl", ".obj", ".ply"})
+            CHECK_MESSAGE(text.find(format) != std::string::npos, format);
+    }
+    CHECK(described("").find("is empty") != std::string::npos);
+    CHECK(described("# vtk DataFile Version 3.0\n").find("is no mesh") == std::string::npos);
+    CHECK(described("solid a\nfacet\nnonsense\n").find("outer loop") != std::string::npos);
 }

@@ -6,6 +6,7 @@
 #include "mesh/gmsh_kernel.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_shells.hpp"
+#include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
 
 namespace pliant::mesh {
@@ -78,7 +79,8 @@ double surface_area(const TriMesh& surface) {
 /// One part per solid piece of the surface of body `b`.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
                                             const MeshSettings& settings) {
-    const TriMesh& surface = std::get<TriMesh>(bodies[b].shape);
+    TriMesh surface = std::get<TriMesh>(bodies[b].shape);
+    const SliverCount slivers = remove_slivers(surface);
     const auto blame = [&](const Error& error) {
         return tl::unexpected(Error{error.cause, fmt::format("body \"{}\": {}", bodies[b].name, error.message)});
     };
@@ -92,6 +94,9 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
         Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg);
         if (!mesh) return blame(mesh.error());
         mesh->region.assign(mesh->region.size(), static_cast<int>(b));
+        if (slivers.removed > 0 && parts.empty())
+            mesh->notes.push_back(fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
+        for (std::string& note : mesh->notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
         parts.push_back({settings.order == 2 ? to_quadratic(*mesh) : std::move(*mesh), true});
     }
     return parts;
@@ -105,6 +110,7 @@ TetMesh joined(const std::vector<Part>& parts, int order) {
         mesh.points.insert(mesh.points.end(), part.mesh.points.begin(), part.mesh.points.end());
         for (const int node : part.mesh.nodes) mesh.nodes.push_back(node + offset);
         mesh.region.insert(mesh.region.end(), part.mesh.region.begin(), part.mesh.region.end());
+        mesh.notes.insert(mesh.notes.end(), part.mesh.notes.begin(), part.mesh.notes.end());
     }
     return mesh;
 }

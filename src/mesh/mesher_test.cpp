@@ -244,20 +244,3 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
     CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
 }
-
-TEST_CASE("the message names the body that is touched, not the first one") {
-    const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
-    const std::string text =
-        problem({{"far", box({50, 0, 0}, {60, 10, 10})}, {"near", box({10, 0, 0}, {20, 10, 10})}, {"stl", cube}}, 4);
-    CHECK(text.find("body \"stl\" touches or overlaps body \"near\"") == 0);
-}
-
-TEST_CASE("a caller that cancels gets no mesh") {
-    struct Cancelled : Progress {
-        [[nodiscard]] bool cancelled() const override { return true; }
-    } stop;
-    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
-    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
-    REQUIRE_FALSE(mesh);
-    CHECK(mesh.error().cause == Cause::cancelled);
-}

@@ -163,17 +163,21 @@ bool looks_ascii(std::string_view bytes) {
 
 }  // namespace
 
-Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name) {
-    if (bytes.empty()) return input_error("{}: the file is empty", name);
-    if (looks_ascii(bytes)) return parse_ascii(bytes, name);
-    if (bytes.size() < header_bytes + 4) return input_error("{}: is not an STL file", name);
+bool looks_like_stl(std::string_view bytes) {
+    if (looks_ascii(bytes)) return true;
+    if (bytes.size() < header_bytes + 4) return false;
     const std::uint32_t claimed = read_u32(bytes, header_bytes);
     const std::size_t present = (bytes.size() - header_bytes - 4) / facet_bytes;
     // Text of another kind read as binary claims billions of facets, and its size does not fit.
     const bool text = std::all_of(bytes.begin(), bytes.begin() + header_bytes,
                                   [](char c) { return c != '\0' && static_cast<unsigned char>(c) < 128; });
-    if (text && claimed > 10 * (present + 1)) return input_error("{}: is not an STL file", name);
-    return parse_binary(bytes, name);
+    return !text || claimed <= 10 * (present + 1);
+}
+
+Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name) {
+    if (bytes.empty()) return input_error("{}: the file is empty", name);
+    if (!looks_like_stl(bytes)) return input_error("{}: is not an STL file", name);
+    return looks_ascii(bytes) ? parse_ascii(bytes, name) : parse_binary(bytes, name);
 }
 
 Status write_stl(const std::filesystem::path& path, const TriMesh& mesh) {

@@ -25,12 +25,22 @@ bool looks_like_obj(std::string_view bytes) {
     return false;
 }
 
+bool looks_like_ply(std::string_view bytes) {
+    return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
+
 }  // namespace
 
+bool looks_like_surface(std::string_view bytes) {
+    return looks_like_ply(bytes) || looks_like_obj(bytes) || looks_like_stl(bytes);
+}
+
 Result<SurfaceFile> parse_surface(std::string_view bytes, const std::string& name) {
-    if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return parse_ply(bytes, name);
+    if (bytes.empty()) return input_error("{}: the file is empty", name);
+    if (looks_like_ply(bytes)) return parse_ply(bytes, name);
     if (looks_like_obj(bytes)) return parse_obj(bytes, name);
-    return parse_stl(bytes, name);
+    if (looks_like_stl(bytes)) return parse_stl(bytes, name);
+    return input_error("{}: is no surface that Pliant reads (.stl, .obj or .ply, by content)", name);
 }
 
 Result<SurfaceFile> read_surface(const std::filesystem::path& path) {

@@ -21,6 +21,10 @@ struct SurfaceFile {
 [[nodiscard]] Result<SurfaceFile> read_surface(const std::filesystem::path& path);
 [[nodiscard]] Result<SurfaceFile> parse_surface(std::string_view bytes, const std::string& name);
 
+/// True if the content begins like a format of read_surface(). Binary STL has no mark: bytes that are no text pass.
+[[nodiscard]] bool looks_like_surface(std::string_view bytes);
+[[nodiscard]] bool looks_like_stl(std::string_view bytes);
+
 /// ASCII or binary.
 [[nodiscard]] Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name);
 

@@ -7,17 +7,21 @@ namespace pliant::mesh {
 namespace {
 
 void turn_inside_out_tets(TetMesh& mesh) {
+    std::size_t turned = 0;
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         int* n = mesh.nodes.data() + t * width;
         if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
             continue;
+        ++turned;
         std::swap(n[1], n[2]);
         if (mesh.order == 2) {  // edges 01-02 and 13-23 change places with corners 1 and 2
             std::swap(n[4], n[6]);
             std::swap(n[8], n[9]);
         }
     }
+    if (turned > 0)
+        mesh.notes.push_back(fmt::format("{} of {} tets were inside out and were turned", turned, mesh.tet_count()));
 }
 
 }  // namespace

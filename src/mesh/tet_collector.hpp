@@ -20,8 +20,8 @@ public:
     /// One tet of 4 or 10 nodes (indices into the file's points, order of VTK) in the region with this number.
     [[nodiscard]] Status add(std::span<const std::int64_t> nodes, std::int64_t region);
 
-    /// Points that no tet uses are dropped, inside-out tets are turned, regions come in the order of their first tet
-    /// with the name of their number, or the number itself. An error if there are no tets.
+    /// Points that no tet uses are dropped, inside-out tets are turned (a note counts them), regions come in the order
+    /// of their first tet with the name of their number, or the number itself. An error if there are no tets.
     [[nodiscard]] Result<TetMesh> finish(const std::map<std::int64_t, std::string>& names);
 
 private:

@@ -16,10 +16,6 @@ bool looks_like_vtu(std::string_view bytes) {
     return head.find("<VTKFile") != std::string_view::npos;
 }
 
-bool looks_like_tets(std::string_view bytes) {
-    return bytes.starts_with(vtk_mark) || bytes.starts_with(msh_mark) || looks_like_vtu(bytes);
-}
-
 /// Names in legacy VTK files are words without commas: blanks and a few signs become %XX.
 std::string percent_encoded(std::string_view text) {
     std::string out;
@@ -60,9 +56,8 @@ Result<TetMesh> read_tet_mesh(const std::filesystem::path& path) {
     return parse_tet_mesh(*bytes, path.string());
 }
 
-bool looks_like_tet_file(const std::filesystem::path& path) {
-    const Result<std::string> bytes = read_file(path);
-    return bytes && looks_like_tets(*bytes);
+bool looks_like_tet_mesh(std::string_view bytes) {
+    return bytes.starts_with(vtk_mark) || bytes.starts_with(msh_mark) || looks_like_vtu(bytes);
 }
 
 std::string vtk_text(const TetMesh& mesh) {

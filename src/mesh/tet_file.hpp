@@ -11,8 +11,8 @@
 namespace pliant::mesh {
 
 /// Legacy VTK, VTK XML (.vtu) or Gmsh (.msh) with tets of 4 or 10 nodes among any other cells, which are passed over,
-/// as are points that no tet uses. Inside-out tets are turned. The unit is the file's. Errors name the file and, for
-/// text, the line. Memory follows what the file holds, not what it claims.
+/// as are points that no tet uses. Inside-out tets are turned, and a note counts them. The unit is the file's. Errors
+/// name the file and, for text, the line. Memory follows what the file holds, not what it claims.
 [[nodiscard]] Result<TetMesh> read_tet_mesh(const std::filesystem::path& path);
 [[nodiscard]] Result<TetMesh> parse_tet_mesh(std::string_view bytes, const std::string& name);
 
@@ -29,7 +29,7 @@ namespace pliant::mesh {
 [[nodiscard]] Result<TetMesh> parse_msh(std::string_view bytes, const std::string& name);
 
 /// True if the content begins like a format of read_tet_mesh().
-[[nodiscard]] bool looks_like_tet_file(const std::filesystem::path& path);
+[[nodiscard]] bool looks_like_tet_mesh(std::string_view bytes);
 
 /// By the extension: .vtk (legacy, ASCII) or .vtu. Regions are written as cell data "region", their names as the text
 /// field "region_names" or, in .vtk files, in the title line.

@@ -43,6 +43,7 @@ TEST_CASE("linear and quadratic meshes come back as they were written") {
         CHECK(volume(*back) == doctest::Approx(volume(mesh)));
         CHECK(back->region == mesh.region);
         CHECK(back->region_names == mesh.region_names);
+        CHECK(back->notes.empty());
         for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
             for (std::size_t a = 0; a < mesh.tet(t).size(); ++a)
                 CHECK(back->points[back->tet(t)[a]] == mesh.points[mesh.tet(t)[a]]);
@@ -77,6 +78,7 @@ TEST_CASE("binary files, other cells, loose points and inside-out tets") {
     CHECK(mesh->tet_count() == 1);
     CHECK(volume(*mesh) == doctest::Approx(1.0 / 6));
     CHECK(mesh->region_names == std::vector<std::string>{"7"});
+    CHECK(mesh->notes == std::vector<std::string>{"1 of 1 tets were inside out and were turned"});
 }
 
 TEST_CASE("version 5 files keep offsets and connectivity apart") {

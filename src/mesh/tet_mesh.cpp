@@ -158,6 +158,7 @@ TetMesh to_quadratic(const TetMesh& mesh) {
     quadratic.points = mesh.points;
     quadratic.region = mesh.region;
     quadratic.region_names = mesh.region_names;
+    quadratic.notes = mesh.notes;
     quadratic.nodes.reserve(mesh.tet_count() * 10);
     std::unordered_map<std::uint64_t, int> middle;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {

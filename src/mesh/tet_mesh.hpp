@@ -24,6 +24,7 @@ struct TetMesh {
     std::vector<int> nodes;                 ///< (m * nodes_per_tet), corners first, positively oriented
     std::vector<int> region;                ///< (m), index into region_names
     std::vector<std::string> region_names;  ///< at least one where there are tets
+    std::vector<std::string> notes;         ///< what a reader or mesher had to put up with; a line each, for people
 
     [[nodiscard]] int nodes_per_tet() const { return order == 2 ? 10 : 4; }
     [[nodiscard]] std::size_t tet_count() const { return nodes.size() / static_cast<std::size_t>(nodes_per_tet()); }

@@ -308,6 +308,7 @@ private:
     }
 
     static Status add_piece(const Piece& piece, std::int64_t first_point, TetCollector& collector) {
+        const std::size_t points = piece.points.size() / 3;
         std::vector<std::int64_t> nodes;
         for (std::size_t c = 0; c < piece.types.size(); ++c) {
             if (piece.types[c] != vtk_tetra && piece.types[c] != vtk_quadratic_tetra) continue;
@@ -318,8 +319,8 @@ private:
             nodes.clear();
             for (std::size_t i = begin; i < end; ++i) {
                 const double node = piece.connectivity[i];
-                if (!(node >= 0 && node < static_cast<double>(piece.points.size() / 3) && node == std::floor(node)))
-                    return input_error("cell {} names point {}, there are {}", c, node, piece.points.size() / 3);
+                if (!(node >= 0 && node < static_cast<double>(points) && node == std::floor(node)))
+                    return input_error("cell {} names point {}, there are {}", c, node, points);
                 nodes.push_back(first_point + static_cast<std::int64_t>(node));
             }
             const double region = piece.regions.empty() ? 0 : piece.regions[c];

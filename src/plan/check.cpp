@@ -8,7 +8,6 @@
 namespace pliant::plan {
 namespace {
 
-using machine::Axis;
 using machine::Command;
 
 /// The machine as far as the text has been read.

@@ -1,6 +1,7 @@
 #include "plan/sequence.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "machine/motion.hpp"
 
@@ -25,6 +26,29 @@ void Sequence::spend(double seconds) {
             seconds_.move += seconds;
             break;
     }
+}
+
+/// Moves that follow each other at once are one stretch.
+void Sequence::note(Device device, double begin_s) {
+    if (stretches_ == nullptr) return;
+    for (auto last = stretches_->rbegin(); last != stretches_->rend(); ++last) {
+        if (last->device != device) continue;
+        if (last->end_s != begin_s) break;
+        last->end_s = seconds_.total;
+        return;
+    }
+    stretches_->push_back({device, begin_s, seconds_.total});
+}
+
+void Sequence::note_switch(std::string_view line) {
+    const auto follow = [&](const machine::Switch& device, double& on_s, Device which) {
+        if (line == device.on) on_s = seconds_.total;
+        if (line != device.off || on_s < 0) return;
+        note(which, on_s);
+        on_s = -1;
+    };
+    follow(printer_->pump, pump_on_s_, Device::pump);
+    follow(printer_->fans, fans_on_s_, Device::fans);
 }
 
 void Sequence::comment(std::string_view text) {
@@ -55,7 +79,13 @@ void Sequence::move(Axis axis, int um, double feed_mm_s) {
 void Sequence::move_to(const Position& to, double feed_mm_s) {
     const machine::Profile profile = machine::profile(*printer_, position_, to, feed_mm_s);
     if (profile.length_mm == 0) return;
+    const double begin_s = seconds_.total;
     spend(profile.seconds());
+    for (const auto& [axis, device] : {std::pair{Axis::platform, Device::platform},
+                                       {Axis::carriage, Device::carriage},
+                                       {Axis::tower, Device::tower}}) {
+        if (to[axis] != position_[axis]) note(device, begin_s);
+    }
     command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
     position_ = to;
 }
@@ -75,6 +105,7 @@ void Sequence::switch_to(std::string_view line) {
     if (line.empty()) return;
     fence();
     command(line);
+    note_switch(line);
 }
 
 void Sequence::expose(const machine::Expose& expose) {
@@ -82,7 +113,9 @@ void Sequence::expose(const machine::Expose& expose) {
     fence();
     command(machine::write_expose(expose));
     activity(Activity::expose);
+    const double begin_s = seconds_.total;
     spend(expose.seconds);
+    note(Device::light, begin_s);
     activity(before);
 }
 

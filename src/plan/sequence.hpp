@@ -4,9 +4,11 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
+#include "plan/timeline.hpp"
 
 namespace pliant::plan {
 
@@ -21,6 +23,10 @@ struct Seconds {
 class Sequence {
 public:
     explicit Sequence(const machine::Printer& printer) : printer_(&printer) {}
+
+    /// From here on every stretch of work of a device is appended to `stretches`, which must outlive the recording;
+    /// nullptr: no more.
+    void record(std::vector<Stretch>* stretches) { stretches_ = stretches; }
 
     void activity(Activity activity) { activity_ = activity; }
     void comment(std::string_view text);
@@ -42,12 +48,17 @@ public:
 
 private:
     void spend(double seconds);
+    void note(Device device, double begin_s);
+    void note_switch(std::string_view command);
 
     const machine::Printer* printer_;
     machine::Position position_;
     Activity activity_ = Activity::move;
     Seconds seconds_;
     std::string text_;
+    std::vector<Stretch>* stretches_ = nullptr;
+    double pump_on_s_ = -1;  ///< since when; below 0: off
+    double fans_on_s_ = -1;
 };
 
 }  // namespace pliant::plan

@@ -107,6 +107,7 @@ std::string tiles(const Simulation& s) {
 
 std::string pictures_section(const std::vector<Picture>& pictures) {
     std::vector<const Picture*> order;
+    order.reserve(pictures.size());
     for (const auto& p : pictures) order.push_back(&p);
     std::stable_partition(order.begin(), order.end(), [](const Picture* p) { return p->file == "final.png"; });
     std::string out = "<section class=\"pictures\">\n";

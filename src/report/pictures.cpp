@@ -48,6 +48,7 @@ public:
         std::vector<std::size_t> steps = thinned_steps(s.result.steps.size(), fitted_steps);
         steps.insert(steps.begin(), 0);
         std::vector<std::vector<Vec3>> clouds;
+        clouds.reserve(steps.size());
         for (const std::size_t step : steps) clouds.push_back(pose(surface, s.result.steps[step].positions).positions);
         const std::vector<std::span<const Vec3>> moved(clouds.begin() + 1, clouds.end());
         view_ = choose_view(clouds.front(), moved);

@@ -18,7 +18,8 @@ inline constexpr double max_coordinate_um = 2e6;
 struct GridPoint {
     std::int32_t x = 0, y = 0, z = 0;
     bool operator==(const GridPoint&) const = default;
-    auto operator<=>(const GridPoint&) const = default;
+    // clang-tidy 14 sees a 0 for a pointer in the comparisons that follow from this one.
+    auto operator<=>(const GridPoint&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 using Triangle = std::array<int, 3>;

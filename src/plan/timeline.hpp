@@ -1,0 +1,38 @@
+// What each part of the machine does when: the bars of a picture of the plan.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "machine/printer.hpp"
+
+namespace pliant::plan {
+
+struct Plan;
+
+enum class Device { platform, carriage, tower, pump, fans, light };
+inline constexpr int device_count = 6;
+
+/// What a person calls it.
+[[nodiscard]] std::string_view device_name(Device device);
+
+/// A device that is moving or switched on from begin_s to end_s.
+struct Stretch {
+    Device device = Device::platform;
+    double begin_s = 0;
+    double end_s = 0;
+};
+
+/// One change of vats.
+struct SwapTimeline {
+    int from_slot = 0;
+    int to_slot = 0;
+    double seconds = 0;
+    std::vector<Stretch> stretches;  ///< in the order of their ends; moves without a pause between them are one
+};
+
+/// The first of those changes of vats in which the tower goes farthest; without any swap `stretches` is empty.
+/// `printer` must be that of make_plan().
+[[nodiscard]] SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer);
+
+}  // namespace pliant::plan

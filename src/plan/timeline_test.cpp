@@ -1,0 +1,59 @@
+#include "plan/timeline.hpp"
+
+#include <doctest/doctest.h>
+
+#include "plan/plan.hpp"
+#include "plan/test_jobs.hpp"
+
+using namespace pliant;
+using namespace pliant::plan;
+
+namespace {
+
+SwapTimeline timeline_of(const std::vector<std::vector<int>>& layers, const std::vector<std::string>& resins) {
+    const machine::Printer printer = test::tower();
+    return longest_swap(make_plan(test::make_job(layers, resins), printer).value(), printer);
+}
+
+std::vector<Stretch> of(const SwapTimeline& timeline, Device device) {
+    std::vector<Stretch> found;
+    for (const Stretch& s : timeline.stretches) {
+        if (s.device == device) found.push_back(s);
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("one swap as the thesis draws it: push, spray over the tower's way, pull under the fans") {
+    const SwapTimeline swap = timeline_of({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"});
+    CHECK(swap.from_slot == 1);
+    CHECK(swap.to_slot == 2);
+    // Push and pull: 355.6 mm at 15.2 mm/s, ramps of 50 mm/s^2; spray of 15 s between them.
+    const double stroke = 355.6 / 15.2 + 15.2 / 50;
+    CHECK(swap.seconds == doctest::Approx(2 * stroke + 15).epsilon(1e-4));
+    const auto spray = of(swap, Device::pump);
+    REQUIRE(spray.size() == 1);
+    CHECK(spray[0].begin_s == doctest::Approx(stroke));
+    CHECK(spray[0].end_s == doctest::Approx(stroke + 15).epsilon(1e-4));
+    const auto fans = of(swap, Device::fans);
+    REQUIRE(fans.size() == 1);
+    CHECK(fans[0].begin_s == doctest::Approx(spray[0].end_s));
+    CHECK(fans[0].end_s == doctest::Approx(swap.seconds));
+    const auto tower = of(swap, Device::tower);
+    REQUIRE(tower.size() == 3);  // hooks down, on its way, hooks up
+    CHECK(tower.front().begin_s == doctest::Approx(spray[0].begin_s));
+    CHECK(tower.back().end_s == doctest::Approx(spray[0].end_s));
+    const auto platform = of(swap, Device::platform);
+    REQUIRE_FALSE(platform.empty());
+    CHECK(platform.front().begin_s > spray[0].begin_s);
+    CHECK(platform.back().end_s < spray[0].end_s);
+    CHECK(of(swap, Device::light).empty());
+}
+
+TEST_CASE("the swap with the tower's longest way is chosen; a job without swaps has none") {
+    const SwapTimeline far = timeline_of({{0}, {1}, {2}, {0}}, {"semi-flex", "rigid-flex", "third"});
+    CHECK(far.from_slot == 3);
+    CHECK(far.to_slot == 1);
+    CHECK(timeline_of({{0}, {0}}, {"semi-flex"}).stretches.empty());
+}
