@@ -59,13 +59,13 @@ public:
         return {order_.data() + begin, (end < order_.size() ? end : order_.size()) - begin};
     }
 
-    /// Calls visit(l) for each leaf whose box overlaps `box`, in ascending order, from leaf `first` on.
+    /// Calls visit(l, its box) for each leaf whose box overlaps `box`, in ascending order, from leaf `first` on.
     template <class Visit>
     void visit_leaves(const Fit& fit, const Bounds& box, std::size_t first, Visit&& visit) const {
         for (std::size_t n = 0; n < nodes_.size();) {
             const Node& node = nodes_[n];
             const bool enter = node.end_leaf > first && fit.nodes[n].overlaps(box);
-            if (enter && node.next == n + 1) visit(node.end_leaf - 1);
+            if (enter && node.next == n + 1) visit(node.end_leaf - 1, fit.nodes[n]);
             n = enter ? n + 1 : node.next;
         }
     }
@@ -80,12 +80,14 @@ public:
         const Bounds* boxes = fit.items.data() + l * leaf_size;
         Bounds all;
         for (std::size_t i = 0; i < mine.size(); ++i) all.add(boxes[i]);
-        other.visit_leaves(other_fit, all, same ? l : 0, [&](std::size_t m) {
+        other.visit_leaves(other_fit, all, same ? l : 0, [&](std::size_t m, const Bounds& around) {
             const std::span<const int> theirs = other.leaf(m);
             const Bounds* other_boxes = other_fit.items.data() + m * leaf_size;
-            for (std::size_t i = 0; i < mine.size(); ++i)
+            for (std::size_t i = 0; i < mine.size(); ++i) {
+                if (!boxes[i].overlaps(around)) continue;
                 for (std::size_t j = same && l == m ? i + 1 : 0; j < theirs.size(); ++j)
                     if (boxes[i].overlaps(other_boxes[j])) visit(mine[i], theirs[j]);
+            }
         });
     }
 
