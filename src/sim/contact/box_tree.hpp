@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -46,9 +47,14 @@ public:
     /// Halves the items along the longest side of their centres' box until eight are left.
     explicit BoxTree(std::span<const Bounds> items);
 
-    /// The boxes of one state; items are in the order of the tree.
+    /// The items' boxes of one leaf side by side, for vector instructions; rounded outwards, the unused ones empty.
+    struct Leaf {
+        std::array<std::array<float, leaf_size>, 3> low, high;
+    };
+    /// The boxes of one state.
     struct Fit {
-        std::vector<Bounds> items, nodes;
+        std::vector<Bounds> nodes;
+        std::vector<Leaf> leaves;
     };
     /// `items` in their own order, as many as the tree was made of.
     [[nodiscard]] Fit fit(std::span<const Bounds> items) const;
@@ -70,22 +76,21 @@ public:
         }
     }
 
-    /// Calls visit(i, j) for the overlapping items i of leaf `l` of this tree and j of `other`, whose order is fixed.
-    /// A tree against itself gives each pair once.
+    /// Calls visit(i, j) for the items i of leaf `l` of this tree and j of `other` that overlap to single precision;
+    /// their order is fixed. A tree against itself gives each pair once.
     template <class Visit>
     void visit_overlaps(const Fit& fit, std::size_t l, const BoxTree& other, const Fit& other_fit,
                         Visit&& visit) const {
         const bool same = this == &other;
         const std::span<const int> mine = leaf(l);
-        const Bounds* boxes = fit.items.data() + l * leaf_size;
-        Bounds all;
-        for (std::size_t i = 0; i < mine.size(); ++i) all.add(boxes[i]);
-        other.visit_leaves(other_fit, all, same ? l : 0, [&](std::size_t m) {
+        const Leaf& boxes = fit.leaves[l];
+        other.visit_leaves(other_fit, fit.nodes[node_of_leaf_[l]], same ? l : 0, [&](std::size_t m) {
             const std::span<const int> theirs = other.leaf(m);
-            const Bounds* other_boxes = other_fit.items.data() + m * leaf_size;
-            for (std::size_t i = 0; i < mine.size(); ++i)
-                for (std::size_t j = same && l == m ? i + 1 : 0; j < theirs.size(); ++j)
-                    if (boxes[i].overlaps(other_boxes[j])) visit(mine[i], theirs[j]);
+            for (std::size_t i = 0; i < mine.size(); ++i) {
+                unsigned hits = overlaps(boxes, i, other_fit.leaves[m]);
+                if (same && l == m) hits &= ~0u << (i + 1);
+                for (; hits != 0; hits &= hits - 1) visit(mine[i], theirs[std::countr_zero(hits)]);
+            }
         });
     }
 
@@ -94,10 +99,22 @@ private:
     struct Node {
         std::size_t next, end_leaf;
     };
+    /// Bit j: item i of `a` overlaps item j of `b`.
+    static unsigned overlaps(const Leaf& a, std::size_t i, const Leaf& b) {
+        std::array<unsigned, leaf_size> hit;
+        for (std::size_t j = 0; j < leaf_size; ++j)
+            hit[j] = unsigned(a.low[0][i] <= b.high[0][j]) & unsigned(b.low[0][j] <= a.high[0][i]) &
+                     unsigned(a.low[1][i] <= b.high[1][j]) & unsigned(b.low[1][j] <= a.high[1][i]) &
+                     unsigned(a.low[2][i] <= b.high[2][j]) & unsigned(b.low[2][j] <= a.high[2][i]);
+        unsigned bits = 0;
+        for (std::size_t j = 0; j < leaf_size; ++j) bits |= hit[j] << j;
+        return bits;
+    }
     std::size_t split(std::span<const Vec3> centres, std::size_t begin, std::size_t end);
 
     std::vector<int> order_;
     std::vector<Node> nodes_;
+    std::vector<std::size_t> node_of_leaf_;
 };
 
 }  // namespace pliant::sim::contact

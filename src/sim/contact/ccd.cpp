@@ -29,6 +29,8 @@ double largest_step(Features features, const Stencil& x, const Stencil& dx, doub
     for (Vec3& v : p) v -= mean;
     const double speed = closing_speed(features, p);
     if (speed == 0) return limit;
+    // Most pairs are far apart for their motion.
+    if (0.9 * (1 - keep) * distance_bound(features, x) >= speed * limit) return limit;
     const double start = distance(features, x), gap = keep * start;
     if (!(start > 0)) return 0;
 

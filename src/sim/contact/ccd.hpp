@@ -5,12 +5,6 @@
 
 namespace pliant::sim::contact {
 
-enum class Features { point_triangle, edge_edge };
-
-[[nodiscard]] inline Nearest nearest(Features features, const Stencil& x) {
-    return features == Features::point_triangle ? nearest_point_triangle(x) : nearest_edges(x);
-}
-
 /// Additive CCD (Li, Kaufman and Jiang 2021, "Codimensional Incremental Potential Contact", algorithm 1): a step t in
 /// [0, limit] up to which the distance of x + t dx stays at or above `keep` (0 < keep < 1) of that of x. It is `limit`
 /// if nothing hinders, else where the distance has fallen to nearly `keep` of its value. 0 if x already touches.

@@ -83,6 +83,9 @@ public:
         [[nodiscard]] Features features() const {
             return kind == Kind::edge_edge ? Features::edge_edge : Features::point_triangle;
         }
+        [[nodiscard]] double distance_bound(std::span<const double> x) const {
+            return contact::distance_bound(features(), stencil_at(std::span(nodes).first<4>(), x));
+        }
         [[nodiscard]] double squared_distance(std::span<const double> x) const {
             const Stencil at = stencil_at(std::span(nodes).first<4>(), x);
             return contact::squared_distance(nearest(features(), at), at);
@@ -165,6 +168,7 @@ Pairs Contact::find(std::span<const double> x) const {
     const double most = settings_.distance_m;
     const Search search(*this, x, {}, most, Search::What::pairs, settings_.self);
     const auto consider = [&](const Search::Candidate& c, Pairs& found) {
+        if (c.distance_bound(x) >= most) return;
         const double squared = c.squared_distance(x);
         if (squared >= most * most) return;
         const double apart = std::sqrt(c.squared_distance(rest_)), reach = std::min(most, 0.5 * apart);

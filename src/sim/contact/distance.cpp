@@ -90,6 +90,19 @@ Nearest nearest_edges(const Stencil& x) {
     return nearer(nearer(a, b, x), nearer(c, d, x), x);
 }
 
+double distance_bound(Features features, const Stencil& x) {
+    const bool edges = features == Features::edge_edge;
+    const Vec3 centre = edges ? 0.5 * (x[0] + x[1]) : x[0];
+    const Vec3 other = edges ? 0.5 * (x[2] + x[3]) : (1.0 / 3) * (x[1] + x[2] + x[3]);
+    const Vec3 line = other - centre;
+    const double size = norm(line);
+    if (size == 0) return 0;
+    const double first = edges ? std::max(dot(line, x[0]), dot(line, x[1])) : dot(line, x[0]);
+    const double last = std::min(dot(line, x[2]), dot(line, x[3]));
+    const double second = edges ? last : std::min(last, dot(line, x[1]));
+    return std::max(0.0, second - first) / size;
+}
+
 double squared_distance(const Nearest& n, const Stencil& x) {
     return squared_norm(separation(n, x));
 }

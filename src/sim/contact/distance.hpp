@@ -34,6 +34,16 @@ struct Nearest {
 /// Where the edges are parallel (sine below 1e-8) the nearest pair that has an end of one of them is taken.
 [[nodiscard]] Nearest nearest_edges(const Stencil& x);
 
+enum class Features { point_triangle, edge_edge };
+
+[[nodiscard]] inline Nearest nearest(Features features, const Stencil& x) {
+    return features == Features::point_triangle ? nearest_point_triangle(x) : nearest_edges(x);
+}
+
+/// A distance, m, that the features are not nearer than, several times quicker than the distance itself: the gap seen
+/// along the line between their centres; 0 where none is seen.
+[[nodiscard]] double distance_bound(Features features, const Stencil& x);
+
 /// The vector between the nearest points, from the second feature to the first, metres.
 [[nodiscard]] inline Vec3 separation(const Nearest& n, const Stencil& x) {
     return n.weights[0] * x[0] + n.weights[1] * x[1] + n.weights[2] * x[2] + n.weights[3] * x[3];

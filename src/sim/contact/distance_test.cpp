@@ -110,7 +110,16 @@ TEST_CASE("no sampled point of the features is nearer, and one is nearly as near
         const double ee = std::sqrt(squared_distance(nearest_edges(x), x)), ee_net = sampled_edges(x);
         CHECK(ee <= ee_net + 1e-14);
         CHECK(ee > ee_net - 0.02);
+        CHECK(distance_bound(Features::point_triangle, x) <= pt + 1e-14);
+        CHECK(distance_bound(Features::edge_edge, x) <= ee + 1e-14);
     }
+}
+
+TEST_CASE("the quick bound is the distance itself where features face each other") {
+    const Stencil pt{{{0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}},
+        ee{{{-1, 0, 0}, {1, 0, 0}, {0, -2, 3}, {0, 2, 3}}};
+    CHECK(distance_bound(Features::point_triangle, pt) == doctest::Approx(1));
+    CHECK(distance_bound(Features::edge_edge, ee) == doctest::Approx(3));
 }
 
 TEST_CASE("nearly parallel edges that cross keep their true distance") {

@@ -1,0 +1,424 @@
+#include "sim/contact/contact.hpp"
+
+#include <doctest/doctest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "sim/contact/test_bodies.hpp"
+#include "sim/contact/test_derivatives.hpp"
+
+using namespace pliant;
+using namespace pliant::sim::contact;
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+Vector vector_of(const std::vector<double>& x) {
+    return Eigen::Map<const Vector>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+std::span<const double> span(const Vector& x) {
+    return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+/// Two boxes of 1 cm, one above the other with a gap of 2 mm, shifted against each other so that all kinds of pairs
+/// occur.
+SpringBody two_boxes(int cells) {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {cells, cells, cells}, 0.1);
+    body.add(spring_box({0.0013, 0.0021, 0.012}, {0.008, 0.0085, 0.01}, {cells, cells + 1, cells}, 0.15));
+    return body;
+}
+
+Contact contact_of(const SpringBody& body, const Settings& settings, std::vector<Obstacle> obstacles = {}) {
+    auto contact = Contact::create(make_surface(body.triangles), std::move(obstacles), settings, body.rest);
+    REQUIRE_MESSAGE(contact.has_value(), (contact ? "" : contact.error().message));
+    return *contact;
+}
+
+constexpr Settings usual{.distance_m = 1e-3, .stiffness_Pa = 1e4, .friction = 0, .slip_m = 1e-5, .self = true};
+
+/// A state in which the upper box has come down by `drop` and every node is a little off.
+Vector approached(const Contact& contact, std::size_t lower_nodes, double drop, double noise, unsigned seed) {
+    Vector x = vector_of(contact.rest());
+    std::mt19937 random(seed);
+    for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+        const Vec3 shift = noise * random_vector(random);
+        x.segment<3>(3 * i) += Eigen::Vector3d(shift.x, shift.y, shift.z);
+        if (i >= static_cast<Eigen::Index>(lower_nodes)) x[3 * i + 2] -= drop;
+    }
+    return x;
+}
+
+/// Solves for where the line through a and b meets the triangle's plane: another way than the library's.
+bool crosses(const Vec3& a, const Vec3& b, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
+    const auto e = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+    Eigen::Matrix3d M;
+    M << e(a - b), e(t1 - t0), e(t2 - t0);
+    if (std::abs(M.determinant()) < 1e-30) return false;
+    const Eigen::Vector3d s = M.inverse() * e(a - t0);
+    return s[0] > 0 && s[0] < 1 && s[1] > 0 && s[2] > 0 && s[1] + s[2] < 1;
+}
+
+int brute_force_crossings(const Surface& surface, std::span<const double> x) {
+    int count = 0;
+    for (const auto& e : surface.edges)
+        for (const auto& t : surface.triangles) {
+            if (std::find(t.begin(), t.end(), e[0]) != t.end() || std::find(t.begin(), t.end(), e[1]) != t.end())
+                continue;
+            count += crosses(node_at(x, e[0]), node_at(x, e[1]), node_at(x, t[0]), node_at(x, t[1]), node_at(x, t[2]));
+        }
+    return count;
+}
+
+using Key = std::tuple<bool, int, int, int, int>;
+
+Key key_of(bool edges, std::array<int, 4> n) {
+    if (edges && n[0] > n[2]) n = {n[2], n[3], n[0], n[1]};
+    return {edges, n[0], n[1], n[2], n[3]};
+}
+
+std::vector<Key> brute_force_pairs(const Surface& s, std::span<const double> rest, std::span<const double> x,
+                                   double distance) {
+    std::vector<Key> found;
+    const auto offer = [&](Features features, const std::array<int, 4>& n) {
+        const auto apart = [&](std::span<const double> at) {
+            const Stencil p{node_at(at, n[0]), node_at(at, n[1]), node_at(at, n[2]), node_at(at, n[3])};
+            return std::sqrt(squared_distance(nearest(features, p), p));
+        };
+        if (apart(x) < std::min(distance, 0.5 * apart(rest)))
+            found.push_back(key_of(features == Features::edge_edge, n));
+    };
+    for (const int p : s.points)
+        for (const auto& t : s.triangles)
+            if (std::find(t.begin(), t.end(), p) == t.end()) offer(Features::point_triangle, {p, t[0], t[1], t[2]});
+    for (std::size_t a = 0; a < s.edges.size(); ++a)
+        for (std::size_t b = a + 1; b < s.edges.size(); ++b) {
+            const auto &e = s.edges[a], &g = s.edges[b];
+            if (e[0] != g[0] && e[0] != g[1] && e[1] != g[0] && e[1] != g[1])
+                offer(Features::edge_edge, {e[0], e[1], g[0], g[1]});
+        }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("at rest there is no contact, however large the distance, nor after a rigid motion") {
+    const SpringBody body = two_boxes(4);
+    Settings far = usual;
+    far.distance_m = 0.01;
+    const Contact contact = contact_of(body, far);
+    CHECK(contact.find(contact.rest()).empty());
+    std::mt19937 random(2);
+    const Motion motion = random_motion(random);
+    std::vector<double> x;
+    for (int i = 0; i < contact.node_count(); ++i) {
+        const Vec3 p = motion(node_at(contact.rest(), i));
+        x.insert(x.end(), {p.x, p.y, p.z});
+    }
+    CHECK(contact.find(x).empty());
+    CHECK(contact.energy({}, x) == 0);
+    CHECK(std::isinf(contact.smallest_distance({}, x)));
+}
+
+TEST_CASE("the pairs are those that looking at all features finds") {
+    const SpringBody body = two_boxes(4);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    for (const double drop : {1.2e-3, 1.6e-3, 1.9e-3}) {
+        const Vector x = approached(contact, 125, drop, 5e-5, 4);
+        std::vector<Key> found;
+        for (const Pair& pair : contact.find(span(x)))
+            found.push_back(key_of(pair.kind == PairKind::edge_edge, pair.nodes));
+        std::sort(found.begin(), found.end());
+        CHECK(found.size() > 50);
+        CHECK(found == brute_force_pairs(surface, contact.rest(), span(x), usual.distance_m));
+    }
+}
+
+TEST_CASE("gradient and Hessian of the whole potential by finite differences") {
+    const SpringBody body = two_boxes(2);
+    const Contact contact = contact_of(body, usual);
+    const Vector x = approached(contact, 27, 1.7e-3, 5e-5, 9);
+    const auto energy = [&](const Vector& y) { return contact.energy(contact.find(span(y)), span(y)); };
+    const auto gradient = [&](const Vector& y) {
+        Vector g = Vector::Zero(y.size());
+        contact.add_gradient(contact.find(span(y)), span(y), {g.data(), static_cast<std::size_t>(g.size())});
+        return g;
+    };
+    const Vector g = gradient(x);
+    REQUIRE(g.norm() > 0);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(x.size(), x.size());
+    contact.visit_hessian(contact.find(span(x)), span(x), false,
+                          [&](int i, int j, const linalg::Matrix3& b) { H.block<3, 3>(3 * i, 3 * j) += b; });
+    const double h = 1e-9;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+        Vector forth = x, back = x;
+        forth[k] += h;
+        back[k] -= h;
+        CHECK(std::abs(g[k] - (energy(forth) - energy(back)) / (2 * h)) < 1e-5 * g.norm());
+        CHECK((H.col(k) - (gradient(forth) - gradient(back)) / (2 * h)).norm() < 1e-4 * H.norm());
+    }
+    CHECK((H - H.transpose()).norm() < 1e-12 * H.norm());
+}
+
+TEST_CASE("no step of any size lets surfaces pass through each other") {
+    const SpringBody body = two_boxes(3);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    std::mt19937 random(8);
+    int hindered = 0;
+    for (int k = 0; k < 40; ++k) {
+        const Vector x = approached(contact, 64, 1.5e-3, 1e-5, 20 + k);
+        Vector dx(x.size());
+        for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+            const Vec3 v = 0.003 * random_vector(random) + (i < 64 ? Vec3{} : Vec3{0, 0, -0.002 * (k % 4)});
+            dx.segment<3>(3 * i) << v.x, v.y, v.z;
+        }
+        const double step = contact.largest_step(span(x), span(dx));
+        CHECK(step > 0);
+        for (int s = 1; s <= 5; ++s) REQUIRE(brute_force_crossings(surface, span(Vector(x + s * step / 5 * dx))) == 0);
+        const Vector full = x + dx;
+        if (brute_force_crossings(surface, span(full)) == 0) continue;
+        ++hindered;
+        CHECK(step < 1);
+        CHECK(contact.crossing(span(full)).has_value());
+    }
+    CHECK(hindered > 10);
+}
+
+TEST_CASE("a cube that is let down on a plane rests above it and presses with its weight") {
+    const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    const HalfSpace floor{{0, 0, 0}, {0, 0, 2}};
+    mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}, {-0.02, 0.04, 0}},
+                        {{0, 1, 2}, {0, 2, 3}}};
+    for (const Obstacle& obstacle : {Obstacle{"floor", floor, 0.3}, Obstacle{"table", table, 0.3}}) {
+        CAPTURE(obstacle.name);
+        const Contact contact = contact_of(body, usual, {obstacle});
+        const std::size_t n = body.node_count();
+        const double weight = 0.027;
+        Statics statics{&body,
+                        50,
+                        &contact,
+                        std::vector<double>(3 * n),
+                        std::vector<double>(n),
+                        body.rest,
+                        std::vector<bool>(static_cast<std::size_t>(contact.node_count()))};
+        for (std::size_t i = 0; i < n; ++i) statics.load[3 * i + 2] = -weight / static_cast<double>(n);
+        for (std::size_t i = n; i < statics.held.size(); ++i) statics.held[i] = true;
+        Vector x = vector_of(contact.rest());
+        // Without friction nothing fixes its place on the table, so only nearly to rest; then friction holds it.
+        REQUIRE(statics.minimise(x, nullptr, 2e-6) > 0);
+        const Vector landed = x;
+        const Friction friction = contact.freeze(contact.find(span(x)), span(x), span(landed));
+        REQUIRE(statics.minimise(x, &friction, 1e-9) > 0);
+
+        const Pairs pairs = contact.find(span(x));
+        const Forces forces = contact.forces(pairs, span(x), &friction);
+        CHECK(forces.smallest_distance_m > 0);
+        CHECK(forces.smallest_distance_m < usual.distance_m);
+        CHECK(norm(forces.on_robot_N[0] - Vec3{0, 0, weight}) < 1e-6 * weight);
+        CHECK(forces.self_N == 0);
+        CHECK(x.minCoeff() < 0.001);
+        // Mean pressure under the cube: weight over its 1 cm² base.
+        double carried = 0;
+        const SurfaceAreas areas = surface_areas(make_surface(body.triangles), body.rest);
+        for (std::size_t i = 0; i < areas.points.size(); ++i)
+            carried += forces.pressure_Pa[make_surface(body.triangles).points[i]] * areas.points[i];
+        CHECK(carried == doctest::Approx(weight).epsilon(0.01));
+    }
+}
+
+TEST_CASE("two boxes that are squashed against each other never intersect") {
+    const SpringBody body = two_boxes(3);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    const std::size_t n = body.node_count();
+    Statics statics{
+        &body, 50, &contact, std::vector<double>(3 * n), std::vector<double>(n), body.rest, std::vector<bool>(n)};
+    std::vector<bool> pushed(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double z = body.rest[3 * i + 2];
+        pushed[i] = z > 0.0219;
+        statics.held[i] = z < 1e-4 || pushed[i];
+    }
+    Vector x = vector_of(contact.rest());
+    const auto look = [&](const Vector& y) { REQUIRE(brute_force_crossings(surface, span(y)) == 0); };
+    double moved = 0;
+    for (int k = 0; k < 200 && moved < 0.006 - 1e-12; ++k) {
+        Vector dx = Vector::Zero(x.size());
+        const double push = std::min(5e-4, 0.006 - moved);
+        for (std::size_t i = 0; i < n; ++i)
+            if (pushed[i]) dx[3 * static_cast<Eigen::Index>(i) + 2] = -push;
+        const double step = contact.largest_step(span(x), span(dx));
+        x += step * dx;
+        moved += step * push;
+        REQUIRE(statics.minimise(x, nullptr, 1e-7, look) >= 0);
+    }
+    CHECK(moved == doctest::Approx(0.006));
+    const Forces forces = contact.forces(contact.find(span(x)), span(x), nullptr);
+    CHECK(forces.smallest_distance_m > 0);
+    CHECK(forces.self_N > 0.05);
+    CHECK_FALSE(contact.crossing(span(x)).has_value());
+}
+
+namespace {
+
+/// How a block on an incline of 30 degrees moves down it: the mean acceleration and the last step's slip.
+struct Slide {
+    double acceleration, last_step_m;
+};
+
+Slide slide_down(double friction) {
+    const double g = 9.81, angle = M_PI / 6, dt = 0.01, mass = 0.001;
+    const SpringBody body = spring_box({0, 0, 2e-4}, {0.01, 0.01, 0.005}, {2, 2, 1});
+    Settings settings = usual;
+    settings.slip_m = 1e-6;
+    const Contact contact = contact_of(body, settings, {{"incline", HalfSpace{{0, 0, 0}, {0, 0, 1}}, friction}});
+    const std::size_t n = body.node_count();
+    const double node_mass = mass / static_cast<double>(n);
+    Statics statics{&body,
+                    500,
+                    &contact,
+                    std::vector<double>(3 * n),
+                    std::vector<double>(n, node_mass / (dt * dt)),
+                    body.rest,
+                    std::vector<bool>(n + 1)};
+    statics.held[n] = true;
+    for (std::size_t i = 0; i < n; ++i) {
+        statics.load[3 * i] = node_mass * g * std::sin(angle);
+        statics.load[3 * i + 2] = -node_mass * g * std::cos(angle);
+    }
+    Vector x = vector_of(contact.rest()), before = x;
+    std::vector<double> place;
+    for (int step = 0; step < 40; ++step) {
+        // Backward Euler: inertia about where the block would be without forces.
+        const Vector predicted = 2 * x - before, start = x;
+        statics.predicted.assign(predicted.data(), predicted.data() + 3 * n);
+        for (int lag = 0; lag < 4; ++lag) {
+            const Friction held = contact.freeze(contact.find(span(x)), span(x), span(start));
+            REQUIRE(statics.minimise(x, &held, 1e-9) >= 0);
+        }
+        before = start;
+        double mean = 0;
+        for (std::size_t i = 0; i < n; ++i) mean += x[3 * static_cast<Eigen::Index>(i)] / static_cast<double>(n);
+        place.push_back(mean);
+    }
+    const auto speed = [&](std::size_t k) { return (place[k] - place[k - 1]) / dt; };
+    return {(speed(39) - speed(19)) / (20 * dt), place[39] - place[38]};
+}
+
+}  // namespace
+
+TEST_CASE("a block on an incline sticks where friction is enough, and slides as Coulomb says where it is not") {
+    const double steep = std::tan(M_PI / 6);
+    const Slide stuck = slide_down(1.2 * steep);
+    CHECK(std::abs(stuck.last_step_m) < 1e-6);
+    CHECK(std::abs(stuck.acceleration) < 1e-3);
+    for (const double share : {0.0, 0.4, 0.8}) {
+        const Slide sliding = slide_down(share * steep);
+        CHECK(sliding.acceleration == doctest::Approx(9.81 * 0.5 * (1 - share)).epsilon(0.01));
+    }
+}
+
+TEST_CASE("forces on the robot from an obstacle that drags along it point along the motion") {
+    const SpringBody body = spring_box({0, 0, 5e-4}, {0.01, 0.01, 0.005}, {2, 2, 1});
+    mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}}, {{0, 1, 2}}};
+    const Contact contact = contact_of(body, usual, {{"table", table, 0.5}});
+    CHECK(contact.first_node(0) == contact.robot_node_count());
+    CHECK(contact.first_node(1) == contact.node_count());
+    Vector x = vector_of(contact.rest());
+    for (int i = contact.first_node(0); i < contact.first_node(1); ++i) x[3 * i + 2] += 4e-4;
+    const Vector start = x;
+    for (int i = contact.first_node(0); i < contact.first_node(1); ++i) x[3 * i] += 1e-3;
+    const Pairs pairs = contact.find(span(x));
+    const Friction friction = contact.freeze(pairs, span(x), span(start));
+    const Vec3 pressed = contact.forces(pairs, span(x), nullptr).on_robot_N[0];
+    const Vec3 all = contact.forces(pairs, span(x), &friction).on_robot_N[0];
+    CHECK(pressed.z > 0);
+    CHECK(std::abs(pressed.x) < 1e-9 * pressed.z);
+    CHECK(all.x == doctest::Approx(0.5 * pressed.z));
+    CHECK(all.z == doctest::Approx(pressed.z));
+}
+
+namespace {
+
+struct Outcome {
+    std::vector<std::array<int, 4>> nodes;
+    double energy, step;
+    std::vector<double> numbers;
+    bool operator==(const Outcome&) const = default;
+};
+
+}  // namespace
+
+TEST_CASE("the same bits on any number of threads") {
+    const SpringBody body = two_boxes(8);
+    const Contact contact = contact_of(body, usual);
+    const Vector x = approached(contact, 729, 1.6e-3, 3e-5, 5);
+    Vector dx = Vector::Zero(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) dx[i] = i < 3 * 729 ? 0 : -1e-3 * (1 + std::sin(double(i)));
+    const auto outcome = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        const Pairs pairs = contact.find(span(x));
+        Outcome o{{}, contact.energy(pairs, span(x)), contact.largest_step(span(x), span(dx)), {}};
+        for (const Pair& pair : pairs) o.nodes.push_back(pair.nodes);
+        o.numbers.resize(static_cast<std::size_t>(x.size()));
+        contact.add_gradient(pairs, span(x), o.numbers);
+        contact.visit_hessian(pairs, span(x), true, [&](int, int, const linalg::Matrix3& b) {
+            o.numbers.insert(o.numbers.end(), b.data(), b.data() + 9);
+        });
+        return o;
+    };
+    const Outcome one = outcome(1);
+    CHECK(one.nodes.size() > 300);
+    CHECK(one.step < 1);
+    for (const std::size_t threads : {2u, 4u, 7u})
+        for (int repeat = 0; repeat < 3; ++repeat) CHECK(outcome(threads) == one);
+}
+
+TEST_CASE("bodies that touch at rest are bonded: no force, no hindrance") {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    body.add(spring_box({0, 0, 0.01}, {0.01, 0.01, 0.01}, {3, 3, 3}));
+    const Contact contact = contact_of(body, usual);
+    CHECK(contact.find(contact.rest()).empty());
+    const std::vector<double> still(contact.rest().size(), 0.0);
+    CHECK(contact.largest_step(contact.rest(), still) == 1);
+}
+
+TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
+    const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {1, 1, 1});
+    const Surface surface = make_surface(body.triangles);
+    const auto message = [&](const Settings& settings, std::vector<Obstacle> obstacles) -> std::string {
+        const auto contact = Contact::create(surface, std::move(obstacles), settings, body.rest);
+        return contact ? "accepted" : contact.error().message;
+    };
+    CHECK(message(usual, {}) == "accepted");
+    Settings bad = usual;
+    bad.distance_m = 0;
+    CHECK(message(bad, {}).find("distance") != std::string::npos);
+    bad = usual;
+    bad.stiffness_Pa = NAN;
+    CHECK(message(bad, {}).find("stiffness") != std::string::npos);
+    bad = usual;
+    bad.slip_m = -1;
+    CHECK(message(bad, {}).find("slip") != std::string::npos);
+    const auto refused = [&](const Obstacle& obstacle) {
+        const std::string text = message(usual, {obstacle});
+        CAPTURE(text);
+        CHECK(text.starts_with("obstacle \"it\""));
+    };
+    refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 0}}});
+    refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 1}}});
+    refused({"it", HalfSpace{{0, 0, 0.005}, {0, 0, 1}}});
+    refused({"it", HalfSpace{{0, 0, -1}, {0, 0, 1}}, -0.5});
+    refused({"it", mesh::TriMesh{}});
+    refused({"it", mesh::TriMesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 3}}}});
+    refused({"it", mesh::TriMesh{{{0.005, -1, 0.02}, {0.005, 1, 0.02}, {0.005, 0, -1}}, {{0, 1, 2}}}});
+    refused({"it", mesh::TriMesh{{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}}, {{0, 1, 2}}}});
+}
