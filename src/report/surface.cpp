@@ -24,7 +24,7 @@ Vec3 unit(const Vec3& v) {
 
 /// The mesh without its voids, and for each of its tets the index in the whole mesh.
 std::pair<mesh::TetMesh, std::vector<int>> solid_part(const mesh::TetMesh& mesh, std::span<const int> region_material) {
-    mesh::TetMesh solid{mesh.order, mesh.points, {}, {}, mesh.region_names};
+    mesh::TetMesh solid{mesh.order, mesh.points, {}, {}, mesh.region_names, {}};
     std::vector<int> origin;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (region_material[static_cast<std::size_t>(mesh.region[t])] < 0) continue;

@@ -65,6 +65,7 @@ public:
         description_.ambient_pressure_Pa = robot_.ambient_pressure_Pa;
         add_materials();
         for (const FixedSpec& fixed : robot_.fixed) add_support(fixed);
+        for (const PlateSpec& plate : robot_.plates) add_plate(plate);
         for (const LoadSpec& load : robot_.loads) add_load(load);
         for (const CableSpec& cable : robot_.cables) add_cable(cable);
         for (const ChamberSpec& chamber : robot_.chambers) add_chamber(chamber);
@@ -110,7 +111,7 @@ private:
     /// The tets that carry material, on the nodes of the description's mesh.
     mesh::TetMesh tets_of_bodies() const {
         const mesh::TetMesh& all = description_.mesh;
-        mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names};
+        mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};
         for (std::size_t t = 0; t < all.tet_count(); ++t) {
             if (all.region[t] >= static_cast<int>(robot_.bodies.size())) continue;
             bodies.region.push_back(all.region[t]);
@@ -141,7 +142,8 @@ private:
         return {robot_.unit_m * selector.low, robot_.unit_m * selector.high};
     }
 
-    std::vector<int> select(const FixedSpec& fixed) {
+    /// The nodes that a selector catches; `kind`, `name` and `line` are for messages.
+    std::vector<int> select(const Selector& selector, std::string_view kind, const std::string& name, int line) {
         const auto& points = description_.mesh.points;
         std::vector<int> nodes;
         const auto collect = [&](const auto& inside) {
@@ -149,35 +151,35 @@ private:
                 if (inside(points[n])) nodes.push_back(static_cast<int>(n));
             }
         };
-        if (const auto* box = std::get_if<BoxSelector>(&fixed.selector)) {
+        if (const auto* box = std::get_if<BoxSelector>(&selector)) {
             collect([&, b = box_of(*box)](const Vec3& p) { return b.contains(p, box_margin_); });
-        } else if (const auto* plane = std::get_if<PlaneSelector>(&fixed.selector)) {
+        } else if (const auto* plane = std::get_if<PlaneSelector>(&selector)) {
             const Vec3 normal = plane->normal / norm(plane->normal);
             collect(
                 [&](const Vec3& p) { return std::fabs(dot(normal, p - robot_.unit_m * plane->point)) < tolerance_; });
-        } else if (const auto* sphere = std::get_if<SphereSelector>(&fixed.selector)) {
+        } else if (const auto* sphere = std::get_if<SphereSelector>(&selector)) {
             collect([&](const Vec3& p) {
                 return norm(p - robot_.unit_m * sphere->center) <= robot_.unit_m * sphere->radius + box_margin_;
             });
-        } else if (const auto* surface = std::get_if<SurfaceSelector>(&fixed.selector)) {
-            nodes = select_on_surface(fixed, *surface);
+        } else if (const auto* surface = std::get_if<SurfaceSelector>(&selector)) {
+            nodes = select_on_surface(*surface, kind, name, line);
         } else {
-            nodes = std::get<NodeSelector>(fixed.selector).nodes;
+            nodes = std::get<NodeSelector>(selector).nodes;
             for (const int node : nodes) {
                 if (node < static_cast<int>(points.size())) continue;
-                problem(fixed.line, "fixed", fixed.name,
-                        fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
+                problem(line, kind, name, fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
                 return {};
             }
         }
         return nodes;
     }
 
-    std::vector<int> select_on_surface(const FixedSpec& fixed, const SurfaceSelector& selector) {
+    std::vector<int> select_on_surface(const SurfaceSelector& selector, std::string_view kind, const std::string& name,
+                                       int line) {
         const Result<mesh::SurfaceFile> file = mesh::read_surface(selector.path);
         std::vector<int> nodes;
         if (!file) {
-            problem(fixed.line, "fixed", fixed.name, file.error().message);
+            problem(line, kind, name, file.error().message);
             return nodes;
         }
         const mesh::TriMesh surface = mesh::scaled(file->mesh, robot_.unit_m);
@@ -196,11 +198,19 @@ private:
 
     void add_support(const FixedSpec& fixed) {
         const std::size_t before = problems_.size();
-        std::vector<int> nodes = select(fixed);
+        std::vector<int> nodes = select(fixed.selector, "fixed", fixed.name, fixed.line);
         if (nodes.empty() && problems_.size() == before) {
             problem(fixed.line, "fixed", fixed.name, "catches no node of the mesh; " + show_bounds());
         }
         description_.supports.push_back({fixed.name, std::move(nodes), robot_.unit_m * fixed.move, fixed.share});
+    }
+
+    void add_plate(const PlateSpec& plate) {
+        const std::size_t before = problems_.size();
+        std::vector<int> nodes = select(plate.selector, "plate", plate.name, plate.line);
+        if (nodes.empty() && problems_.size() == before)
+            problem(plate.line, "plate", plate.name, "catches no node of the mesh; " + show_bounds());
+        if (!nodes.empty()) description_.plates.push_back({plate.name, std::move(nodes)});
     }
 
     void add_load(const LoadSpec& load) {

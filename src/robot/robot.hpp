@@ -82,6 +82,13 @@ struct FixedSpec {
     int line = 0;
 };
 
+/// Something rigid that is glued to the body where the selector catches its nodes.
+struct PlateSpec {
+    std::string name;
+    Selector selector;
+    int line = 0;
+};
+
 struct LoadSpec {
     std::string name;
     BoxSelector box;
@@ -152,6 +159,7 @@ struct Robot {
     std::vector<BodySpec> bodies;
     MeshSpec mesh;
     std::vector<FixedSpec> fixed;
+    std::vector<PlateSpec> plates;
     std::vector<LoadSpec> loads;
     std::vector<CableSpec> cables;
     std::vector<ChamberSpec> chambers;

@@ -225,6 +225,18 @@ void read_supports(Reader& root, Context& context) {
         root.problem("", "nothing is fixed; add [[fixed]] with a box that holds one end of the robot");
 }
 
+void read_plates(Reader& root, Context& context) {
+    std::set<std::string> taken;
+    for (Reader& reader : root.tables("plate")) {
+        PlateSpec plate;
+        plate.line = reader.line();
+        plate.name = read_name(reader, taken, "plates");
+        plate.selector = read_selector(reader, context);
+        reader.finish();
+        context.robot.plates.push_back(std::move(plate));
+    }
+}
+
 void read_loads(Reader& root, Context& context) {
     std::set<std::string> taken;
     for (Reader& reader : root.tables("load")) {
@@ -431,6 +443,7 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     read_mesh(root, context);
     read_bodies(root, context);
     read_supports(root, context);
+    read_plates(root, context);
     read_loads(root, context);
     read_cables(root, context);
     read_chambers(root, context);

@@ -21,6 +21,8 @@ Eigen::Vector3d vector(const Vec3& v) {
     return {v.x, v.y, v.z};
 }
 
+/// Springs of a plate beside the stiffness of an element: what bends a plate bends the body a hundred times as much.
+constexpr double plate_stiffness = 100;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -44,6 +46,7 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
     const double volume = mesh::volume(d.mesh);
+    add_plates(stiffest, volume);
     force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
     energy_rounding_ = 1e-16 * stiffest * volume;
 }
@@ -56,6 +59,12 @@ void Equilibrium::add_actuators() {
     for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
     grows_.assign(actuators_.size(), false);
     for (const Growth& growth : d.growths) grows_[static_cast<std::size_t>(growth.actuator)] = true;
+}
+
+void Equilibrium::add_plates(double stiffness_Pa, double volume_m3) {
+    const double element_m = std::cbrt(volume_m3 / static_cast<double>(model_->mesh().tet_count()));
+    for (const RigidPlate& plate : model_->description().plates)
+        plates_.emplace_back(plate.nodes, plate_stiffness * stiffness_Pa * element_m, view(std::as_const(rest_)));
 }
 
 bool Equilibrium::rim_is_held(const Wall& wall) const {
@@ -181,6 +190,10 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     if (!(e.min_J > 0)) return e;
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
     add_contact(state.x, controls, internal, e.energy_J);
+    for (const Plate& plate : plates_) {
+        e.energy_J += plate.energy(view(state.x));
+        plate.add_gradient(view(state.x), view(internal));
+    }
     if (controls.inertia) {
         e.energy_J += controls.inertia->energy(state.x);
         controls.inertia->add_gradient(state.x, internal);
@@ -232,6 +245,7 @@ Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& 
     Merit merit{elastic.min_J, 0};
     if (!(merit.min_J > 0)) return merit;
     merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_) + contact_energy(x, controls);
+    for (const Plate& plate : plates_) merit.value_J += plate.energy(view(x));
     if (controls.inertia) merit.value_J += controls.inertia->energy(x);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const Drive& drive = controls.drives[a];
@@ -346,12 +360,14 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
 std::vector<std::vector<int>> Equilibrium::cliques() const {
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
+    for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
     return cliques;
 }
 
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
                               std::span<double> values, bool project) const {
     model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
+    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);

@@ -8,6 +8,7 @@
 #include "sim/actuator.hpp"
 #include "sim/inertia.hpp"
 #include "sim/model.hpp"
+#include "sim/plate.hpp"
 
 namespace pliant::sim {
 
@@ -112,6 +113,7 @@ public:
 
 private:
     void add_actuators();
+    void add_plates(double stiffness_Pa, double volume_m3);
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
     [[nodiscard]] std::vector<material::Law> laws_at(std::span<const double> stretch) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
@@ -129,6 +131,7 @@ private:
 
     const Model* model_;
     std::vector<Actuator> actuators_;
+    std::vector<Plate> plates_;
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share
     std::vector<bool> grows_;        ///< (actuators) drives target shapes, and has no force of its own

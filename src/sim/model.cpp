@@ -86,6 +86,27 @@ Status check_chamber(const Chamber& chamber, int nodes) {
     return {};
 }
 
+/// Three nodes that span a plane, or the plate could turn about a line without noticing.
+Status check_plates(const Description& d) {
+    for (const RigidPlate& plate : d.plates) {
+        for (const int node : plate.nodes) {
+            if (node < 0 || node >= static_cast<int>(d.mesh.points.size()))
+                return input_error("plate \"{}\": node {} does not exist", plate.name, node);
+        }
+        double area = 0;
+        double reach = 0;
+        for (std::size_t k = 2; k < plate.nodes.size(); ++k) {
+            const Vec3 a = d.mesh.points[plate.nodes[1]] - d.mesh.points[plate.nodes[0]];
+            const Vec3 b = d.mesh.points[plate.nodes[k]] - d.mesh.points[plate.nodes[0]];
+            area = std::max(area, norm(cross(a, b)));
+            reach = std::max({reach, norm(a), norm(b)});
+        }
+        if (!(area > 1e-6 * reach * reach))
+            return input_error("plate \"{}\": needs at least three nodes that are not on one line", plate.name);
+    }
+    return {};
+}
+
 Status check_growths(const Description& d) {
     for (const Growth& growth : d.growths) {
         const bool driven =
@@ -191,6 +212,7 @@ Result<Model> Model::create(Description description) {
     Status status = check_mesh(description);
     if (status) status = check_loads(description, nodes);
     if (status) status = check_growths(description);
+    if (status) status = check_plates(description);
     for (std::size_t c = 0; status && c < description.cables.size(); ++c)
         status = check_cable(description.cables[c], nodes);
     for (std::size_t c = 0; status && c < description.chambers.size(); ++c)

@@ -110,6 +110,12 @@ struct Growth {
     int actuator = 0;  ///< first the cables, then the chambers
 };
 
+/// Nodes that something rigid is glued to: they keep their shape and move as one.
+struct RigidPlate {
+    std::string name;
+    std::vector<int> nodes;  ///< at least three, not on one line
+};
+
 /// A rigid thing that the robot may touch; it is at rest + share * move.
 struct Obstacle {
     contact::Obstacle body;
@@ -140,6 +146,7 @@ struct Description {
     std::vector<Cable> cables;
     std::vector<Chamber> chambers;
     std::vector<Growth> growths;
+    std::vector<RigidPlate> plates;
     std::optional<ContactRules> contact = std::nullopt;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
