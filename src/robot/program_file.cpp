@@ -89,6 +89,7 @@ sim::Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& time
     sim::Curve curve{{0}, {d.rest}};
     bool named = false;
     for (std::size_t k = 0; k < keys.size(); ++k) {
+        (void)keys[k].raw(d.name);  // so that a misspelt name is told this one
         if (!keys[k].has(d.name)) continue;
         named = true;
         const double value = read_value(keys[k], d);

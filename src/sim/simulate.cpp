@@ -92,7 +92,7 @@ public:
             if (a < d.cables.size())
                 step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
             else
-                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, -multiplier});
+                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, 0 - multiplier});  // never a minus zero
         }
         if (model_.contact() != nullptr) describe_contact(step);
         for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});

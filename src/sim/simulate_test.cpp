@@ -122,7 +122,7 @@ TEST_CASE("supports that all turn about one axis carry the bar round without str
     d.supports[0].turn = turn;
     d.supports.push_back({"far", far_end, move, ramp(0, 1), turn});
     const auto rest = d.mesh.points;
-    const Trajectory result = solve(std::move(d), {.steps = 10, .tolerance = 1e-8});
+    const Trajectory result = solve(std::move(d), {.steps = 10});
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 k = turn.axis / norm(turn.axis);
     for (const Step& step : result.steps) {
