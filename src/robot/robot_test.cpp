@@ -404,13 +404,15 @@ TEST_CASE("slips in keys are named") {
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nflexor = 0.9\n"),
                   "duration: ends before the last key");
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"0 s\"\n"), "duration: must be above zero");
-    std::string twice = key("time = \"1 s\"\nclamp = 0.9");
+    std::string twice = key("time = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nclamp = 0.9");
     const std::string name = "name = \"flexor\"";
     check_problem(twice.replace(twice.find(name), name.size(), "name = \"clamp\""),
-                  "names two things; give them different names");
+                  "program.key[1].clamp: names two things; give them different names");
     const std::string air = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"1 kPa\" }\n";
     check_problem(key("time = \"1 s\"\nair = 3") + air, "3 has no unit; write a pressure such as");
     check_problem(key("time = \"1 s\"\nair = \"3 N\"") + air, "unknown unit \"N\"");
+    const std::string sealed = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { gas_ratio = 2 }\n";
+    check_problem(key("time = \"1 s\"\nair = 0") + sealed, "0 is not possible; it must be above zero");
 }
 
 TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box") {
