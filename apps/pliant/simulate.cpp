@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,6 +24,7 @@ struct Options {
     std::string robot;
     std::string folder;
     int steps = 0;
+    std::string picture_size;
     std::vector<std::string> assignments;
     Output output;
 };
@@ -86,7 +89,24 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
     }
 }
 
+/// "800x500".
+Result<report::PictureSize> read_picture_size(const std::string& text) {
+    report::PictureSize size;
+    if (text.empty()) return size;
+    int used = 0;
+    const bool read = std::sscanf(text.c_str(), "%5dx%5d%n", &size.width_px, &size.height_px, &used) == 2 &&
+                      used == static_cast<int>(text.size());
+    if (!read || std::min(size.width_px, size.height_px) < 100 || std::max(size.width_px, size.height_px) > 10000)
+        return input_error(
+            "--picture-size: \"{}\" is not possible; write width and height, 100 to 10000 pixels, as in "
+            "800x500",
+            text);
+    return size;
+}
+
 Result<int> simulate(const Options& options) {
+    const Result<report::PictureSize> picture_size = read_picture_size(options.picture_size);
+    if (!picture_size) return tl::unexpected(picture_size.error());
     std::vector<std::string> assignments = options.assignments;
     if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
     const auto progress = terminal_progress(options.output);
@@ -100,7 +120,7 @@ Result<int> simulate(const Options& options) {
     const report::Simulation simulation = describe(*robot, *model, trajectory);
     if (!options.folder.empty()) {
         const Status written = write_folder(options.folder, "summary.json", [&](const std::filesystem::path& folder) {
-            return report::write_results(folder, simulation, *progress);
+            return report::write_results(folder, simulation, *progress, *picture_size);
         });
         if (!written) return tl::unexpected(written.error());
     }
@@ -127,6 +147,7 @@ void add_simulate(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
     command->add_option("--steps", options->steps, "number of steps, instead of the file's")
         ->check(CLI::Range(1, 100000));
+    command->add_option("--picture-size", options->picture_size, "WIDTHxHEIGHT of the pictures in pixels (1600x1000)");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

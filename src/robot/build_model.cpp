@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "mesh/surface_check.hpp"
@@ -202,7 +203,9 @@ private:
         if (nodes.empty() && problems_.size() == before) {
             problem(fixed.line, "fixed", fixed.name, "catches no node of the mesh; " + show_bounds());
         }
-        description_.supports.push_back({fixed.name, std::move(nodes), robot_.unit_m * fixed.move, fixed.share});
+        constexpr double radians = std::numbers::pi / 180;
+        const sim::Turn turn{radians * fixed.rotate_deg, fixed.rotation_axis, robot_.unit_m * fixed.rotation_center};
+        description_.supports.push_back({fixed.name, std::move(nodes), robot_.unit_m * fixed.move, fixed.share, turn});
     }
 
     void add_plate(const PlateSpec& plate) {
@@ -297,9 +300,7 @@ private:
     void check_mouth(const ChamberSpec& spec, const sim::Wall& wall) {
         std::vector<bool> held(description_.mesh.points.size(), false);
         for (const sim::Support& support : description_.supports) {
-            for (const int node : support.nodes)
-                held[static_cast<std::size_t>(node)] =
-                    support.move_m.x == 0 && support.move_m.y == 0 && support.move_m.z == 0;
+            for (const int node : support.nodes) held[static_cast<std::size_t>(node)] = !support.moves();
         }
         std::size_t loose = 0;
         for (const sim::WallFace& face : wall.faces) {
@@ -316,7 +317,7 @@ private:
         if (loose > 0)
             problem(spec.line, "chamber", spec.name,
                     fmt::format("{} faces of its wall belong to no body: the chamber is open; close it with a body, or "
-                                "let its mouth lie in a [[fixed]] without move",
+                                "let its mouth lie in a [[fixed]] without move or rotate",
                                 loose));
     }
 

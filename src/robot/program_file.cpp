@@ -68,6 +68,7 @@ double read_value(Reader& key, const Driven& d) {
     if (value < d.low || value > d.high)
         key.problem(d.name, fmt::format("{} is not possible; {}", value,
                                         d.high < 1e300 ? "a cable gets shorter: above 0, at most 1"
+                                        : d.low > 0    ? "it must be above zero"
                                                        : "it must not be below zero"));
     return value;
 }
@@ -89,6 +90,7 @@ sim::Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& time
     sim::Curve curve{{0}, {d.rest}};
     bool named = false;
     for (std::size_t k = 0; k < keys.size(); ++k) {
+        (void)keys[k].raw(d.name);  // so that a misspelt name is told this one
         if (!keys[k].has(d.name)) continue;
         named = true;
         const double value = read_value(keys[k], d);
@@ -116,9 +118,11 @@ void read_keys(Reader& program, Robot& robot) {
     if (keys.empty() && duration == 1 && !robot.program.dynamics) return;
     std::vector<Driven> list = everything_driven(robot);
     for (std::size_t i = 0; i < list.size(); ++i) {
-        for (std::size_t j = 0; j < i && !keys.empty(); ++j) {
-            if (list[i].name == list[j].name && keys.front().has(list[i].name))
-                keys.front().problem(list[i].name, "names two things; give them different names");
+        for (std::size_t j = 0; j < i; ++j) {
+            if (list[i].name != list[j].name) continue;
+            for (Reader& key : keys) {
+                if (key.has(list[i].name)) key.problem(list[i].name, "names two things; give them different names");
+            }
         }
         list[i].drive(read_curve(keys, times, list[i], robot.program.duration));
     }

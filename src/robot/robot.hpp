@@ -78,6 +78,9 @@ struct FixedSpec {
     std::string name;
     Selector selector;
     Vec3 move;  ///< length units
+    double rotate_deg = 0;
+    Vec3 rotation_axis{1, 0, 0};
+    Vec3 rotation_center;  ///< length units
     sim::Curve share = sim::ramp(0, 1);
     int line = 0;
 };

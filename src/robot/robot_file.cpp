@@ -210,6 +210,17 @@ Selector read_selector(Reader& reader, const Context& context) {
     return selector;
 }
 
+/// rotate = { angle = 90, axis = [x, y, z], center = [x, y, z] }; degrees, as in shapes.
+void read_rotation(Reader& reader, FixedSpec& fixed) {
+    if (!reader.has("rotate")) return (void)reader.raw("rotate");
+    Reader rotate = reader.table("rotate");
+    fixed.rotate_deg = rotate.number("angle");
+    fixed.rotation_axis = rotate.vector("axis");
+    if (rotate.has("axis") && norm(fixed.rotation_axis) == 0) rotate.problem("axis", "must not be zero");
+    fixed.rotation_center = rotate.vector("center", Vec3{});
+    rotate.finish();
+}
+
 void read_supports(Reader& root, Context& context) {
     std::set<std::string> taken;
     for (Reader& reader : root.tables("fixed")) {
@@ -218,6 +229,7 @@ void read_supports(Reader& root, Context& context) {
         fixed.name = read_name(reader, taken, "[[fixed]]");
         fixed.selector = read_selector(reader, context);
         fixed.move = reader.vector("move", Vec3{});
+        read_rotation(reader, fixed);
         reader.finish();
         context.robot.fixed.push_back(std::move(fixed));
     }

@@ -1,9 +1,12 @@
 #include "robot/robot.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
+#include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
 
 using namespace pliant;
@@ -196,4 +199,257 @@ TEST_CASE("a load is spread over the outer surface in its box") {
         problem(good +
                 "[[load]]\nname = \"push\"\nbox = [[50, 0, 0], [60, 10, 10]]\nforce = [\"0 N\", \"0 N\", \"0.5 N\"]\n")
             .find("no face of the outer surface") != std::string::npos);
+}
+
+namespace {
+
+/// The robot of a text that must be read and built.
+struct Built {
+    Robot robot;
+    sim::Model model;
+};
+
+Built build(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    return {std::move(*robot), std::move(*model)};
+}
+
+sim::Step last_step(const Built& built) {
+    Progress silent;
+    sim::Trajectory result = sim::run(built.model, built.robot.program, silent);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    return result.steps.back();
+}
+
+std::string chamber(const std::string& air, const std::string& target) {
+    return good + "[[chamber]]\nname = \"air\"\n" + air + "\ntarget = { " + target + " }\n";
+}
+const std::string room = "geometry = { box = [[24, 3, 3], [36, 7, 7]] }";  // 192 mm^3 inside the body "right"
+
+/// The notched bar as a mesh file with the regions "left" and "right", gone when the test ends.
+class MeshFile {
+public:
+    MeshFile() : path_(std::filesystem::temp_directory_path() / fmt::format("pliant_robot_{}.vtu", ::getpid())) {
+        const Result<Robot> robot = parse_robot(good, "bar.toml", {"mesh.order=1"});
+        REQUIRE(robot);
+        Progress silent;
+        const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+        REQUIRE(mesh);
+        REQUIRE(mesh::write_tet_mesh(path_, mesh::scaled(*mesh, 1000)));
+    }
+    MeshFile(const MeshFile&) = delete;
+    MeshFile& operator=(const MeshFile&) = delete;
+    ~MeshFile() { std::filesystem::remove(path_); }
+
+    /// A robot of this mesh; `bodies` are [[body]] tables.
+    [[nodiscard]] std::string robot(const std::string& bodies) const {
+        const std::size_t first = good.find("[shape.gap]");
+        const std::size_t fixed = good.find("[[fixed]]");
+        return good.substr(0, first) + bodies + "[mesh]\nfile = \"" + path_.string() + "\"\n" + good.substr(fixed);
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+std::string region(const std::string& name, const std::string& material, const std::string& which) {
+    return "[[body]]\nname = \"" + name + "\"\nmaterial = \"" + material + "\"\n" + which + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
+    const Built built = build(chamber(room, "volume_ratio = 1.2"));
+    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 192)));
+    REQUIRE(built.model.description().chambers.size() == 1);
+    CHECK(built.robot.chambers[0].target.value == 1.2);
+    Progress silent;
+    const auto surfaces = body_surfaces(built.robot, silent);
+    REQUIRE(surfaces);
+    CHECK(mesh::signed_volume((*surfaces)[1].surface_m) == doctest::Approx(1e-9 * (2000 - 192)));
+    const sim::Step step = last_step(built);
+    CHECK(step.chambers[0].volume_m3 == doctest::Approx(1.2 * 192e-9).epsilon(1e-5));
+    CHECK(step.chambers[0].pressure_Pa > 0);
+}
+
+TEST_CASE("a chamber takes one target of four") {
+    using Kind = sim::ChamberTarget::Kind;
+    const auto target = [](const std::string& text) {
+        const Result<Robot> robot = parse_robot(chamber(room, text), "bar.toml");
+        REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+        return robot->chambers[0].target;
+    };
+    CHECK(target("volume_ratio = 1.25").kind == Kind::volume_ratio);
+    CHECK(target("gas_ratio = 2").kind == Kind::gas_ratio);
+    CHECK(target("pressure = \"40 kPa\"").kind == Kind::pressure_Pa);
+    CHECK(target("pressure = \"40 kPa\"").value == doctest::Approx(40e3));
+    CHECK(target("pressure = \"-40 kPa\"").value == doctest::Approx(-40e3));
+    CHECK(target("volume_change = \"0.5 ml\"").kind == Kind::volume_change_m3);
+    CHECK(target("volume_change = \"0.5 ml\"").value == doctest::Approx(0.5e-6));
+
+    check_problem(chamber(room, "volume_ratio = 1.2, pressure = \"1 kPa\""),
+                  "chamber[0].target: takes one of volume_ratio, volume_change, pressure and gas_ratio");
+    check_problem(chamber(room, "volume_ratio = 0"), "a ratio of 0 is not possible; it must be above zero");
+    check_problem(chamber(room, "pressure = 40"), "40 has no unit; write a pressure such as");
+    check_problem(chamber(room, "volume_change = \"5 mm\""), "unknown unit \"mm\"; here the units are ml");
+    check_problem(chamber(room, "volume_ration = 1.2"), "did you mean \"volume_ratio\"?");
+    check_problem(good + "[[chamber]]\nname = \"air\"\n" + room + "\n", "\"target\" is missing");
+}
+
+TEST_CASE("air that is not there, or not shut in, is refused") {
+    check_problem(chamber("", "volume_ratio = 1.2"), "chamber[0]: takes one of geometry");
+    check_problem(chamber(room + "\nsurface = \"air.stl\"", "volume_ratio = 1.2"), "takes one of geometry");
+    check_problem(chamber("surface = \"nowhere.stl\"", "volume_ratio = 1.2"), "there is no file nowhere.stl");
+    check_problem(chamber("region = \"air\"", "volume_ratio = 1.2"), "needs a tet mesh; add file = ");
+    check_problem(chamber("geometri = { box = [[24, 3, 3], [36, 7, 7]] }", "volume_ratio = 1.2"),
+                  "did you mean \"geometry\"?");
+    check_problem(chamber("geometry = { box = [[36, 3, 3], [40, 7, 7]] }", "volume_ratio = 1.2"),
+                  "bar.toml:39: chamber \"air\":");
+    check_problem(chamber("geometry = { box = [[36, 3, 3], [40, 7, 7]] }", "volume_ratio = 1.2"),
+                  "the chamber is open; close it with a body");
+    // The same mouth is closed where a support holds it still, and open again where the support turns.
+    const std::string mouth = "geometry = { box = [[0, 3, 1], [6, 7, 4]] }";
+    CHECK(problem(chamber(mouth, "volume_ratio = 1.2")).empty());
+    const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
+    std::string turning = chamber(mouth, "volume_ratio = 1.2");
+    turning.insert(turning.find(box), "rotate = { angle = 5, axis = [1, 0, 0] }\n");
+    check_problem(turning, "let its mouth lie in a [[fixed]] without move or rotate");
+}
+
+TEST_CASE("a pressure load presses on the faces in its box") {
+    const std::string load = "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\n";
+    const Built built = build(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
+    CHECK(built.robot.loads[0].pressure_Pa == doctest::Approx(2e3));
+    CHECK(built.model.description().loads.empty());
+    REQUIRE(built.model.description().pressures.size() == 1);
+    // 100 mm^2, pressed towards the clamp.
+    CHECK(last_step(built).supports[0].force_N.x == doctest::Approx(0.2).epsilon(0.01));
+
+    check_problem(good + load + "pressure = \"2 kPa\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n",
+                  "give either force or pressure");
+    check_problem(good + load, "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"] (or give");
+    check_problem(good + load + "pressure = \"2 N\"\n", "unknown unit \"N\"");
+}
+
+TEST_CASE("a support turns by degrees about an axis through a point in the file's unit") {
+    const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
+    const Built built = build(with(box, box + "\nrotate = { angle = 90, axis = [2, 0, 0], center = [0, 5, 5] }"));
+    const sim::Support& clamp = built.model.description().supports[0];
+    const Vec3 turned = clamp.position({0, 0.010, 0.005}, 1);
+    CHECK(norm(turned - Vec3{0, 0.005, 0.010}) < 1e-12);
+    const Vec3 half = clamp.position({0, 0.010, 0.005}, 1.0 / 3);
+    CHECK(half.z == doctest::Approx(0.005 + 0.005 * 0.5));  // sin 30
+    CHECK(clamp.moves());
+
+    check_problem(with(box, box + "\nrotate = { angle = 90 }"), "fixed[0].rotate: \"axis\" is missing");
+    check_problem(with(box, box + "\nrotate = { axis = [1, 0, 0] }"), "fixed[0].rotate: \"angle\" is missing");
+    check_problem(with(box, box + "\nrotate = { angle = 90, axis = [0, 0, 0] }"), "must not be zero");
+    check_problem(with(box, box + "\nrotate = { angle = \"90 deg\", axis = [1, 0, 0] }"), "a finite number is needed");
+    check_problem(with(box, box + "\nrotate = { angle = 90, axis = [1, 0, 0], centre = [0, 0, 0] }"),
+                  "did you mean \"center\"?");
+}
+
+TEST_CASE("keys drive what they name, in seconds; the rest goes straight to its end") {
+    const std::string keys = R"(duration = "4 s"
+[[program.key]]
+time = "1 s"
+flexor = 0.9
+[[program.key]]
+time = "3 s"
+flexor = 0.98
+air = "10 kPa"
+gravity = 0.5
+)";
+    const Built built = build(with("steps = 3\n", "steps = 3\ngravity = [0, 0, -9.81]\n" + keys) +
+                              "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"40 kPa\" }\n" +
+                              "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\npressure = \"2 kPa\"\n");
+    CHECK(built.robot.program.duration == 4);
+    const sim::Description& d = built.model.description();
+    const auto flexor = [&](double t) { return d.cables[0].target.at(t); };
+    CHECK(flexor(0) == doctest::Approx(1));
+    CHECK(flexor(0.5) == doctest::Approx(0.95));
+    CHECK(flexor(1) == doctest::Approx(0.9));
+    CHECK(flexor(2) == doctest::Approx(0.94));
+    CHECK(flexor(4) == doctest::Approx(0.98));  // stays where the last key left it
+    CHECK(d.chambers[0].target.at(1.5) == doctest::Approx(5e3));
+    CHECK(d.chambers[0].target.at(4) == doctest::Approx(10e3));
+    CHECK(d.gravity_share.at(3) == doctest::Approx(0.5));
+    CHECK(d.pressures[0].share.at(1) == doctest::Approx(0.25));  // no key names it
+    CHECK(d.pressures[0].share.at(4) == doctest::Approx(1));
+}
+
+TEST_CASE("a program without duration ends with its last key") {
+    const Result<Robot> robot =
+        parse_robot(good + "[[program.key]]\ntime = \"0 s\"\nflexor = 0.99\n[[program.key]]\ntime = \"500 ms\"\n", "b");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.duration == 0.5);
+    CHECK(robot->cables[0].target.at(0) == doctest::Approx(0.99));  // a key at time 0 says where it starts
+}
+
+TEST_CASE("slips in keys are named") {
+    const auto key = [](const std::string& lines) { return good + "[[program.key]]\n" + lines + "\n"; };
+    check_problem(key("time = \"1 s\"\nflexxor = 0.9"),
+                  "program.key[0].flexxor: nobody reads this key; did you mean \"flexor\"?");
+    check_problem(key("flexor = 0.9"), "program.key[0]: \"time\" is missing");
+    check_problem(key("time = 1\nflexor = 0.9"), "1 has no unit; write a time such as");
+    check_problem(key("time = \"1 s\"\nflexor = 1.2"), "1.2 is not possible; a cable gets shorter: above 0, at most 1");
+    check_problem(key("time = \"1 s\"\nflexor = \"8 N\""), "a finite number is needed");
+    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: keys are in the order");
+    check_problem(with("steps = 3\n", "steps = 3\nduration = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nflexor = 0.9\n"),
+                  "duration: ends before the last key");
+    check_problem(with("steps = 3\n", "steps = 3\nduration = \"0 s\"\n"), "duration: must be above zero");
+    std::string twice = key("time = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nclamp = 0.9");
+    const std::string name = "name = \"flexor\"";
+    check_problem(twice.replace(twice.find(name), name.size(), "name = \"clamp\""),
+                  "program.key[1].clamp: names two things; give them different names");
+    const std::string air = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"1 kPa\" }\n";
+    check_problem(key("time = \"1 s\"\nair = 3") + air, "3 has no unit; write a pressure such as");
+    check_problem(key("time = \"1 s\"\nair = \"3 N\"") + air, "unknown unit \"N\"");
+    const std::string sealed = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { gas_ratio = 2 }\n";
+    check_problem(key("time = \"1 s\"\nair = 0") + sealed, "0 is not possible; it must be above zero");
+}
+
+TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box") {
+    const MeshFile file;
+    const Built whole = build(file.robot(region("all", "soft", "region = \"all\"")));
+    const double total = mesh::volume(whole.model.mesh());
+    CHECK(total == doctest::Approx(1e-9 * (4000 - 100)));
+
+    // The box takes its tets from the body before it.
+    const std::string end = region("end", "hard", "region = \"right\"\nbox = [[30, -1, -1], [41, 11, 11]]");
+    const Built split = build(
+        file.robot(region("left", "hard", "region = \"left\"") + region("right", "soft", "region = \"right\"") + end));
+    const mesh::TetMesh& mesh = split.model.mesh();
+    CHECK(mesh::volume(mesh, 0) == doctest::Approx(1e-9 * (2000 - 100)));
+    CHECK(mesh::volume(mesh, 1) + mesh::volume(mesh, 2) == doctest::Approx(1e-9 * 2000));
+    CHECK(mesh::volume(mesh, 2) == doctest::Approx(1e-9 * 1000).epsilon(0.25));  // to the nearest tet
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (mesh.region[t] == 0) continue;
+        Vec3 centroid;
+        for (std::size_t i = 0; i < 4; ++i) centroid += 0.25 * mesh.points[static_cast<std::size_t>(mesh.tet(t)[i])];
+        CHECK((centroid.x > 0.030) == (mesh.region[t] == 2));
+    }
+    CHECK(split.model.description().material_of_region == std::vector<int>{1, 0, 1});
+
+    const std::string left = region("left", "hard", "region = \"left\"");
+    check_problem(file.robot(left), "no body names region \"right\" of the mesh");
+    check_problem(file.robot(left + region("right", "soft", "region = \"wrong\"")),
+                  "the mesh has no region \"wrong\"; it has");
+    check_problem(file.robot(region("all", "soft", "region = \"all\"") +
+                             region("end", "hard", "region = \"all\"\nbox = [[50, 0, 0], [60, 10, 10]]")),
+                  "body \"end\": the box holds no centroid of a tetrahedron of the region");
+    check_problem(file.robot(left + left), "two bodies named \"left\"");
+    check_problem(file.robot(left + region("again", "soft", "region = \"left\"")),
+                  "region \"left\" already belongs to body \"left\"");
+    check_problem(file.robot(region("all", "soft", "geometry = { box = [[0, 0, 0], [1, 1, 1]] }")),
+                  "with a mesh file a body names its region");
+    check_problem(with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+                       "geometry = { box = [[20, 0, 0], [40, 10, 10]] }\nbox = [[20, 0, 0], [40, 10, 10]]"),
+                  "body[1].box: nobody reads this key");
 }

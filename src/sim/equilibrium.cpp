@@ -156,9 +156,12 @@ State Equilibrium::rest() const {
 
 void Equilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
     const auto& supports = model_->description().supports;
+    const auto& rest = model_->mesh().points;
     for (std::size_t s = 0; s < supports.size(); ++s) {
-        const Eigen::Vector3d move = controls.support_share[s] * vector(supports[s].move_m);
-        for (const int node : supports[s].nodes) x.segment<3>(3 * node) = rest_.segment<3>(3 * node) + move;
+        for (const int node : supports[s].nodes) {
+            x.segment<3>(3 * node) =
+                vector(supports[s].position(rest[static_cast<std::size_t>(node)], controls.support_share[s]));
+        }
     }
 }
 

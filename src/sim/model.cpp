@@ -139,6 +139,15 @@ Status check_loads(const Description& d, int nodes) {
     return is_finite(d.gravity_m_s2) ? Status{} : input_error("gravity is not finite");
 }
 
+Status check_support(const Support& support) {
+    const Turn& turn = support.turn;
+    if (!is_finite(support.move_m) || !std::isfinite(turn.angle_rad) || !is_finite(turn.center_m))
+        return input_error("fixed \"{}\": the prescribed motion is not finite", support.name);
+    if (!is_finite(turn.axis) || !(norm(turn.axis) > 0))
+        return input_error("fixed \"{}\": the axis of its rotation must not be zero", support.name);
+    return {};
+}
+
 /// Numbers the free nodes; nodes that no tet uses are held too, they have no stiffness.
 Status number_free_nodes(const Description& d, std::vector<int>& free_index, int& count) {
     const int nodes = static_cast<int>(d.mesh.points.size());
@@ -146,6 +155,7 @@ Status number_free_nodes(const Description& d, std::vector<int>& free_index, int
     for (std::size_t s = 0; s < d.supports.size(); ++s) {
         const Support& support = d.supports[s];
         if (support.nodes.empty()) return input_error("fixed \"{}\": catches no node", support.name);
+        if (Status status = check_support(support); !status) return status;
         for (const int node : support.nodes) {
             if (node < 0 || node >= nodes)
                 return input_error("fixed \"{}\": node {} does not exist", support.name, node);
@@ -239,6 +249,16 @@ double CableTarget::at(double time) const {
 double ChamberTarget::at(double time) const {
     const bool ratio = kind == Kind::volume_ratio || kind == Kind::gas_ratio;
     return keys ? keys->at(time) : ramp(ratio ? 1 : 0, value).at(time);
+}
+
+Vec3 Support::position(const Vec3& rest, double share_now) const {
+    // Rodrigues' formula.
+    const Vec3 k = turn.axis / norm(turn.axis);
+    const Vec3 arm = rest - turn.center_m;
+    const double angle = share_now * turn.angle_rad;
+    const Vec3 turned =
+        std::cos(angle) * arm + std::sin(angle) * cross(k, arm) + (1 - std::cos(angle)) * dot(k, arm) * k;
+    return (turn.angle_rad == 0 ? rest : turn.center_m + turned) + share_now * move_m;
 }
 
 Vec3 position(const Attachment& point, std::span<const double> x) {

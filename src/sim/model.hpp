@@ -33,12 +33,24 @@ struct Material {
     double density_kg_m3 = 0;
 };
 
-/// Nodes whose motion is prescribed: they are at rest + share * move.
+/// A rotation, right-handed about an axis through a point.
+struct Turn {
+    double angle_rad = 0;
+    Vec3 axis{1, 0, 0};  ///< of any length but zero
+    Vec3 center_m;
+};
+
+/// Nodes whose motion is prescribed: at each instant they are turned from rest by share * angle and then shifted by
+/// share * move.
 struct Support {
     std::string name;
     std::vector<int> nodes;
     Vec3 move_m;
     Curve share = ramp(0, 1);
+    Turn turn{};
+    [[nodiscard]] bool moves() const { return turn.angle_rad != 0 || !(move_m == Vec3{}); }
+    /// Where a node is that lay at `rest`, both in metres.
+    [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
 };
 
 /// A force that keeps its direction: share * force.

@@ -91,8 +91,8 @@ public:
             const double multiplier = state_.multiplier[static_cast<Eigen::Index>(a)];
             if (a < d.cables.size())
                 step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
-            else
-                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, -multiplier});
+            else  // 0 - 0 is 0, where -0 would be a minus zero in every report
+                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, 0 - multiplier});
         }
         if (model_.contact() != nullptr) describe_contact(step);
         for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});

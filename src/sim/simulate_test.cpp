@@ -112,6 +112,59 @@ TEST_CASE("supports carry loads and gravity exactly") {
     CHECK(force.z == doctest::Approx(-0.03 + weight).epsilon(1e-6));
 }
 
+TEST_CASE("supports that all turn about one axis carry the bar round without straining it") {
+    // 150 degrees about a slanted axis off the bar, then a shift: the answer is the rigid motion itself.
+    const Turn turn{5 * M_PI / 6, {1, 1, 0.5}, {0.01, -0.02, 0.005}};
+    const Vec3 move{0.002, 0, -0.001};
+    Description d = bar(2);
+    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+    d.supports[0].move_m = move;
+    d.supports[0].turn = turn;
+    d.supports.push_back({"far", far_end, move, ramp(0, 1), turn});
+    const auto rest = d.mesh.points;
+    const Trajectory result = solve(std::move(d), {.steps = 10});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    const Vec3 k = turn.axis / norm(turn.axis);
+    for (const Step& step : result.steps) {
+        CHECK(step.min_J == doctest::Approx(1).epsilon(1e-6));
+        const double angle = step.time * turn.angle_rad;
+        for (std::size_t n = 0; n < rest.size(); ++n) {
+            // Along the axis nothing changes but for the shift; across it length is kept and the angle is the wanted.
+            const Vec3 before = rest[n] - turn.center_m;
+            const Vec3 after = step.positions[n] - step.time * move - turn.center_m;
+            const Vec3 u = before - dot(before, k) * k;
+            const Vec3 v = after - dot(after, k) * k;
+            REQUIRE(std::fabs(dot(after - before, k)) < 1e-9);
+            REQUIRE(std::fabs(dot(u, v) - dot(u, u) * std::cos(angle)) < 1e-9 * dot(u, u) + 1e-12);
+            REQUIRE(std::fabs(dot(cross(u, v), k) - dot(u, u) * std::sin(angle)) < 1e-9 * dot(u, u) + 1e-12);
+        }
+    }
+}
+
+TEST_CASE("a bar twisted by a quarter turn has turned by half of that in the middle") {
+    Description d = bar(2);
+    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+    d.supports.push_back({"hand", far_end, {}, ramp(0, 1), {M_PI / 2, {1, 0, 0}, {0, side / 2, side / 2}}});
+    const auto edge = reference::nodes_where(d.mesh, [](Vec3 p) { return norm(p - Vec3{2 * side, 0, 0}) < 1e-9; });
+    REQUIRE(edge.size() == 1);
+    const Trajectory result = solve(std::move(d), {.steps = 5});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    const Vec3 p = result.steps.back().positions[static_cast<std::size_t>(edge[0])];
+    const double turned = std::atan2(p.z - side / 2, p.y - side / 2) - std::atan2(-1.0, -1.0);
+    CHECK(turned == doctest::Approx(M_PI / 4).epsilon(0.01));
+    // A twisted bar would like to get longer (Poynting 1909): held between two ends it presses on both.
+    CHECK(result.steps.back().supports[1].force_N.x < 0);
+    CHECK(result.steps.back().supports[0].force_N.x > 0);
+}
+
+TEST_CASE("a rotation about no axis is refused") {
+    Description d = bar(1);
+    d.supports[0].turn = {1, {0, 0, 0}, {}};
+    const auto model = Model::create(std::move(d));
+    REQUIRE_FALSE(model);
+    CHECK(model.error().message == "fixed \"clamp\": the axis of its rotation must not be zero");
+}
+
 TEST_CASE("every solver finds the same bent bar under a cable, and no step turns a tet inside out") {
     std::vector<double> tensions;
     for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::local_global}) {
