@@ -6,6 +6,8 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "job_tools.hpp"
+#include "plan/timeline.hpp"
+#include "report/plan_picture.hpp"
 
 namespace pliant::app {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 struct Options {
     std::string job;
     std::string printer;
+    std::string picture_file;
     Output output;
 };
 
@@ -26,6 +29,11 @@ Status make_plan(const Options& options) {
     }
     const Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
     if (!plan) return tl::unexpected(plan.error());
+    if (!options.picture_file.empty()) {
+        const Result<std::string> png = report::plan_picture(*plan, plan::longest_swap(*plan, job->printer));
+        if (!png) return tl::unexpected(png.error());
+        if (Status status = write_file(options.picture_file, *png); !status) return status;
+    }
     if (options.output.json)
         fmt::print("{}\n", plan::plan_json(*plan));
     else if (!options.output.quiet)
@@ -40,8 +48,9 @@ void add_plan(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("plan", "what a job takes: vats, swaps, times, resin");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_option("--printer", options->printer, "another printer file than the job's own, to compare");
+    command->add_option("-o,--output", options->picture_file, "file for a picture of the plan (.png)");
     add_output_options(*command, options->output, true);
-    command->footer("Example: pliant plan gripper.zip --json");
+    command->footer("Example: pliant plan gripper.zip -o plan.png");
     command->callback([options, &status] {
         const Status result = make_plan(*options);
         status = result ? exit_done : report(result.error());
