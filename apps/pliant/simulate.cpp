@@ -53,6 +53,12 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));
+    simulation.obstacles = report::obstacles_of(model, trajectory);
+    if (model.contact() != nullptr) {
+        simulation.contact_pressure_Pa = [&model](const sim::Step& step) {
+            return sim::contact_pressure(model, step.positions, step.time);
+        };
+    }
     simulation.tolerance = robot.program.tolerance;
     simulation.peak_memory_MB = peak_memory_MB();
     return simulation;

@@ -45,6 +45,7 @@ inline Colour mix(const Colour& a, const Colour& b, double t) {
 
 /// What cables are drawn in, sRGB: stands out from every colour of the palette.
 inline constexpr Colour cable_colour = {0.80, 0.10, 0.14};
+inline constexpr Colour obstacle_colour = {0.70, 0.72, 0.75};
 
 /// OKLab lightness of an sRGB colour, 0 black to 1 white.
 [[nodiscard]] double lightness(const Colour& srgb);

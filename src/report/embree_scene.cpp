@@ -81,7 +81,13 @@ Hit EmbreeScene::closest(const Vec3& origin, const Vec3& direction) const {
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {true, ray.ray.tfar, ray.hit.primID, ray.hit.u, ray.hit.v, {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}};
+    return {true,
+            ray.ray.tfar,
+            ray.hit.geomID,
+            ray.hit.primID,
+            ray.hit.u,
+            ray.hit.v,
+            {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}};
 }
 
 std::array<bool, 8> EmbreeScene::blocked(const Vec3& origin, std::span<const Vec3, 8> directions, double reach) const {

@@ -15,7 +15,8 @@ namespace pliant::report {
 
 struct Hit {
     bool found = false;
-    double distance = 0;  ///< along the ray's direction, in its lengths
+    double distance = 0;    ///< along the ray's direction, in its lengths
+    unsigned geometry = 0;  ///< counted in the order of add_*
     unsigned primitive = 0;
     double u = 0, v = 0;  ///< barycentric coordinates of corners 1 and 2
     Vec3 normal;          ///< of the geometry, not normalised

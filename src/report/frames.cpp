@@ -35,6 +35,8 @@ mesh::VtuData frame_data(const Simulation& s, const sim::Step& step) {
     const sim::Fields fields = s.fields(step.positions);
     mesh::VtuData data;
     data.points.push_back(displacement_mm(s, step));
+    if (s.contact_pressure_Pa)
+        data.points.push_back({"contact_pressure_kPa", 1, as_floats(s.contact_pressure_Pa(step), 1e-3)});
     data.cells.push_back({"region", 1, std::move(region)});
     data.cells.push_back({"material", 1, std::move(material)});
     data.cells.push_back({"J", 1, as_floats(fields.J, 1)});

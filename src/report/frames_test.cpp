@@ -48,6 +48,20 @@ TEST_CASE("every step is a frame in millimetres and the collection gives its tim
           std::string::npos);
 }
 
+TEST_CASE("contact pressure is written at the points where there is any") {
+    const auto robot = test::bent_bar(1, 1);
+    Simulation s = robot.simulation();
+    s.contact_pressure_Pa = [&](const sim::Step& step) {
+        return std::vector<double>(robot.mesh.points.size(), 1e3 * step.index);
+    };
+    const test::Folder folder("frames_contact");
+    Progress progress;
+    REQUIRE(write_frames(folder.path(), s, progress).has_value());
+    const auto frame = read_file(folder.path() / "frames/frame_0001.vtu");
+    REQUIRE(frame.has_value());
+    CHECK(between(*frame, "<PointData>", "</PointData>").find("Name=\"contact_pressure_kPa\"") != std::string::npos);
+}
+
 TEST_CASE("cancelling stops the frames") {
     struct Stop : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }

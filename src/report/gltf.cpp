@@ -143,6 +143,15 @@ Motion cable_motion(const Simulation& s, std::size_t cable, const std::vector<st
     return motion;
 }
 
+/// A rigid thing without motion; its node moves.
+Motion rigid_motion(const Obstacle& obstacle) {
+    const Surface surface = rigid_surface(obstacle.surface);
+    Pose rest = pose(surface, obstacle.surface.points);
+    for (Vec3& p : rest.positions) p = y_up(p);
+    for (Vec3& n : rest.normals) n = y_up(n);
+    return {surface.triangles, {std::move(rest)}};
+}
+
 Json material_json(const std::string& name, const Colour& srgb, double roughness) {
     const Colour c = to_linear(srgb);
     return {{"name", name},
@@ -164,9 +173,10 @@ std::vector<float> key_times(const Simulation& s, const std::vector<std::size_t>
     return rising ? times : even;
 }
 
-/// Weights one target at a time, so that LINEAR interpolation runs from each kept step to the next.
+/// Weights one target at a time, so that LINEAR interpolation runs from each kept step to the next. The first `morphed`
+/// nodes have targets, the obstacles' nodes follow and are moved.
 Json animation_json(Buffer& buffer, const Simulation& s, const std::vector<std::size_t>& steps, double duration_s,
-                    std::size_t nodes) {
+                    std::size_t morphed) {
     std::vector<float> weights;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         for (std::size_t k = 1; k < steps.size(); ++k) weights.push_back(i == k ? 1.0F : 0.0F);
@@ -175,8 +185,16 @@ Json animation_json(Buffer& buffer, const Simulation& s, const std::vector<std::
     const int output = buffer.scalars(weights, false);
     Json animation = {{"name", "program"}};
     animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
-    for (std::size_t node = 0; node < nodes; ++node) {
+    for (std::size_t node = 0; node < morphed; ++node) {
         animation["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+    }
+    for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+        std::vector<Vec3> places;
+        for (const std::size_t step : steps) places.push_back(y_up(s.obstacles[k].offset_m[step]));
+        const int moves = buffer.vectors(places, false, false);
+        animation["samplers"].push_back({{"input", input}, {"output", moves}, {"interpolation", "LINEAR"}});
+        animation["channels"].push_back(
+            {{"sampler", k + 1}, {"target", {{"node", morphed + k}, {"path", "translation"}}}});
     }
     return animation;
 }
@@ -208,13 +226,15 @@ public:
     std::string bytes(double animation_s) {
         add_robot();
         add_cables();
+        const std::size_t morphed = nodes_.size();
+        add_obstacles();
         Json root = {{"asset", {{"version", "2.0"}, {"generator", std::string("Pliant ") + PLIANT_VERSION}}}};
         root["scene"] = 0;
         Json scene = {{"name", s_.robot}};
         for (std::size_t i = 0; i < nodes_.size(); ++i) scene["nodes"].push_back(i);
         root["scenes"].push_back(std::move(scene));
         if (steps_.size() > 1) {
-            root["animations"].push_back(animation_json(buffer_, s_, steps_, animation_s, nodes_.size()));
+            root["animations"].push_back(animation_json(buffer_, s_, steps_, animation_s, morphed));
         }
         root["nodes"] = nodes_;
         root["meshes"] = meshes_;
@@ -250,6 +270,19 @@ private:
                 primitive_json(buffer_, cable_motion(s_, c, steps_, radius), static_cast<int>(materials_.size()) - 1));
         }
         if (!primitives.empty()) add_mesh("cables", std::move(primitives));
+    }
+
+    /// A mesh and a node each, which the animation moves.
+    void add_obstacles() {
+        if (s_.obstacles.empty()) return;
+        materials_.push_back(material_json("obstacle", obstacle_colour, 0.9));
+        materials_.back()["doubleSided"] = true;
+        const int material = static_cast<int>(materials_.size()) - 1;
+        for (const Obstacle& obstacle : s_.obstacles) {
+            Json primitives = Json::array({primitive_json(buffer_, rigid_motion(obstacle), material)});
+            meshes_.push_back({{"name", obstacle.name}, {"primitives", std::move(primitives)}});
+            nodes_.push_back({{"name", obstacle.name}, {"mesh", meshes_.size() - 1}});
+        }
     }
 
     void add_mesh(const char* name, Json primitives) {

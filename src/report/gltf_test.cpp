@@ -117,6 +117,25 @@ TEST_CASE("the animation runs through one target after the other in three second
     CHECK(weights == std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
 }
 
+TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
+    const test::Robot robot = test::bent_bar(4, 1);
+    Simulation s = robot.simulation();
+    s.obstacles = {{"floor", disc({0, 0, -0.01}, {0, 0, 1}, 0.1), true, {}}};
+    for (int i = 0; i <= 4; ++i) s.obstacles[0].offset_m.push_back({0.001 * i, 0.002 * i, 0.003 * i});
+    const Glb glb = parsed(robot_glb(s, outer_surface(s.mesh, s.region_material), 40));
+    REQUIRE(glb.document["meshes"].size() == 3);
+    CHECK(glb.document["meshes"][2]["name"] == "floor");
+    CHECK_FALSE(glb.document["meshes"][2].contains("weights"));
+    CHECK(glb.document["materials"].back()["doubleSided"] == true);
+    const json& animation = glb.document["animations"][0];
+    REQUIRE(animation["channels"].size() == 3);
+    CHECK(animation["channels"][2]["target"] == json({{"node", 2}, {"path", "translation"}}));
+    const std::size_t sampler = animation["channels"][2]["sampler"].get<std::size_t>();
+    const auto places = glb.floats(animation["samplers"][sampler]["output"].get<std::size_t>());
+    REQUIRE(places.size() == 15);
+    CHECK(std::vector<float>(places.end() - 3, places.end()) == std::vector<float>{0.004F, 0.012F, -0.008F});
+}
+
 TEST_CASE("a robot that never moved is a still") {
     auto robot = test::bent_bar(1, 1);
     robot.result.steps.pop_back();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base64.hpp"
 #include "report/assets.hpp"
@@ -87,6 +88,10 @@ std::string tiles(const Simulation& s) {
         out += tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
                     fmt::format("{} at {:.1f} % volume", c.name, 100 * c.volume_ratio));
     }
+    for (std::size_t i = 0; i < std::min(shown, last.contacts.size()); ++i) {
+        const auto& c = last.contacts[i];
+        out += tile(fmt::format("{:.4g} N", norm(c.force_N)), fmt::format("force of {}", c.name));
+    }
     for (std::size_t i = 0; i < std::min(shown, last.markers.size()); ++i) {
         const double way = norm(last.markers[i].position_m - rest.markers[i].position_m);
         out += tile(fmt::format("{:.4g} mm", 1e3 * way), fmt::format("{} moved", last.markers[i].name));
@@ -168,10 +173,41 @@ std::string actuators_section(const Simulation& s) {
            table("", {"actuator", "kind", "at rest", "at the end", "ratio", "tension or pressure"}, rows);
 }
 
+/// "(0.1, 0, -2.5)"
+std::string vector_text(const Vec3& v) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x, v.y, v.z);
+}
+
+std::string contact_section(const Simulation& s) {
+    if (!has_contact(s.result)) return "";
+    const sim::Step& last = s.result.steps.back();
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < last.contacts.size(); ++i) {
+        double largest = 0;
+        for (const sim::Step& step : s.result.steps) largest = std::max(largest, norm(step.contacts[i].force_N));
+        const Vec3& force = last.contacts[i].force_N;
+        rows.push_back({last.contacts[i].name, vector_text(force), fmt::format("{:.4g}", norm(force)),
+                        fmt::format("{:.4g}", largest)});
+    }
+    double most = 0, nearest = HUGE_VAL;
+    for (const sim::Step& step : s.result.steps) {
+        most = std::max(most, step.self_contact_N);
+        nearest = std::min(nearest, step.smallest_distance_m);
+    }
+    rows.push_back({"the robot itself", "–", fmt::format("{:.4g}", last.self_contact_N), fmt::format("{:.4g}", most)});
+    std::string out =
+        "<h2>Contact</h2>\n" +
+        table("", {"with", "force on the robot at the end, N", "its size, N", "largest of all steps, N"}, rows);
+    if (std::isfinite(nearest))
+        out += fmt::format("<p class=\"faint\">Surfaces came as near as {:.3g} mm.</p>\n", 1e3 * nearest);
+    return out;
+}
+
 std::string steps_section(const Simulation& s) {
     std::vector<std::string> header = {"step", "time", "iterations", "residual", "wall time", "min J"};
     for (const auto& c : s.result.steps.front().cables) header.push_back(c.name + ", N");
     for (const auto& c : s.result.steps.front().chambers) header.push_back(c.name + ", kPa");
+    for (const auto& o : s.result.steps.front().contacts) header.push_back(o.name + ", N");
     std::vector<std::vector<std::string>> rows;
     for (const auto& step : s.result.steps) {
         rows.push_back({fmt::format("{}", step.index), fmt::format("{:.4g}", step.time),
@@ -179,6 +215,7 @@ std::string steps_section(const Simulation& s) {
                         fmt::format("{:.4f}", step.min_J)});
         for (const auto& c : step.cables) rows.back().push_back(fmt::format("{:.4g}", c.tension_N));
         for (const auto& c : step.chambers) rows.back().push_back(fmt::format("{:.4g}", 1e-3 * c.pressure_Pa));
+        for (const auto& o : step.contacts) rows.back().push_back(vector_text(o.force_N));
     }
     return "<h2>Steps</h2>\n<details><summary>Every step in numbers</summary>\n" + table("", header, rows) +
            "</details>\n";
@@ -249,7 +286,7 @@ std::string report_html(const Simulation& s, const std::vector<Picture>& picture
     out +=
         "<h2>Plots</h2>\n<section class=\"plots\" id=\"plots\"><noscript>The plots need JavaScript; the numbers are "
         "in the tables below.</noscript></section>\n";
-    out += actuators_section(s) + materials_section(s) + steps_section(s) + settings_section(s);
+    out += actuators_section(s) + contact_section(s) + materials_section(s) + steps_section(s) + settings_section(s);
     out += "<footer><p>Made by Pliant " PLIANT_VERSION
            ". Nothing on this page is loaded from a network.</p>\n"
            "<details><summary>Licence of the plotting library</summary><pre>" +

@@ -38,6 +38,16 @@ TEST_CASE("the page needs nothing but itself") {
     CHECK(html.find("MIT") != std::string::npos);
 }
 
+TEST_CASE("contact has a table with the largest force of all steps") {
+    auto robot = test::bent_bar(2, 1);
+    CHECK(page(robot.simulation()).find("<h2>Contact</h2>") == std::string::npos);
+    for (auto& step : robot.result.steps) step.contacts = {{"a <ball>", {0, 0, step.index == 1 ? -7.0 : -2.5}}};
+    robot.result.steps[1].smallest_distance_m = 4e-5;
+    const std::string html = page(robot.simulation());
+    CHECK(html.find("<td>a &lt;ball&gt;</td><td>(0, 0, -2.5)</td><td>2.5</td><td>7</td>") != std::string::npos);
+    CHECK(html.find("as near as 0.04 mm") != std::string::npos);
+}
+
 TEST_CASE("names from a robot file are text, whatever they hold") {
     const std::string evil = "</script><script>alert(1)</script>\"'&";
     auto robot = test::bent_bar(2, 1);
@@ -45,6 +55,7 @@ TEST_CASE("names from a robot file are text, whatever they hold") {
         step.cables[0].name = evil;
         step.markers[0].name = evil;
         step.supports[0].name = evil;
+        step.contacts = {{evil, {}}};
     }
     robot.result.message = evil;
     robot.result.warnings = {evil};

@@ -19,6 +19,8 @@ constexpr double heading_share = 0.12;  // of the height, over the stages
 constexpr std::array<double, 4> plain_margins = {0.06, 0.06, 0.12, 0.14};
 constexpr std::array<double, 4> bar_margins = {0.06, 0.16, 0.10, 0.14};
 constexpr Colour stage_backdrop = {0.955, 0.962, 0.970};
+constexpr double near_share = 0.25;  // of the robot's size: obstacles this near are in the picture
+constexpr double closed_opacity = 0.9, plane_opacity = 0.8;
 constexpr std::size_t fitted_steps = 12;  // steps that the view must hold, beside rest
 
 std::string step_title(const Simulation& s, const sim::Step& step) {
@@ -54,7 +56,9 @@ public:
         view_ = choose_view(clouds.front(), moved);
         for (const auto& cloud : clouds) points_.insert(points_.end(), cloud.begin(), cloud.end());
         for (const Vec3& p : points_) box_.add(p);
+        floor_z_m_ = box_.low.z;
         for (const std::size_t step : steps) add_cable_points(step);
+        for (const Obstacle& obstacle : s.obstacles) add_obstacle(obstacle, steps);
     }
 
     Result<Picture> rest();
@@ -67,6 +71,8 @@ private:
         if (s_.cable_points.empty()) return;
         for (const auto& cable : s_.cable_points[step]) points_.insert(points_.end(), cable.begin(), cable.end());
     }
+    void add_obstacle(const Obstacle& obstacle, std::span<const std::size_t> steps);
+    [[nodiscard]] bool is_framed(const Obstacle& obstacle, const Box3& at_rest, std::size_t step) const;
     [[nodiscard]] Scene scene_of(std::size_t step) const;
     [[nodiscard]] std::vector<Colour> material_colours() const;
     [[nodiscard]] std::vector<std::pair<Colour, std::string>> legend() const;
@@ -81,9 +87,48 @@ private:
     PictureSize size_;
     Progress& progress_;
     Camera view_;
-    std::vector<Vec3> points_;  ///< everything that must be seen
-    Box3 box_;                  ///< of the robot over its whole motion
+    std::vector<Vec3> points_;                  ///< everything that must be seen
+    Box3 box_;                                  ///< of the robot over its whole motion
+    double floor_z_m_ = 0;                      ///< of the robot's and the framed obstacles' motion
+    std::vector<Surface> things_;               ///< (obstacles)
+    std::vector<std::vector<double>> opacity_;  ///< (obstacles), per vertex
 };
+
+/// Things that are no larger than the robot with its motion and near it; large ones may run out of the picture.
+bool Painter::is_framed(const Obstacle& obstacle, const Box3& at_rest, std::size_t step) const {
+    if (obstacle.open || at_rest.diagonal() > box_.diagonal()) return false;
+    Vec3 gap;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double low = at_rest.low[k] + obstacle.offset_m[step][k], high = low + at_rest.size()[k];
+        gap[k] = std::max({0.0, box_.low[k] - high, low - box_.high[k]});
+    }
+    return norm(gap) < near_share * box_.diagonal();
+}
+
+/// Closed things are all but opaque; a piece of a plane fades out towards its rim.
+std::vector<double> opacity_of(const Obstacle& obstacle, const Surface& surface) {
+    std::vector<double> opacity(surface.vertex_node.size(), closed_opacity);
+    if (!obstacle.open) return opacity;
+    const auto away = [&](int node) {
+        return norm(obstacle.surface.points[static_cast<std::size_t>(node)] - obstacle.surface.points.front());
+    };
+    double farthest = 0;
+    for (const int node : surface.vertex_node) farthest = std::max(farthest, away(node));
+    for (std::size_t v = 0; v < opacity.size(); ++v)
+        opacity[v] = away(surface.vertex_node[v]) > 0.9 * farthest ? 0 : plane_opacity;
+    return opacity;
+}
+
+void Painter::add_obstacle(const Obstacle& obstacle, std::span<const std::size_t> steps) {
+    things_.push_back(rigid_surface(obstacle.surface));
+    opacity_.push_back(opacity_of(obstacle, things_.back()));
+    const Box3 at_rest = mesh::bounds(obstacle.surface);
+    for (const std::size_t step : steps) {
+        if (!is_framed(obstacle, at_rest, step)) continue;
+        floor_z_m_ = std::min(floor_z_m_, at_rest.low.z + obstacle.offset_m[step].z);
+        for (const Vec3& p : obstacle.surface.points) points_.push_back(p + obstacle.offset_m[step]);
+    }
+}
 
 Result<Picture> finished(const Canvas& canvas, std::string file, std::string title) {
     auto png = canvas.png();
@@ -108,6 +153,8 @@ std::vector<std::pair<Colour, std::string>> Painter::legend() const {
         entries.emplace_back(colour_of(s_, m), s_.materials[static_cast<std::size_t>(m)].name);
     }
     if (!s_.cable_points.empty() && !s_.cable_points.front().empty()) entries.emplace_back(cable_colour, "cable");
+    if (!s_.obstacles.empty())
+        entries.emplace_back(obstacle_colour, s_.obstacles.size() == 1 ? "obstacle" : "obstacles");
     return entries;
 }
 
@@ -117,9 +164,14 @@ Scene Painter::scene_of(std::size_t step) const {
     scene.body = pose(surface_, s_.result.steps[step].positions);
     scene.vertex_colours = material_colours();
     scene.cable_radius_m = drawn_cable_radius(s_);
-    scene.floor_z_m = box_.low.z;
+    scene.floor_z_m = floor_z_m_;
     if (!s_.cable_points.empty()) {
         for (const auto& points : s_.cable_points[step]) scene.cables.push_back({points});
+    }
+    for (std::size_t k = 0; k < things_.size(); ++k) {
+        std::vector<Vec3> moved = s_.obstacles[k].surface.points;
+        for (Vec3& p : moved) p += s_.obstacles[k].offset_m[step];
+        scene.things.push_back({&things_[k], pose(things_[k], moved), opacity_[k], s_.obstacles[k].open});
     }
     return scene;
 }

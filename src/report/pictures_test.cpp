@@ -105,6 +105,30 @@ TEST_CASE("a cable shines through the body and a ghost lies over the backdrop") 
     CHECK(brightness(full, on_ghost) > 3 * 120);
 }
 
+TEST_CASE("an obstacle hides the body, is grey and throws a shadow; a plane is seen from its front only") {
+    Stage stage;
+    const Vec3 eye = stage.camera.eye, aim = stage.robot.result.steps.back().markers[1].position_m;
+    const Vec3 towards = (eye - aim) / norm(eye - aim);
+    const mesh::TriMesh front = disc(aim + 0.05 * towards, towards, 0.01),
+                        back = disc(aim + 0.05 * towards, -towards, 0.01);
+    const auto seen = [&](const mesh::TriMesh& mesh, bool open) {
+        const Surface surface = rigid_surface(mesh);
+        stage.scene.things = {
+            {&surface, pose(surface, mesh.points), std::vector<double>(surface.vertex_node.size(), 1.0), open}};
+        return stage.image();
+    };
+    const std::size_t at = stage.pixel(aim);
+    const Image plain = stage.image(), shown = seen(front, true), hidden = seen(back, true);
+    CHECK(std::abs(shown.rgb[at] - shown.rgb[at + 2]) < 25);
+    CHECK(shown.rgb[at] > 100);
+    CHECK(hidden.rgb == plain.rgb);
+    stage.scene.floor_z_m = -0.03;
+    const mesh::TriMesh roof = disc({0.03, 0.01, 0.09}, {0, 0, 1}, 0.03);
+    const Image lit = seen(roof, true), shaded = seen(roof, false);
+    const std::size_t below = stage.pixel({0.03, 0, 0.006});
+    CHECK(brightness(shaded, below) < brightness(lit, below) - 20);
+}
+
 TEST_CASE("the pictures are PNG files that hold something, each time the same") {
     const auto robot = test::bent_bar(4, 1);
     const Simulation s = robot.simulation();

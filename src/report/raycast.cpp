@@ -38,6 +38,8 @@ public:
           reach_(reach_of(scene)),
           lighting_(camera, reach_),
           body_(device_),
+          things_(device_),
+          shade_(device_),
           cables_(device_),
           ghost_(device_) {
         body_.add_triangles(scene.body.positions, scene.surface->triangles);
@@ -45,7 +47,11 @@ public:
             if (cable.points.size() >= 2) cables_.add_tube(cable.points, scene.cable_radius_m);
         }
         if (scene.ghost) ghost_.add_triangles(scene.ghost->positions, scene.surface->triangles);
+        shade_.add_triangles(scene.body.positions, scene.surface->triangles);
+        add_things();
         body_.commit();
+        things_.commit();
+        shade_.commit();
         cables_.commit();
         ghost_.commit();
         for (const Colour& c : scene.vertex_colours) albedo_.push_back(to_linear(c));
@@ -54,6 +60,7 @@ public:
         backdrop_bottom_ = to_linear(scene.backdrop_bottom);
         cable_albedo_ = to_linear(cable_colour);
         ghost_albedo_ = to_linear(ghost_colour);
+        thing_albedo_ = to_linear(obstacle_colour);
     }
 
     [[nodiscard]] Status status() const { return device_.status(); }
@@ -83,7 +90,7 @@ private:
     };
     /// What the samples of one pixel share.
     struct Shared {
-        std::vector<Patch> patches;
+        std::vector<Patch> patches, thing_patches;
         std::optional<double> floor;
     };
 
@@ -93,11 +100,30 @@ private:
         return std::max(1e-9, box.diagonal());
     }
 
+    void add_things() {
+        for (const Thing& thing : scene_.things) {
+            const auto& triangles = thing.surface->triangles;
+            if (triangles.empty() || (thing.open && !faces_the_eye(thing))) continue;
+            things_.add_triangles(thing.place.positions, triangles);
+            seen_.push_back(&thing);
+            if (!thing.open) shade_.add_triangles(thing.place.positions, triangles);
+        }
+    }
+    /// Of a piece of a plane.
+    [[nodiscard]] bool faces_the_eye(const Thing& plane) const {
+        return dot(camera_.eye - plane.place.positions.front(), plane.place.normals.front()) > 0;
+    }
+
     /// The pixels outside which only backdrop and floor can be seen.
     void find_window() {
         const double bead = 2 * scene_.cable_radius_m;
         const auto widen = [&](const Vec3& p, double radius) {
             const auto [u, v, depth] = camera_.project(p);
+            if (!(depth > 0)) {  // a large thing that reaches behind the eye may be seen anywhere
+                window_.add({0, 0, 0});
+                window_.add({static_cast<double>(width_), static_cast<double>(height_), 0});
+                return;
+            }
             const double margin = 2 + radius / depth / camera_.half_height * height_;
             const double x = (u + 1) / 2 * width_, y = (1 - v) / 2 * height_;
             window_.add({x - margin, y - margin, 0});
@@ -106,6 +132,9 @@ private:
         for (const Vec3& p : scene_.body.positions) widen(p, 0);
         for (const Cable& cable : scene_.cables) {
             for (const Vec3& p : cable.points) widen(p, bead);
+        }
+        for (const Thing* thing : seen_) {
+            for (const Vec3& p : thing->place.positions) widen(p, 0);
         }
         if (!scene_.ghost) return;
         for (const Vec3& p : scene_.ghost->positions) widen(p, 0);
@@ -121,6 +150,9 @@ private:
     [[nodiscard]] double floor_shade(double x, double y) const;
     [[nodiscard]] double floor_at(double x, double y) const;
     [[nodiscard]] Colour body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const;
+    /// What is seen through the thing at `hit` has `behind`'s colour.
+    [[nodiscard]] Colour with_thing(const Colour& behind, const Hit& hit, const Vec3& direction, Shared& shared) const;
+    [[nodiscard]] Colour with_ghost(const Colour& behind, const Hit& hit, const Vec3& direction) const;
     [[nodiscard]] Light patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
                                     std::vector<Patch>& patches) const;
     [[nodiscard]] Colour sample(double x, double y, Shared& shared) const;
@@ -132,9 +164,10 @@ private:
     double reach_;
     Lighting lighting_;
     EmbreeDevice device_;
-    EmbreeScene body_, cables_, ghost_;
+    EmbreeScene body_, things_, shade_, cables_, ghost_;  // shade_: all that throws shadows
+    std::vector<const Thing*> seen_;                      // in the order of things_
     std::vector<Colour> albedo_;
-    Colour cable_albedo_, ghost_albedo_, backdrop_top_, backdrop_bottom_;  // linear
+    Colour cable_albedo_, ghost_albedo_, thing_albedo_, backdrop_top_, backdrop_bottom_;  // linear
     std::vector<double> floor_;
     int floor_columns_ = 0;
     Box3 window_;  ///< pixels, z unused
@@ -146,7 +179,7 @@ double Renderer::floor_shade(double x, double y) const {
     const double t = (scene_.floor_z_m - camera_.eye.z) / direction.z;
     if (t <= 0) return 1;
     const Vec3 lift{0, 0, 1e-4 * reach_};
-    const Light light = lighting_.on_floor(body_, camera_.eye + t * direction + lift);
+    const Light light = lighting_.on_floor(shade_, camera_.eye + t * direction + lift);
     return 1 - floor_sky_shadow * (1 - light.sky) - floor_key_shadow * (1 - light.key);
 }
 
@@ -171,7 +204,7 @@ Light Renderer::patch_light(const Vec3& point, const Vec3& normal, const Vec3& g
             return patch.light;
         }
     }
-    patches.push_back({point, normal, lighting_.at(body_, point, normal, geometric)});
+    patches.push_back({point, normal, lighting_.at(shade_, point, normal, geometric)});
     return patches.back().light;
 }
 
@@ -183,22 +216,45 @@ Colour Renderer::lit(const Colour& albedo, const Vec3& normal, const Vec3& direc
     return (1 + scene_.shading * (full - 1)) * albedo + scene_.shading * gloss * Colour{1, 1, 1};
 }
 
-Colour Renderer::body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const {
-    const auto& corners = scene_.surface->triangles[hit.primitive];
-    const std::array<double, 3> weights = {1 - hit.u - hit.v, hit.u, hit.v};
-    Vec3 normal;
-    Colour albedo;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(corners[k]);
-        normal += weights[k] * scene_.body.normals[v];
-        albedo += weights[k] * albedo_[v];
-    }
+/// Mean of a vertex quantity at a hit.
+template <class T>
+T at_hit(const std::vector<T>& values, const std::array<int, 3>& corners, const Hit& hit) {
+    const auto value = [&](std::size_t k) { return values[static_cast<std::size_t>(corners[k])]; };
+    return (1 - hit.u - hit.v) * value(0) + hit.u * value(1) + hit.v * value(2);
+}
+
+/// The geometric normal towards the viewer, and the smooth one on the same side of the surface.
+std::array<Vec3, 2> seen_normals(const Pose& pose, const std::array<int, 3>& corners, const Hit& hit,
+                                 const Vec3& direction) {
     Vec3 geometric = unit(hit.normal);
     if (dot(geometric, direction) > 0) geometric = -geometric;
+    Vec3 normal = at_hit(pose.normals, corners, hit);
     normal = norm(normal) > 0 ? unit(normal) : geometric;
     if (dot(normal, geometric) < 0) normal = geometric;
+    return {geometric, normal};
+}
+
+Colour Renderer::body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const {
+    const auto& corners = scene_.surface->triangles[hit.primitive];
+    const auto [geometric, normal] = seen_normals(scene_.body, corners, hit, direction);
     const Vec3 point = camera_.eye + hit.distance * direction;
-    return lit(albedo, normal, direction, patch_light(point, normal, geometric, patches));
+    return lit(at_hit(albedo_, corners, hit), normal, direction, patch_light(point, normal, geometric, patches));
+}
+
+Colour Renderer::with_thing(const Colour& behind, const Hit& hit, const Vec3& direction, Shared& shared) const {
+    const Thing& thing = *seen_[hit.geometry];
+    const auto& corners = thing.surface->triangles[hit.primitive];
+    const auto [geometric, normal] = seen_normals(thing.place, corners, hit, direction);
+    const Vec3 point = camera_.eye + hit.distance * direction;
+    const Light light = patch_light(point, normal, geometric, shared.thing_patches);
+    const double sky = bounced + (1 - bounced) * light.sky;
+    const Colour matte = (sky_strength * sky + key_strength * light.key) * thing_albedo_;
+    return mix(behind, matte, at_hit(thing.opacity, corners, hit));
+}
+
+Colour Renderer::with_ghost(const Colour& behind, const Hit& hit, const Vec3& direction) const {
+    const double facing = std::abs(dot(unit(hit.normal), unit(direction)));
+    return mix(behind, ghost_albedo_, 0.13 + 0.24 * std::pow(1 - facing, 2));
 }
 
 Colour Renderer::sample(double x, double y, Shared& shared) const {
@@ -206,14 +262,18 @@ Colour Renderer::sample(double x, double y, Shared& shared) const {
     const Hit body = body_.closest(camera_.eye, direction);
     if (!body.found && !shared.floor) shared.floor = floor_at(x, y);
     Colour colour = body.found ? body_colour(body, direction, shared.patches) : backdrop_colour(y, *shared.floor);
-    const double depth = body.found ? body.distance : HUGE_VAL;
-    if (scene_.ghost) {
-        const Hit ghost = ghost_.closest(camera_.eye, direction);
-        if (ghost.found && ghost.distance + ghost_clearance * reach_ / norm(direction) < depth) {
-            const double facing = std::abs(dot(unit(ghost.normal), unit(direction)));
-            colour = mix(colour, ghost_albedo_, 0.13 + 0.24 * std::pow(1 - facing, 2));
-        }
+    double depth = body.found ? body.distance : HUGE_VAL;
+    const Hit ghost = scene_.ghost ? ghost_.closest(camera_.eye, direction) : Hit{};
+    const bool has_ghost = ghost.found && ghost.distance + ghost_clearance * reach_ / norm(direction) < depth;
+    const Hit thing = seen_.empty() ? Hit{} : things_.closest(camera_.eye, direction);
+    const bool has_thing = thing.found && thing.distance < depth;
+    const bool ghost_first = has_thing && has_ghost && ghost.distance < thing.distance;
+    if (has_ghost && !ghost_first) colour = with_ghost(colour, ghost, direction);
+    if (has_thing) {
+        colour = with_thing(colour, thing, direction, shared);
+        depth = thing.distance;
     }
+    if (ghost_first) colour = with_ghost(colour, ghost, direction);
     const Hit cable = cables_.closest(camera_.eye, direction);
     if (cable.found) {
         Vec3 normal = unit(cable.normal);

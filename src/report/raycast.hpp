@@ -33,10 +33,19 @@ struct Cable {
     std::vector<Vec3> points;
 };
 
+/// A rigid thing beside the robot, matte grey.
+struct Thing {
+    const Surface* surface = nullptr;
+    Pose place;
+    std::vector<double> opacity;  ///< (v), 0 to 1
+    bool open = false;            ///< a piece of a plane: seen from in front only, throws no shadow
+};
+
 struct Scene {
     const Surface* surface = nullptr;
     Pose body;
     std::vector<Colour> vertex_colours;  ///< (v), sRGB
+    std::vector<Thing> things;
     std::vector<Cable> cables;
     double cable_radius_m = 0.001;
     std::optional<Pose> ghost;  ///< the same surface elsewhere, drawn translucent

@@ -1,6 +1,7 @@
 #include "report/simulation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 
@@ -47,13 +48,31 @@ Status check_step(const Simulation& s, std::size_t i) {
         return input_error("report: step {} has positions that are not numbers", step.index);
     }
     if (step.cables.size() != rest.cables.size() || step.chambers.size() != rest.chambers.size() ||
-        step.supports.size() != rest.supports.size() || step.markers.size() != rest.markers.size()) {
-        return input_error("report: step {} has other cables, chambers, supports or markers than the rest state",
+        step.supports.size() != rest.supports.size() || step.markers.size() != rest.markers.size() ||
+        step.contacts.size() != rest.contacts.size()) {
+        return input_error("report: step {} has other cables, chambers, supports, markers or obstacles than at rest",
                            step.index);
     }
     if (!rest.cables.empty() && s.cable_points[i].size() != rest.cables.size()) {
         return input_error("report: cable_points of step {} has {} cables of {}", step.index, s.cable_points[i].size(),
                            rest.cables.size());
+    }
+    return {};
+}
+
+Status check_obstacles(const Simulation& s) {
+    for (const Obstacle& obstacle : s.obstacles) {
+        const auto points = static_cast<int>(obstacle.surface.points.size());
+        if (obstacle.offset_m.size() != s.result.steps.size()) {
+            return input_error("report: obstacle \"{}\" has {} places, the result {} steps", obstacle.name,
+                               obstacle.offset_m.size(), s.result.steps.size());
+        }
+        for (const auto& triangle : obstacle.surface.triangles) {
+            if (std::any_of(triangle.begin(), triangle.end(), [&](int i) { return i < 0 || i >= points; })) {
+                return input_error("report: a triangle of obstacle \"{}\" names a point that is not there",
+                                   obstacle.name);
+            }
+        }
     }
     return {};
 }
@@ -69,8 +88,15 @@ Status check(const Simulation& s) {
     for (std::size_t i = 0; i < s.result.steps.size(); ++i) {
         if (Status status = check_step(s, i); !status) return status;
     }
+    if (Status status = check_obstacles(s); !status) return status;
     if (!s.fields) return input_error("report: no function for the fields");
     return {};
+}
+
+bool has_contact(const sim::Trajectory& result) {
+    return std::any_of(result.steps.begin(), result.steps.end(), [](const sim::Step& step) {
+        return !step.contacts.empty() || step.self_contact_N > 0 || std::isfinite(step.smallest_distance_m);
+    });
 }
 
 Colour colour_of(const Simulation& simulation, int material) {

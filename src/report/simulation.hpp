@@ -12,6 +12,7 @@
 #include "core/vec3.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "report/colour.hpp"
+#include "report/obstacle.hpp"
 #include "sim/fields.hpp"
 #include "sim/trajectory.hpp"
 
@@ -34,6 +35,9 @@ struct Simulation {
     std::function<sim::Fields(std::span<const Vec3>)> fields{};  ///< of node positions; (tets) values each
     /// [step][cable][point], as many steps as the result has; empty where there are no cables.
     std::vector<std::vector<std::vector<Vec3>>> cable_points{};
+    std::vector<Obstacle> obstacles{};  ///< in the order of every step's contacts; may be empty
+    /// Pressure of all contacts at a step, (n) Pa, 0 inside; none where nothing can touch.
+    std::function<std::vector<double>(const sim::Step&)> contact_pressure_Pa{};
     double tolerance = 1e-4;
     double peak_memory_MB = 0;
     std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
@@ -41,6 +45,9 @@ struct Simulation {
 
 /// Sizes and indices agree; otherwise an error that names the field.
 [[nodiscard]] Status check(const Simulation& simulation);
+
+/// Whether anything could touch: there is an obstacle, or the robot came near itself.
+[[nodiscard]] bool has_contact(const sim::Trajectory& result);
 
 /// The material's own colour or that of the palette.
 [[nodiscard]] Colour colour_of(const Simulation& simulation, int material);

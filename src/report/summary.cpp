@@ -1,6 +1,5 @@
 #include "report/summary.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pliant::report {
@@ -32,7 +31,7 @@ Json actuators_json(const sim::Step& step) {
     return out;
 }
 
-Json step_json(const sim::Step& step) {
+Json step_json(const sim::Step& step, bool contact) {
     Json out = {{"index", step.index},          {"time", step.time},
                 {"converged", step.converged},  {"iterations", step.iterations},
                 {"substeps", step.substeps},    {"residual", step.residual},
@@ -43,12 +42,12 @@ Json step_json(const sim::Step& step) {
     for (const auto& support : step.supports) {
         out["supports"][support.name] = {{"force_N", vector_json(support.force_N, 1)}};
     }
-    if (!step.contacts.empty() || step.self_contact_N > 0) {
+    if (contact) {
         out["contacts"] = Json::object();
-        for (const auto& contact : step.contacts)
-            out["contacts"][contact.name] = {{"force_N", vector_json(contact.force_N, 1)}};
+        for (const auto& obstacle : step.contacts)
+            out["contacts"][obstacle.name] = {{"force_N", vector_json(obstacle.force_N, 1)}};
         out["self_contact_N"] = step.self_contact_N;
-        if (std::isfinite(step.smallest_distance_m)) out["smallest_distance_mm"] = mm_per_m * step.smallest_distance_m;
+        out["smallest_distance_mm"] = mm_per_m * step.smallest_distance_m;
     }
     out["markers"] = Json::object();
     for (const auto& marker : step.markers) out["markers"][marker.name] = vector_json(marker.position_m, mm_per_m);
@@ -70,9 +69,11 @@ std::string summary_json(const Simulation& s, int indent) {
                 {"order", s.mesh.order},         {"solver", s.result.solver},
                 {"tolerance", s.tolerance},      {"converged", s.result.converged},
                 {"message", s.result.message},   {"warnings", s.result.warnings}};
-    out["rest"] = step_json(s.result.steps.front());
+    const bool contact = has_contact(s.result);
+    out["rest"] = step_json(s.result.steps.front(), contact);
     out["steps"] = Json::array();
-    for (std::size_t i = 1; i < s.result.steps.size(); ++i) out["steps"].push_back(step_json(s.result.steps[i]));
+    for (std::size_t i = 1; i < s.result.steps.size(); ++i)
+        out["steps"].push_back(step_json(s.result.steps[i], contact));
     out["timing"] = timing_json(s.result);
     out["peak_memory_MB"] = s.peak_memory_MB;
     return out.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -47,6 +47,18 @@ TEST_CASE("summary.json has the keys and values that the design promises") {
     CHECK(j["steps"][3]["chambers"].empty());
 }
 
+TEST_CASE("contacts are listed at every step, or at none") {
+    auto robot = test::bent_bar(2, 1);
+    CHECK_FALSE(json::parse(summary_json(robot.simulation()))["rest"].contains("contacts"));
+    robot.result.steps[2].self_contact_N = 3.5;
+    robot.result.steps[2].smallest_distance_m = 2e-5;
+    const json j = json::parse(summary_json(robot.simulation()));
+    CHECK(j["rest"]["self_contact_N"] == 0);
+    CHECK(j["rest"]["smallest_distance_mm"].is_null());
+    CHECK(j["steps"][1]["self_contact_N"] == 3.5);
+    CHECK(j["steps"][1]["smallest_distance_mm"] == doctest::Approx(0.02));
+}
+
 TEST_CASE("what is no number becomes null and what is no text is replaced") {
     auto robot = test::bent_bar(1, 1);
     robot.result.steps[1].residual = std::nan("");

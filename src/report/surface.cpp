@@ -96,13 +96,11 @@ std::vector<std::size_t> smooth_groups(int node, const std::vector<int>& corners
     return group;
 }
 
-}  // namespace
-
-Surface outer_surface(const mesh::TetMesh& mesh, std::span<const int> region_material) {
-    Surface surface = triangles_on_nodes(mesh, region_material);
+/// Gives every smooth group of corners a vertex of its own.
+Surface split_at_creases(Surface surface, std::span<const Vec3> points) {
     std::vector<Vec3> normals;
     normals.reserve(surface.triangles.size());
-    for (const auto& triangle : surface.triangles) normals.push_back(unit(area_vector(triangle, mesh.points)));
+    for (const auto& triangle : surface.triangles) normals.push_back(unit(area_vector(triangle, points)));
 
     std::vector<std::array<int, 3>> split(surface.triangles.size());
     for (const auto& [node, corners] : corners_of_nodes(surface)) {
@@ -119,6 +117,20 @@ Surface outer_surface(const mesh::TetMesh& mesh, std::span<const int> region_mat
     }
     surface.triangles = std::move(split);
     return surface;
+}
+
+}  // namespace
+
+Surface outer_surface(const mesh::TetMesh& mesh, std::span<const int> region_material) {
+    return split_at_creases(triangles_on_nodes(mesh, region_material), mesh.points);
+}
+
+Surface rigid_surface(const mesh::TriMesh& mesh) {
+    Surface surface;
+    surface.triangles = mesh.triangles;
+    surface.material.assign(mesh.triangles.size(), 0);
+    surface.tet.assign(mesh.triangles.size(), -1);
+    return split_at_creases(std::move(surface), mesh.points);
 }
 
 Pose pose(const Surface& surface, std::span<const Vec3> node_positions) {

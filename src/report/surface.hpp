@@ -8,6 +8,7 @@
 
 #include "core/vec3.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "mesh/tri_mesh.hpp"
 
 namespace pliant::report {
 
@@ -22,6 +23,9 @@ struct Surface {
 /// `region_material` (regions): -1 for voids. Two triangles of one material share a
 /// vertex unless their angle at rest is over 35 degrees.
 [[nodiscard]] Surface outer_surface(const mesh::TetMesh& mesh, std::span<const int> region_material);
+
+/// The same for a rigid thing: its points are the nodes, its material is 0, and there are no tets behind it (-1).
+[[nodiscard]] Surface rigid_surface(const mesh::TriMesh& mesh);
 
 struct Pose {
     std::vector<Vec3> positions;  ///< (v)

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cmath>
 
 namespace pliant::report {
 namespace {
@@ -30,7 +31,7 @@ void names(Row& row, const std::string& name, std::span<const std::string_view> 
     for (const std::string_view column : columns) row.text(fmt::format("{}_{}", name, column));
 }
 
-std::string steps_header(const sim::Step& rest) {
+std::string steps_header(const sim::Step& rest, bool contact) {
     static constexpr std::array<std::string_view, 8> common = {"index",    "time",     "converged", "iterations",
                                                                "substeps", "residual", "wall_ms",   "min_J"};
     static constexpr std::array<std::string_view, 3> cable = {"length_ratio", "length_mm", "tension_N"};
@@ -41,10 +42,15 @@ std::string steps_header(const sim::Step& rest) {
     for (const auto& c : rest.cables) names(row, c.name, cable);
     for (const auto& c : rest.chambers) names(row, c.name, chamber);
     for (const auto& s : rest.supports) names(row, s.name, force);
+    for (const auto& o : rest.contacts) names(row, o.name, force);
+    if (contact) {
+        row.text("self_contact_N");
+        row.text("smallest_distance_mm");
+    }
     return row.line();
 }
 
-std::string steps_row(const sim::Step& step) {
+std::string steps_row(const sim::Step& step, bool contact) {
     Row row;
     row.number(step.index);
     row.number(step.time);
@@ -65,6 +71,14 @@ std::string steps_row(const sim::Step& step) {
         row.number(1e-3 * c.pressure_Pa);
     }
     for (const auto& s : step.supports) row.vector(s.force_N, 1);
+    for (const auto& o : step.contacts) row.vector(o.force_N, 1);
+    if (contact) {
+        row.number(step.self_contact_N);
+        if (std::isfinite(step.smallest_distance_m))
+            row.number(1e3 * step.smallest_distance_m);
+        else
+            row.text("");
+    }
     return row.line();
 }
 
@@ -83,8 +97,9 @@ std::string csv_field(std::string_view text) {
 }
 
 std::string steps_csv(const sim::Trajectory& result) {
-    std::string out = steps_header(result.steps.front());
-    for (const sim::Step& step : result.steps) out += steps_row(step);
+    const bool contact = has_contact(result);
+    std::string out = steps_header(result.steps.front(), contact);
+    for (const sim::Step& step : result.steps) out += steps_row(step, contact);
     return out;
 }
 

@@ -44,6 +44,19 @@ TEST_CASE("markers.csv gives millimetres") {
     CHECK(lines[11].starts_with("10,1,63.66197724,10,71.16197724,"));
 }
 
+TEST_CASE("forces of obstacles and of the robot on itself have columns where anything could touch") {
+    auto robot = test::bent_bar(2, 1);
+    for (auto& step : robot.result.steps) step.contacts = {{"ball", {0.5, 0, -2.0 * step.index}}};
+    robot.result.steps[2].self_contact_N = 3.5;
+    robot.result.steps[2].smallest_distance_m = 2e-5;
+    const auto lines = lines_of(steps_csv(robot.result));
+    CHECK(
+        lines[0].ends_with(",base_force_z_N,ball_force_x_N,ball_force_y_N,ball_force_z_N,self_contact_N,"
+                           "smallest_distance_mm"));
+    CHECK(lines[1].ends_with(",0.5,0.5,0,-0,0,"));
+    CHECK(lines[3].ends_with(",0.5,0.5,0,-4,3.5,0.02"));
+}
+
 TEST_CASE("fields are quoted as RFC 4180 says, and never start a formula") {
     CHECK(csv_field("plain name") == "plain name");
     CHECK(csv_field("a,b") == "\"a,b\"");

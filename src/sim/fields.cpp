@@ -40,4 +40,21 @@ Fields compute_fields(const Model& model, std::span<const Vec3> positions) {
     return fields;
 }
 
+std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time) {
+    const contact::Contact* contact = model.contact();
+    if (contact == nullptr) return {};
+    std::vector<double> x = contact->rest();
+    for (std::size_t n = 0; n < positions.size(); ++n) {
+        for (std::size_t c = 0; c < 3; ++c) x[3 * n + c] = positions[n][c];
+    }
+    const auto& obstacles = model.description().contact->obstacles;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+        const Vec3 move = obstacles[k].share.at(time) * obstacles[k].move_m;
+        for (int node = contact->first_node(k); node < contact->first_node(k + 1); ++node) {
+            for (std::size_t c = 0; c < 3; ++c) x[3 * static_cast<std::size_t>(node) + c] += move[c];
+        }
+    }
+    return contact->forces(contact->find(x), x, nullptr).pressure_Pa;
+}
+
 }  // namespace pliant::sim

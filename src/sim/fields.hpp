@@ -1,4 +1,4 @@
-// Fields derived from a deformed state, one value per tet (the mean over its integration points).
+// Fields derived from a deformed state: one value per tet (the mean over its integration points), or one per node.
 #pragma once
 
 #include <span>
@@ -19,5 +19,9 @@ struct Fields {
 
 /// `positions` (n, 3) in metres.
 [[nodiscard]] Fields compute_fields(const Model& model, std::span<const Vec3> positions);
+
+/// Normal pressure of all contacts at the nodes, (n) Pa: 0 inside and where nothing is near. `time`: of the program,
+/// which says where the obstacles are. Empty where nothing can touch.
+[[nodiscard]] std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time);
 
 }  // namespace pliant::sim

@@ -145,6 +145,22 @@ function supportPlots() {
     }
 }
 
+function contactPlots() {
+    const names = Object.keys(data.rest.contacts || {});
+    for (const name of names.slice(0, 6)) {
+        plot(`Force of “${name}” on the robot`, "time", "N", ["x", "y", "z"],
+             states.map((s) => [s.time, ...s.contacts[name].force_N]));
+    }
+    if (states.some((s) => s.self_contact_N > 0)) {
+        plot("Contact of the robot with itself, all forces", "time", "N", ["self-contact"],
+             states.map((s) => [s.time, s.self_contact_N]));
+    }
+    if (states.some((s) => Number.isFinite(s.smallest_distance_mm))) {
+        plot("Smallest distance of what is near", "time", "mm", ["distance"],
+             states.map((s) => [s.time, s.smallest_distance_mm]), { includeZero: true });
+    }
+}
+
 function solverPlots() {
     const steps = data.steps;
     plot("Iterations and substeps", "step", "", ["iterations", "substeps"],
@@ -176,6 +192,7 @@ function draw() {
     actuatorPlots("chambers", "Chamber pressure", "volume_ratio", "pressure_kPa", "volume ratio", "kPa");
     markerPlots();
     supportPlots();
+    contactPlots();
     solverPlots();
 }
 
