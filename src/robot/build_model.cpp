@@ -395,7 +395,7 @@ private:
     }
 
     void add_cable(const CableSpec& spec) {
-        sim::Cable cable{spec.name, {}, spec.target};
+        sim::Cable cable{spec.name, {}, spec.target, spec.friction, spec.anchor != CableSpec::Anchor::last};
         const auto points = guide_points(spec);
         for (std::size_t k = 0; k < points.size(); ++k) {
             const bool anchored = (k == 0 && spec.anchor == CableSpec::Anchor::first) ||

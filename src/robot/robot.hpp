@@ -108,6 +108,7 @@ struct CableSpec {
     Anchor anchor = Anchor::none;
     bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
     double eyelet_radius = 0;          ///< length units
+    double friction = 0;               ///< coefficient in the guides
     sim::CableTarget target;
     bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
     int line = 0;

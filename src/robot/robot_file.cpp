@@ -317,6 +317,9 @@ void read_cables(Reader& root, Context& context) {
         cable.gap_elements = reader.choice("model", {"length", "gap-elements"}, "length") == "gap-elements";
         cable.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
         if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
+        cable.friction = reader.number("friction", 0);
+        if (!(cable.friction >= 0 && cable.friction <= 10))
+            reader.problem("friction", "is a coefficient: 0 or more, a cord in a plastic tube has 0.1 to 0.3");
         cable.target = read_target(reader);
         if (cable.gap_elements && cable.target.kind == sim::CableTarget::Kind::tension_N)
             reader.problem("target", "model = \"gap-elements\" knows lengths only: length_ratio or shortening");

@@ -10,19 +10,24 @@ Actuator::Actuator(CablePath path, std::span<const double> rest)
 Actuator::Actuator(ChamberSurface surface, std::span<const double> rest)
     : geometry_(std::move(surface)), rest_measure_(measure(rest)) {}
 
-double Actuator::measure(std::span<const double> x) const {
-    if (const auto* path = std::get_if<CablePath>(&geometry_)) return path->length(x);
+double Actuator::measure(std::span<const double> x, std::span<const double> shares) const {
+    if (const auto* path = std::get_if<CablePath>(&geometry_)) return path->length(x, shares);
     return std::get<ChamberSurface>(geometry_).volume(x);
 }
 
-void Actuator::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
-    std::visit([&](const auto& geometry) { geometry.add_gradient(x, factor, forces); }, geometry_);
+void Actuator::add_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                            std::span<const double> shares) const {
+    if (const auto* path = std::get_if<CablePath>(&geometry_))
+        path->add_gradient(x, factor, forces, shares);
+    else
+        std::get<ChamberSurface>(geometry_).add_gradient(x, factor, forces);
 }
 
 void Actuator::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                           const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+                           const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+                           std::span<const double> shares) const {
     if (const auto* path = std::get_if<CablePath>(&geometry_))
-        path->add_hessian(x, factor, free_index, pattern, values);
+        path->add_hessian(x, factor, free_index, pattern, values, shares);
     else
         std::get<ChamberSurface>(geometry_).add_hessian(x, factor, free_index, pattern, values, project);
 }

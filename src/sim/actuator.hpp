@@ -17,18 +17,20 @@ public:
     Actuator(CablePath path, std::span<const double> rest);
     Actuator(ChamberSurface surface, std::span<const double> rest);
 
-    /// Length in m or volume in m^3, and at rest.
-    [[nodiscard]] double measure(std::span<const double> x) const;
+    /// Length in m or volume in m^3, and at rest. `shares` (segments of a cable) as in CablePath; a chamber has none.
+    [[nodiscard]] double measure(std::span<const double> x, std::span<const double> shares = {}) const;
     [[nodiscard]] double rest_measure() const { return rest_measure_; }
     /// A cable pulls and never pushes (m >= 0, and it may be shorter than allowed); air does both.
     [[nodiscard]] bool only_pulls() const { return std::holds_alternative<CablePath>(geometry_); }
 
     /// forces (3n) += factor * dg/dx.
-    void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
+    void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                      std::span<const double> shares = {}) const;
     /// values += factor * d2g/dx2, for a pattern over free nodes (block 3) that holds the cliques. With `project`
     /// the addition is positive semi-definite (that of a pulling cable always is).
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+                     std::span<const double> shares = {}) const;
     /// result (3n) += factor * (skew part of the derivative of the gradient) * v: only a pressed patch with a free rim
     /// has one, its force is not the gradient of g.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,

@@ -1,6 +1,7 @@
 #include "sim/cable_path.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace pliant::sim {
@@ -37,13 +38,32 @@ Vec3 CablePath::vector_of(const Segment& segment, std::span<const double> x) {
     return d;
 }
 
-double CablePath::length(std::span<const double> x) const {
+double CablePath::length(std::span<const double> x, std::span<const double> shares) const {
     double sum = 0;
-    for (const Segment& segment : segments_) {
-        const double l = norm(vector_of(segment, x));
-        sum += l >= met_length_m_ ? l : 0.5 * (l * l / met_length_m_ + met_length_m_);
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        const double l = norm(vector_of(segments_[k], x));
+        const double smooth = l >= met_length_m_ ? l : 0.5 * (l * l / met_length_m_ + met_length_m_);
+        sum += shares.empty() ? smooth : shares[k] * smooth;
     }
     return sum;
+}
+
+std::vector<double> CablePath::tension_shares(std::span<const double> x, double friction, bool pulled_at_first) const {
+    std::vector<double> shares(segments_.size(), 1.0);
+    double share = 1;
+    Vec3 before;  // direction of the segment towards the pulled end; zero until there is one
+    for (std::size_t step = 0; step < segments_.size(); ++step) {
+        const std::size_t k = pulled_at_first ? step : segments_.size() - 1 - step;
+        const Vec3 d = vector_of(segments_[k], x);
+        if (norm(d) >= met_length_m_) {  // points that have met turn nothing
+            const Vec3 direction = d / norm(d);
+            if (norm(before) > 0)
+                share *= std::exp(-friction * std::acos(std::clamp(dot(before, direction), -1.0, 1.0)));
+            before = direction;
+        }
+        shares[k] = share;
+    }
+    return shares;
 }
 
 int CablePath::closed_segment(std::span<const double> x) const {
@@ -53,12 +73,15 @@ int CablePath::closed_segment(std::span<const double> x) const {
     return -1;
 }
 
-void CablePath::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
-    for (const Segment& segment : segments_) {
+void CablePath::add_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                             std::span<const double> shares) const {
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        const Segment& segment = segments_[k];
+        const double pull = shares.empty() ? factor : factor * shares[k];
         const Vec3 d = vector_of(segment, x);
         const double l = std::max(norm(d), met_length_m_);
         for (std::size_t i = 0; i < segment.nodes.size(); ++i) {
-            const Vec3 f = (factor * segment.weights[i] / l) * d;
+            const Vec3 f = (pull * segment.weights[i] / l) * d;
             double* target = forces.data() + 3 * static_cast<std::size_t>(segment.nodes[i]);
             target[0] += f.x;
             target[1] += f.y;
@@ -68,8 +91,11 @@ void CablePath::add_gradient(std::span<const double> x, double factor, std::span
 }
 
 void CablePath::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                            const linalg::SymmetricPattern& pattern, std::span<double> values) const {
-    for (const Segment& segment : segments_) {
+                            const linalg::SymmetricPattern& pattern, std::span<double> values,
+                            std::span<const double> shares) const {
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        const Segment& segment = segments_[k];
+        const double pull = shares.empty() ? factor : factor * shares[k];
         const Vec3 d = vector_of(segment, x);
         const double l = std::max(norm(d), met_length_m_);
         const Vec3 t = norm(d) >= met_length_m_ ? d / l : Vec3{};
@@ -79,7 +105,7 @@ void CablePath::add_hessian(std::span<const double> x, double factor, const std:
             for (std::size_t a = 0; a < segment.nodes.size(); ++a) {
                 const int i = free_index[segment.nodes[a]];
                 if (i < j) continue;
-                const double scale = factor * segment.weights[a] * segment.weights[b] / l;
+                const double scale = pull * segment.weights[a] * segment.weights[b] / l;
                 pattern.add_block(values, i, j, [&](int r, int c) {
                     const auto row = static_cast<std::size_t>(r);
                     const auto column = static_cast<std::size_t>(c);

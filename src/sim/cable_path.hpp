@@ -21,12 +21,21 @@ public:
     /// `rest` (3n): node positions at rest.
     CablePath(const Cable& cable, std::span<const double> rest);
 
-    [[nodiscard]] double length(std::span<const double> x) const;
+    /// With `shares` (segments) all three are those of the weighted length sum of shares[k] |d_k|; else all shares
+    /// are 1.
+    [[nodiscard]] double length(std::span<const double> x, std::span<const double> shares = {}) const;
     /// forces (3n) += factor * dL/dx.
-    void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
+    void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                      std::span<const double> shares = {}) const;
     /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques().
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values,
+                     std::span<const double> shares = {}) const;
+    /// (segments) the tension in each as a share of that in the first (or the last, where that one is pulled), if the
+    /// cable slides with friction through its guide points: exp(-friction * sum of the angles that it has turned
+    /// since). A negative friction is that of a cable that is let go. Source: Euler 1769, Eytelwein 1808.
+    [[nodiscard]] std::vector<double> tension_shares(std::span<const double> x, double friction,
+                                                     bool pulled_at_first) const;
     /// The first segment whose ends have met (its index from 0), or -1.
     [[nodiscard]] int closed_segment(std::span<const double> x) const;
     void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;

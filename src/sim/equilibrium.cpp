@@ -142,12 +142,48 @@ Controls Equilibrium::controls(double time, std::span<const double> stretch) con
     controls.time = time;
     controls.external_N = external_at(time);
     controls.laws = laws_at(stretch);
+    controls.shares.resize(actuators_.size());
     controls.obstacles = obstacles_at(time);
     for (const Support& support : model_->description().supports)
         controls.support_share.push_back(support.share.at(time));
     for (std::size_t a = 0; a < actuators_.size(); ++a)
         controls.drives.push_back(grows_[a] ? Drive{Drive::Kind::multiplier, 0} : drive_at(a, time));
     return controls;
+}
+
+bool Equilibrium::has_cable_friction() const {
+    const auto& cables = model_->description().cables;
+    return std::any_of(cables.begin(), cables.end(), [](const Cable& cable) { return cable.friction > 0; });
+}
+
+void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, double time, double time_before,
+                                        Controls& controls) const {
+    const auto& cables = model_->description().cables;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        if (!(cables[c].friction > 0)) continue;
+        const Drive wanted = drive_at(c, time);
+        const double change = wanted.value - drive_at(c, time_before).value;
+        const bool by_length = wanted.kind == Drive::Kind::measure;
+        const bool let_go = by_length ? change > 0 : change < 0;
+        const CablePath& path = actuators_[c].cable();
+        const double friction = let_go ? -cables[c].friction : cables[c].friction;
+        controls.shares[c] = path.tension_shares(view(x), friction, cables[c].pulled_at_first);
+        if (!by_length) continue;
+        const double weighted = path.length(view(x), controls.shares[c]);
+        const double length = path.length(view(x));
+        controls.drives[c].value = weighted + (wanted.value - length) * weighted / length;
+    }
+}
+
+double Equilibrium::cable_friction_error(const Eigen::VectorXd& x, double time) const {
+    const auto& cables = model_->description().cables;
+    double error = 0;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        const Drive wanted = drive_at(c, time);
+        if (!(cables[c].friction > 0) || wanted.kind != Drive::Kind::measure) continue;
+        error = std::max(error, (actuators_[c].measure(view(x)) - wanted.value) / actuators_[c].rest_measure());
+    }
+    return error;
 }
 
 State Equilibrium::rest() const {
@@ -212,7 +248,7 @@ void Equilibrium::fill_actuators(const State& state, const Controls& controls, E
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const auto i = static_cast<Eigen::Index>(a);
         const Drive& drive = controls.drives[a];
-        const double g = actuators_[a].measure(view(state.x));
+        const double g = actuators_[a].measure(view(state.x), controls.shares[a]);
         e.energy_J += drive_energy(drive, a, g);
         if (drive.kind == Drive::Kind::multiplier) e.multiplier[i] = drive.value;
         if (drive.kind == Drive::Kind::gas)
@@ -228,7 +264,8 @@ void Equilibrium::fill_residual(const State& state, const Controls& controls, co
                                 Evaluation& e) const {
     Eigen::VectorXd driving = -controls.external_N;
     for (std::size_t a = 0; a < actuators_.size(); ++a)
-        actuators_[a].add_gradient(view(state.x), e.multiplier[static_cast<Eigen::Index>(a)], view(driving));
+        actuators_[a].add_gradient(view(state.x), e.multiplier[static_cast<Eigen::Index>(a)], view(driving),
+                                   controls.shares[a]);
     e.out_of_balance = internal + driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
     const double balancing = std::max({internal.norm(), driving.norm(), force_floor_});
@@ -252,7 +289,7 @@ Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& 
     if (controls.inertia) merit.value_J += controls.inertia->energy(x);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const Drive& drive = controls.drives[a];
-        const double g = actuators_[a].measure(view(x));
+        const double g = actuators_[a].measure(view(x), controls.shares[a]);
         merit.value_J += drive_energy(drive, a, g);
         if (drive.kind != Drive::Kind::measure) continue;
         const double excess = (g - drive.value) / actuators_[a].rest_measure();
@@ -387,7 +424,8 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
         if (multiplier != 0)
-            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project);
+            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project,
+                                      controls.shares[a]);
     }
 }
 

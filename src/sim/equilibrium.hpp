@@ -19,7 +19,10 @@ struct Controls {
     std::vector<double> support_share;  ///< (supports) of their prescribed motion
     std::vector<Drive> drives;          ///< (actuators)
     std::vector<material::Law> laws;    ///< (materials) where target shapes change with time; else empty
-    Eigen::VectorXd obstacles;          ///< (3 obstacle nodes) where the obstacles are
+    /// (actuators) how the tension of a cable with friction drops along it, frozen at some state of this step; empty
+    /// lists where there is no friction.
+    std::vector<std::vector<double>> shares;
+    Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) where the obstacles are
     /// Friction as frozen at some state of this step; none before contact.
     std::shared_ptr<const contact::Friction> friction = nullptr;
     std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
@@ -51,6 +54,12 @@ public:
 
     /// `stretch` (actuators): scale of the target shapes that each one drives, 1 at rest.
     [[nodiscard]] Controls controls(double time, std::span<const double> stretch = {}) const;
+    /// The shares of all cables with friction at positions x, while `before` (if any) leads to these controls; and, for
+    /// those driven by length, the weighted length that x would have if the true one were as wanted.
+    void freeze_cable_friction(const Eigen::VectorXd& x, double time, double time_before, Controls& controls) const;
+    /// Largest error of the true lengths of cables with friction, relative to rest.
+    [[nodiscard]] double cable_friction_error(const Eigen::VectorXd& x, double time) const;
+    [[nodiscard]] bool has_cable_friction() const;
     /// Where an actuator is driven by its measure: what it shall be, relative to rest.
     [[nodiscard]] double wanted_ratio(std::size_t actuator, double time) const;
     [[nodiscard]] State rest() const;

@@ -99,11 +99,14 @@ struct ChamberTarget {
     [[nodiscard]] double at(double time) const;
 };
 
-/// A frictionless cable through guide points; its length is that of the polyline.
+/// A cable through guide points; its length is that of the polyline. It slides without friction or, with a coefficient
+/// above zero, as a rope over bollards: its tension, given at the pulled end, drops at every turn.
 struct Cable {
     std::string name;
     std::vector<Attachment> points;  ///< at least two
     CableTarget target;
+    double friction = 0;
+    bool pulled_at_first = true;  ///< else at the last point
 };
 
 /// Air inside a closed wall. Its pressure (above ambient, of either sign) is the multiplier of its volume.

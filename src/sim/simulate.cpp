@@ -19,7 +19,8 @@ namespace {
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
-constexpr int friction_rounds = 10;
+constexpr int friction_rounds = 30;
+constexpr double cable_friction_share = 0.1;  // of the tolerance, for the length of a cable with friction
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
 
@@ -262,9 +263,11 @@ private:
                1;
     }
 
-    /// Friction depends on the contact forces, which depend on friction: frozen, solved, and frozen anew until both
-    /// agree (the lagging of Li et al. 2020, section 5).
+    /// Friction depends on the forces, which depend on friction: frozen, solved, and frozen anew until both agree (the
+    /// lagging of Li et al. 2020, section 5; likewise for cables that drag in their guides).
     StepOutcome settle_friction(Controls& controls, State& next, const Progress& progress) {
+        const bool cables_drag = system_.has_cable_friction();
+        if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
         controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
         StepOutcome total;
         for (int round = 0; round < friction_rounds; ++round) {
@@ -272,10 +275,12 @@ private:
                                              {program_.tolerance, program_.iteration_limit}, next, progress);
             outcome.iterations += total.iterations;
             total = std::move(outcome);
-            if (!total.converged || !system_.has_friction()) break;
+            if (!total.converged || !(cables_drag || system_.has_friction())) break;
             controls.friction = system_.freeze_friction(next, state_, controls, controls_);
+            if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
             Evaluation settled = system_.evaluate(next, controls);
-            if (settled.residual <= program_.tolerance) {
+            if (settled.residual <= program_.tolerance &&
+                system_.cable_friction_error(next.x, controls.time) <= cable_friction_share * program_.tolerance) {
                 total.evaluation = std::move(settled);
                 break;
             }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "sim/cable_path.hpp"
 #include "sim/elements.hpp"
@@ -356,4 +357,43 @@ TEST_CASE("fields of a uniform stretch") {
         CHECK(fields.von_mises_Pa[t] > 0);
         CHECK(fields.energy_density_Pa[t] > 0);
     }
+}
+
+TEST_CASE("the tension of a cable with friction drops by exp(-mu theta), as round a bollard") {
+    // A quarter of a circle in 90 chords that turn by 1 degree each, between two straight ends.
+    Cable cable{"rope", {}, {}};
+    std::vector<double> x;
+    for (int k = 0; k <= 90; ++k) {
+        const double angle = k * std::numbers::pi / 180;
+        cable.points.push_back({{k}, {1.0}, {}});
+        x.insert(x.end(), {std::cos(angle), std::sin(angle), 0});
+    }
+    const CablePath path(cable, x);
+    const double turned = 89 * std::numbers::pi / 180;
+    const auto shares = path.tension_shares(x, 0.3, true);
+    CHECK(shares.front() == 1);
+    CHECK(shares.back() == doctest::Approx(std::exp(-0.3 * turned)).epsilon(1e-9));
+    const auto from_last = path.tension_shares(x, 0.3, false);
+    CHECK(from_last.back() == 1);
+    CHECK(from_last.front() == doctest::Approx(std::exp(-0.3 * turned)).epsilon(1e-9));
+    CHECK(path.tension_shares(x, -0.3, true).back() == doctest::Approx(std::exp(0.3 * turned)).epsilon(1e-9));
+}
+
+TEST_CASE("friction: the same length takes more tension, and letting go takes less") {
+    const auto tensions = [](double friction) {
+        Description d = bar(2);
+        CableTarget target{CableTarget::Kind::length_ratio, 0.85};
+        target.keys = Curve{{0, 1, 1.5}, {1, 0.85, 0.9}};
+        d.cables = {flexor(d.mesh, target)};
+        d.cables[0].friction = friction;
+        const Trajectory result = solve(d, {.steps = 6, .duration = 1.5, .tolerance = 1e-6});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        CHECK(result.steps[4].cables[0].length_ratio == doctest::Approx(0.85).epsilon(1e-6));
+        CHECK(result.steps[6].cables[0].length_ratio == doctest::Approx(0.9).epsilon(1e-6));
+        return std::pair(result.steps[4].cables[0].tension_N, result.steps[6].cables[0].tension_N);
+    };
+    const auto [pulled_free, let_go_free] = tensions(0);
+    const auto [pulled, let_go] = tensions(0.4);
+    CHECK(pulled > 1.05 * pulled_free);
+    CHECK(let_go < 0.97 * let_go_free);
 }

@@ -243,7 +243,8 @@ private:
         Eigen::VectorXd force = evaluation_.out_of_balance;
         for (const Eigen::Index a : solved_) {
             actuator(a).add_gradient(view(state_.x), multiplier[a] - state_.multiplier[a],
-                                     {force.data(), static_cast<std::size_t>(force.size())});
+                                     {force.data(), static_cast<std::size_t>(force.size())},
+                                     controls_.shares[static_cast<std::size_t>(a)]);
         }
         return force;
     }
