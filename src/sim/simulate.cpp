@@ -119,14 +119,14 @@ public:
 
     /// A gap that has closed between two guide points: from here on the flanks would touch.
     void warn(int step, std::vector<std::string>& warnings) {
+        if (model_.contact() != nullptr && model_.description().contact->settings.self) return;
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             const int segment = system_.actuators()[c].cable().closed_segment(x);
             if (segment < 0 || !warned_.insert(c).second) continue;
             warnings.push_back(
                 fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
-                            "closed, and contact "
-                            "of its flanks is not modelled",
+                            "closed; without [contact] its flanks pass through each other",
                             step, segment + 1, segment + 2, model_.description().cables[c].name));
         }
     }
