@@ -123,9 +123,9 @@ TEST_CASE("an obstacle hides the body, is grey and throws a shadow; a plane is s
     CHECK(shown.rgb[at] > 100);
     CHECK(hidden.rgb == plain.rgb);
     stage.scene.floor_z_m = -0.03;
-    const mesh::TriMesh roof = disc({0.03, 0.01, 0.09}, {0, 0, 1}, 0.03);
+    const mesh::TriMesh roof = disc({0.02, 0, 0.05}, {0, 0, 1}, 0.03);
     const Image lit = seen(roof, true), shaded = seen(roof, false);
-    const std::size_t below = stage.pixel({0.03, 0, 0.006});
+    const std::size_t below = stage.pixel({0.0197, 0, 0.0106});
     CHECK(brightness(shaded, below) < brightness(lit, below) - 20);
 }
 

@@ -87,3 +87,19 @@ TEST_CASE("a tube is closed and as thick as asked") {
     const double decagon = 10 * 0.5 * 0.5 * 0.5 * std::sin(0.2 * 3.14159265358979);
     CHECK(mesh::signed_volume({straight.positions, straight.triangles}) == doctest::Approx(2 * decagon));
 }
+
+TEST_CASE("a rigid box has flat faces: its corners are split in three") {
+    mesh::TriMesh box;
+    for (int i = 0; i < 8; ++i) box.points.push_back({1.0 * (i & 1), 1.0 * (i >> 1 & 1), 1.0 * (i >> 2)});
+    box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    const Surface surface = rigid_surface(box);
+    CHECK(surface.triangles.size() == 12);
+    CHECK(surface.vertex_node.size() == 24);
+    const Pose at_rest = pose(surface, box.points);
+    for (std::size_t v = 0; v < 24; ++v) {
+        const Vec3 n = at_rest.normals[v], out = at_rest.positions[v] - Vec3{0.5, 0.5, 0.5};
+        CHECK(std::abs(n.x) + std::abs(n.y) + std::abs(n.z) == doctest::Approx(1));  // along an axis
+        CHECK(dot(n, out) == doctest::Approx(0.5));
+    }
+}

@@ -87,6 +87,8 @@ Simulation Robot::simulation() const {
             result,
             fields,
             cable_points,
+            {},
+            {},
             1e-4,
             123.5,
             {{"steps", "10"}, {"solver", "newton"}}};

@@ -40,9 +40,8 @@ Fields compute_fields(const Model& model, std::span<const Vec3> positions) {
     return fields;
 }
 
-std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time) {
+std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> positions, double time) {
     const contact::Contact* contact = model.contact();
-    if (contact == nullptr) return {};
     std::vector<double> x = contact->rest();
     for (std::size_t n = 0; n < positions.size(); ++n) {
         for (std::size_t c = 0; c < 3; ++c) x[3 * n + c] = positions[n][c];
@@ -54,6 +53,13 @@ std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> p
             for (std::size_t c = 0; c < 3; ++c) x[3 * static_cast<std::size_t>(node) + c] += move[c];
         }
     }
+    return x;
+}
+
+std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time) {
+    const contact::Contact* contact = model.contact();
+    if (contact == nullptr) return {};
+    const std::vector<double> x = contact_nodes(model, positions, time);
     return contact->forces(contact->find(x), x, nullptr).pressure_Pa;
 }
 

@@ -20,8 +20,12 @@ struct Fields {
 /// `positions` (n, 3) in metres.
 [[nodiscard]] Fields compute_fields(const Model& model, std::span<const Vec3> positions);
 
-/// Normal pressure of all contacts at the nodes, (n) Pa: 0 inside and where nothing is near. `time`: of the program,
-/// which says where the obstacles are. Empty where nothing can touch.
+/// Positions as contact::Contact takes them, (3 nodes): the robot's nodes, then the obstacles where they are at `time`
+/// of the program. Precondition: something can touch.
+[[nodiscard]] std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> positions, double time);
+
+/// Normal pressure of all contacts at the nodes, (n) Pa: 0 inside and where nothing is near. Empty where nothing can
+/// touch.
 [[nodiscard]] std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time);
 
 }  // namespace pliant::sim

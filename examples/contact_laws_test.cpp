@@ -1,0 +1,66 @@
+// What must hold at every step of examples/gripper_holds_a_ball, on any mesh; here on linear tets, which are quick. The
+// example's own numbers are in its expected.json.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "robot/build.hpp"
+#include "sim/fields.hpp"
+
+using namespace pliant;
+
+namespace {
+
+struct Grip {
+    sim::Model model;
+    sim::Trajectory result;
+};
+
+Grip run(std::vector<std::string> assignments) {
+    assignments.emplace_back("mesh.order=1");
+    const auto robot = robot::load_robot("examples/gripper_holds_a_ball/robot.toml", assignments);
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    auto mesh = robot::build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    auto model = robot::build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    sim::Trajectory result = sim::run(*model, robot->program, silent);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    return {std::move(*model), std::move(result)};
+}
+
+/// The pull that the ball needs: its force on the gripper, downwards.
+double pull_N(const sim::Step& step) {
+    return -step.contacts.at(0).force_N.z;
+}
+
+}  // namespace
+
+TEST_CASE("the ball is held by friction, crosses nothing, and the arm carries what the ball pulls") {
+    const Grip rough = run({}), smooth = run({"parameters.friction=0"});
+    for (const sim::Step& step : rough.result.steps) {
+        const auto x = sim::contact_nodes(rough.model, step.positions, step.time);
+        CHECK_FALSE(rough.model.contact()->crossing(x).has_value());
+        // The cables ride on the gripper with both ends: only ball and arm act on it from outside.
+        const Vec3 ball = step.contacts.at(0).force_N, arm = step.supports.at(0).force_N;
+        CHECK(norm(ball + arm) < 1e-2 * norm(ball) + 1e-3);
+    }
+    const sim::Step& last = rough.result.steps.back();
+    CHECK(last.smallest_distance_m > 0);
+    CHECK(last.smallest_distance_m < 0.4e-3);
+    CHECK(pull_N(last) > 1);
+    CHECK(std::abs(pull_N(smooth.result.steps.back())) < 0.5 * pull_N(last));
+
+    const auto pressure = sim::contact_pressure(rough.model, last.positions, last.time);
+    int pressed = 0;
+    for (std::size_t n = 0; n < pressure.size(); ++n) {
+        if (pressure[n] == 0) continue;
+        ++pressed;
+        // Only inner sides are touched: nearer to the axis than the middle of a finger.
+        CHECK(std::hypot(last.positions[n].x, last.positions[n].y) < 17e-3);
+    }
+    CHECK(pressed >= 3);
+    const auto rest = sim::contact_pressure(rough.model, rough.result.steps.front().positions, 0);
+    for (const double p : rest) CHECK(p == 0);
+}
