@@ -167,11 +167,9 @@ void read_program(config::Reader& root, Robot& robot) {
     if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
         reader.problem("tolerance", "must be between 1e-10 and 0.1");
     robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
-    const std::string solver = reader.choice("solver", {"auto", "newton", "quasi-newton", "local-global"}, "auto");
-    program.solver = solver == "newton"         ? sim::Solver::newton
-                     : solver == "quasi-newton" ? sim::Solver::quasi_newton
-                     : solver == "local-global" ? sim::Solver::local_global
-                                                : sim::Solver::automatic;
+    const std::string solver =
+        reader.choice("solver", {"auto", "newton", "quasi-newton", "anderson", "local-global"}, "auto");
+    program.solver = sim::solver_named(solver).value_or(sim::Solver::automatic);
     program.iteration_limit =
         static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
     if (program.iteration_limit < 0)

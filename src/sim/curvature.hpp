@@ -1,5 +1,6 @@
-// Three ways to turn forces into motion. The step solver asks for H^-1 times a few vectors, where H is
+// Four ways to turn forces into motion. The step solver asks for H^-1 times a few vectors, where H is
 //   local-global   the pre-factored weighted Laplacian: one step is the thesis' local and global step (A.1 to A.4)
+//   anderson       the same step, mixed with the last eight so that they cancel as much of it as they can
 //   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
 //   newton         the tangent stiffness with the actuators' own stiffness, factorised anew
 // so that elements, constraints and line search are the same for all.
@@ -7,17 +8,19 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string_view>
 
 #include "sim/equilibrium.hpp"
+#include "sim/solver.hpp"
 
 namespace pliant::sim {
 
 class Curvature {
 public:
     virtual ~Curvature() = default;
-    [[nodiscard]] virtual std::string_view name() const = 0;
+    [[nodiscard]] virtual Solver solver() const = 0;
     [[nodiscard]] virtual int default_iteration_limit() const = 0;
+    /// How far a step may be shortened before it counts as no good.
+    [[nodiscard]] virtual double smallest_share() const { return 1e-7; }
 
     /// Called at the start of each step of the program.
     virtual void restart() {}
@@ -33,7 +36,7 @@ public:
     }
 };
 
-/// The weighted Laplacian of a model, factorised once; shared by the first two and by the prediction of each step.
+/// The weighted Laplacian of a model, factorised once; shared by the first three and by the prediction of each step.
 class FactoredLaplacian {
 public:
     explicit FactoredLaplacian(const Model& model);
@@ -50,6 +53,7 @@ private:
 };
 
 [[nodiscard]] std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian);
+[[nodiscard]] std::unique_ptr<Curvature> make_anderson(const FactoredLaplacian& laplacian);
 [[nodiscard]] std::unique_ptr<Curvature> make_quasi_newton(const FactoredLaplacian& laplacian);
 [[nodiscard]] std::unique_ptr<Curvature> make_newton(const Equilibrium& system);
 

@@ -28,7 +28,7 @@ void solve_components(const linalg::Cholesky& factor, Eigen::Ref<Eigen::VectorXd
 class LocalGlobal final : public Curvature {
 public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
-    [[nodiscard]] std::string_view name() const override { return "local-global"; }
+    [[nodiscard]] Solver solver() const override { return Solver::local_global; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
     [[nodiscard]] bool refresh(const sim::State&, const Controls&, bool) override { return true; }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }

@@ -13,7 +13,7 @@ constexpr std::size_t history = 10;
 class QuasiNewton final : public Curvature {
 public:
     explicit QuasiNewton(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
-    [[nodiscard]] std::string_view name() const override { return "quasi-newton"; }
+    [[nodiscard]] Solver solver() const override { return Solver::quasi_newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 3000; }
     void restart() override { pairs_.clear(); }
 

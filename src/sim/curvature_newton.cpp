@@ -15,7 +15,7 @@ public:
           pattern_(linalg::make_pattern(system.model().free_count(), 3, system.cliques())),
           factor_(pattern_) {}
 
-    [[nodiscard]] std::string_view name() const override { return "newton"; }
+    [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
 
     /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a

@@ -8,10 +8,10 @@
 #include <memory>
 #include <set>
 
-#include "material/law.hpp"
 #include "sim/curvature.hpp"
 #include "sim/elements.hpp"
-#include "sim/step_solver.hpp"
+#include "sim/pressure_limit.hpp"
+#include "sim/solver_chain.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -36,16 +36,16 @@ public:
           program_(program),
           system_(model),
           laplacian_(model),
+          solvers_(make_chain(program.solver, system_, laplacian_)),
           state_(system_.rest()),
           previous_(state_),
           controls_(system_.controls(0)) {
-        curvature_ = make_curvature(program.solver);
         const Eigen::VectorXd still = Eigen::VectorXd::Zero(state_.x.size());
         history_ = {state_.x, still, state_.x, still, 0};
         if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
 
-    [[nodiscard]] std::string_view solver_name() const { return curvature_->name(); }
+    [[nodiscard]] std::string_view solver_name() const { return name(solvers_.first()); }
 
     /// Goes to `time` in as many pieces as it takes. False: stuck; `message` says why.
     bool advance(double time, Step& step, const Progress& progress, std::string& message) {
@@ -60,6 +60,7 @@ public:
                 stretch_.empty() ? attempt(target, next, progress) : grow(target, next, progress);
             if (!outcome.converged) stretch_ = stretch;
             step.iterations += outcome.iterations;
+            note(outcome.history, step.index, target);
             if (outcome.converged) {
                 if (program_.dynamics) remember(next, target - time_);
                 previous_ = std::move(state_);
@@ -68,6 +69,7 @@ public:
                 controls_ = solved_controls_;
                 time_ = target;
                 evaluation_ = outcome.evaluation;
+                step.solver = outcome.solver;
                 ++step.substeps;
                 continue;
             }
@@ -76,6 +78,23 @@ public:
             if (progress.cancelled() || piece < smallest_share * whole) return false;
         }
         return true;
+    }
+
+    [[nodiscard]] std::vector<IterationRecord> take_iterations() { return std::move(iterations_); }
+
+    /// What a program that stopped before `time` should do instead; empty if nothing is known.
+    [[nodiscard]] std::string advice(double time, const Progress& progress) {
+        if (program_.dynamics || !stretch_.empty() || progress.cancelled()) return {};
+        const auto limit = find_pressure_limit(system_, solvers_, controls_, system_.controls(time),
+                                               {program_.tolerance, program_.iteration_limit}, state_, progress);
+        if (!limit) return {};
+        return fmt::format(
+            ". No equilibrium was found above {:.4g} kPa in chamber \"{}\": its pressure has a maximum of {:.4g} kPa "
+            "at "
+            "volume ratio {:.3g}, and with more air in it the pressure falls. Drive it by volume_ratio to pass this "
+            "limit",
+            1e-3 * limit->reached_Pa, model_.description().chambers[limit->chamber].name, 1e-3 * limit->largest_Pa,
+            limit->volume_ratio);
     }
 
     void describe(Step& step) const {
@@ -134,21 +153,12 @@ public:
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
-    std::unique_ptr<Curvature> make_curvature(Solver solver) const {
-        switch (solver) {
-            case Solver::local_global:
-                return make_local_global(laplacian_);
-            case Solver::quasi_newton:
-                return make_quasi_newton(laplacian_);
-            case Solver::newton:
-                return make_newton(system_);
-            case Solver::automatic:
-                break;
+    void note(const std::vector<IterationRecord>& history, int step, double time) {
+        for (IterationRecord record : history) {
+            record.step = step;
+            record.time = time;
+            iterations_.push_back(record);
         }
-        const bool conservative =
-            std::all_of(model_.description().materials.begin(), model_.description().materials.end(),
-                        [](const Material& m) { return material::has_energy(m.law); });
-        return conservative ? make_newton(system_) : make_quasi_newton(laplacian_);
     }
 
     [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) const {
@@ -198,6 +208,8 @@ private:
             outcome.evaluation = more.evaluation;
             outcome.reason = more.reason;
             outcome.iterations += more.iterations;
+            outcome.solver = more.solver;
+            outcome.history.insert(outcome.history.end(), more.history.begin(), more.history.end());
             const std::vector<double> after = growth_errors(time, next);
             for (std::size_t a = 0; a < stretch_.size(); ++a) {
                 if (change[a] != 0) slope[a] = (after[a] - before[a]) / change[a];
@@ -228,7 +240,7 @@ private:
         StepOutcome outcome;
         outcome.reason = predict(time, controls, next);
         if (!outcome.reason.empty()) return outcome;
-        curvature_->restart();
+        solvers_.restart();
         return settle_friction(controls, next, progress);
     }
 
@@ -271,9 +283,10 @@ private:
         controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
         StepOutcome total;
         for (int round = 0; round < friction_rounds; ++round) {
-            StepOutcome outcome = solve_step(system_, *curvature_, controls,
-                                             {program_.tolerance, program_.iteration_limit}, next, progress);
+            StepOutcome outcome =
+                solvers_.solve(system_, controls, {program_.tolerance, program_.iteration_limit}, next, progress);
             outcome.iterations += total.iterations;
+            outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
             total = std::move(outcome);
             if (!total.converged || !(cables_drag || system_.has_friction())) break;
             controls.friction = system_.freeze_friction(next, state_, controls, controls_);
@@ -310,7 +323,7 @@ private:
     const Program& program_;
     Equilibrium system_;
     FactoredLaplacian laplacian_;
-    std::unique_ptr<Curvature> curvature_;
+    SolverChain solvers_;
     State state_;
     State previous_;
     Controls controls_;         ///< of the last converged state
@@ -321,6 +334,7 @@ private:
     History history_;               ///< of a motion in time
     std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
+    std::vector<IterationRecord> iterations_;
 };
 
 }  // namespace
@@ -344,7 +358,8 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         std::string message;
         if (!walk.advance(step.time, step, progress, message)) {
             result.converged = false;
-            result.message = fmt::format("stopped at step {} of {}: {}", k, program.steps, message);
+            result.message = fmt::format("stopped at step {} of {}: {}{}", k, program.steps, message,
+                                         walk.advice(step.time, progress));
             break;
         }
         walk.describe(step);
@@ -353,6 +368,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         result.solve_s += step.wall_s;
         result.steps.push_back(std::move(step));
     }
+    result.iterations = walk.take_iterations();
     progress.advance("simulate", 1);
     return result;
 }

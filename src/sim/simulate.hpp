@@ -7,11 +7,10 @@
 #include "core/progress.hpp"
 #include "sim/inertia.hpp"
 #include "sim/model.hpp"
+#include "sim/solver.hpp"
 #include "sim/trajectory.hpp"
 
 namespace pliant::sim {
-
-enum class Solver { automatic, newton, quasi_newton, local_global };
 
 /// Motion in time instead of rest at every instant.
 struct Dynamics {

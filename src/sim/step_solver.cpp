@@ -14,7 +14,6 @@ namespace {
 
 /// The excess length may be no larger than this share of the tolerance: the tension follows it closely.
 constexpr double excess_share = 0.01;
-constexpr double smallest_step = 1e-7;
 constexpr std::size_t error_memory = 10;
 
 struct Direction {
@@ -86,6 +85,8 @@ public:
     }
 
     [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
+    /// Share of the last direction that was taken.
+    [[nodiscard]] double alpha() const { return alpha_; }
     [[nodiscard]] bool converged(double tolerance) const {
         return evaluation_.residual <= tolerance && evaluation_.violation <= excess_share * tolerance;
     }
@@ -194,14 +195,16 @@ private:
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
         system_.add_free(direction.dx, 1, motion);
         const double longest = system_.largest_step(state_.x, motion, controls_);
-        for (double alpha = longest; alpha > smallest_step; alpha *= 0.5) {
+        for (double alpha = longest; alpha > curvature_.smallest_share() * longest; alpha *= 0.5) {
             State next = state_;
             system_.add_free(direction.dx, alpha, next.x);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);
             const Equilibrium::Merit merit = system_.merit(next.x, controls_, prices_);
             if (!(merit.min_J > 0.05 * evaluation_.min_J)) continue;
-            const bool lower = conservative && slope < 0 &&
-                               merit.value_J <= start.value_J + 1e-4 * alpha * slope + system_.energy_rounding_J();
+            // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
+            const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
+            const bool lower =
+                conservative && merit.value_J < start.value_J - 1e-4 * alpha * std::fabs(slope) + rounding;
             Evaluation evaluation = system_.evaluate(next, controls_);
             const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
@@ -234,6 +237,7 @@ private:
         curvature_.learn(alpha * direction.dx, system_.restrict_to_free(evaluation.out_of_balance - old_force));
         state_ = std::move(next);
         evaluation_ = std::move(evaluation);
+        alpha_ = alpha;
         errors_.push_back(evaluation_.error());
         if (errors_.size() > error_memory) errors_.pop_front();
     }
@@ -254,11 +258,42 @@ private:
     const Controls& controls_;
     State& state_;
     Evaluation evaluation_;
+    double alpha_ = 0;
     std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
     std::vector<bool> only_pull_;       ///< (solved)
     Eigen::VectorXd prices_;            ///< (actuators)
     std::deque<double> errors_;         ///< of the last steps
 };
+
+/// Counts iterations that brought the error no further.
+class Patience {
+public:
+    Patience(int limit, double error) : limit_(limit), best_(error) {}
+    [[nodiscard]] bool is_at_end(double error) {
+        if (error < 0.9 * best_) {
+            best_ = error;
+            idle_ = 0;
+        } else {
+            ++idle_;
+        }
+        return limit_ > 0 && idle_ >= limit_;
+    }
+
+private:
+    int limit_;
+    double best_;
+    int idle_ = 0;
+};
+
+IterationRecord record(Solver solver, int iteration, const Evaluation& e, double alpha) {
+    return {.solver = solver,
+            .iteration = iteration,
+            .residual = e.residual,
+            .violation = e.violation,
+            .energy_J = e.energy_J,
+            .alpha = alpha,
+            .min_J = e.min_J};
+}
 
 }  // namespace
 
@@ -266,22 +301,30 @@ StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Co
                        const StepSettings& settings, State& state, const Progress& progress) {
     StepSolver solver(system, curvature, controls, state);
     StepOutcome outcome;
+    outcome.solver = curvature.solver();
+    outcome.history.push_back(record(outcome.solver, 0, solver.evaluation(), 0));
     const int limit = settings.iteration_limit > 0 ? settings.iteration_limit : curvature.default_iteration_limit();
+    Patience patience(settings.patience, solver.evaluation().error());
+    const auto residual = [&] { return solver.evaluation().residual; };
     while (!(outcome.converged = solver.converged(settings.tolerance))) {
         if (progress.cancelled()) {
             outcome.reason = "cancelled";
             break;
         }
         if (outcome.iterations == limit) {
-            outcome.reason =
-                fmt::format("no convergence in {} iterations, residual {:.2e}", limit, solver.evaluation().residual);
+            outcome.reason = fmt::format("no convergence in {} iterations, residual {:.2e}", limit, residual());
             break;
         }
         ++outcome.iterations;
         if (!solver.iterate(false) && !solver.iterate(true)) {
+            outcome.reason = fmt::format(
+                "no step lowers the energy without turning a tetrahedron inside out, residual {:.2e}", residual());
+            break;
+        }
+        outcome.history.push_back(record(outcome.solver, outcome.iterations, solver.evaluation(), solver.alpha()));
+        if (patience.is_at_end(solver.evaluation().error()) && !solver.converged(settings.tolerance)) {
             outcome.reason =
-                fmt::format("no step lowers the energy without turning a tetrahedron inside out, residual {:.2e}",
-                            solver.evaluation().residual);
+                fmt::format("no progress in {} iterations, residual {:.2e}", settings.patience, residual());
             break;
         }
     }

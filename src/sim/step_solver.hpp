@@ -8,19 +8,23 @@
 #include "core/progress.hpp"
 #include "sim/curvature.hpp"
 #include "sim/equilibrium.hpp"
+#include "sim/trajectory.hpp"
 
 namespace pliant::sim {
 
 struct StepSettings {
     double tolerance = 1e-4;
     int iteration_limit = 0;  ///< 0: the curvature's own
+    int patience = 0;         ///< gives up after so many iterations without a tenth less error; 0: never
 };
 
 struct StepOutcome {
     bool converged = false;
     int iterations = 0;
-    Evaluation evaluation;  ///< of the state that is left behind
-    std::string reason;     ///< why it did not converge
+    Evaluation evaluation;                 ///< of the state that is left behind
+    std::string reason;                    ///< why it did not converge
+    Solver solver = Solver::automatic;     ///< that led to the state
+    std::vector<IterationRecord> history;  ///< where it began and every iteration; step and time are not filled
 };
 
 /// Minimises the energy subject to length <= allowed length for every cable driven by length and volume = wanted volume

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/vec3.hpp"
+#include "sim/solver.hpp"
 
 namespace pliant::sim {
 
@@ -38,14 +39,28 @@ struct ContactState {
     Vec3 force_N;      ///< pressure and friction of the obstacle on the robot
 };
 
+/// One iteration of a solver, as the state that it led to.
+struct IterationRecord {
+    int step = 0;                       ///< of the program
+    double time = 0;                    ///< of the program, that the solver wants to reach
+    Solver solver = Solver::automatic;  ///< the one at work: never `automatic`
+    int iteration = 0;                  ///< 0: where it began; a new 0 is a new attempt
+    double residual = 0;                ///< as in Step
+    double violation = 0;               ///< largest excess of a length or volume that is asked for, relative to rest
+    double energy_J = 0;                ///< elastic and of given tensions, pressures and gas, minus the work of loads
+    double alpha = 0;                   ///< share of the solver's step that was taken; 0 where it began
+    double min_J = 1;                   ///< smallest det F
+};
+
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
     double time = 0;  ///< of the program; 0 at rest
     bool converged = true;
     int iterations = 0;
-    int substeps = 1;     ///< more than one where the step had to be halved
-    double residual = 0;  ///< norm of the out-of-balance force over the norm of the forces that balance
+    int substeps = 1;                   ///< more than one where the step had to be halved
+    double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
+    Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
     double wall_s = 0;
     double min_J = 1;             ///< smallest det F over all integration points
     double energy_J = 0;          ///< elastic and contact energy, minus the work of dead loads and gravity
@@ -65,7 +80,8 @@ struct Trajectory {
     bool converged = true;              ///< the whole program was run
     std::string message;                ///< where and why it stopped, if it did
     std::vector<std::string> warnings;  ///< where the answer should not be trusted
-    std::string solver;                 ///< the solver that ran: "newton", "quasi-newton", "local-global"
+    std::string solver;                 ///< the solver that was asked for or chosen, by name; Step::solver has more
+    std::vector<IterationRecord> iterations;  ///< all, in order, also of steps that did not converge
     double setup_s = 0;
     double solve_s = 0;
 };
