@@ -1,10 +1,12 @@
 # One recipe for every module: a static library pliant_<name> and, where it has tests, one test program.
 #
 #   pliant_module(NAME core SOURCES a.cpp USES <libraries that the headers need> PRIVATE_USES <the rest>
-#                 TESTS a_test.cpp REFERENCE_TESTS a_reference_test.cpp TEST_USES <libraries of the tests>)
+#                 TESTS a_test.cpp REFERENCE_TESTS a_reference_test.cpp PEER_TESTS a_peer_test.cpp
+#                 TEST_USES <libraries of the tests>)
 #
 # Each test file is one CTest entry. A reference test reads the folder that PLIANT_REFERENCE_DATA names and is
-# reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp).
+# reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp). A peer test
+# runs CalculiX (ccx) beside Pliant and is skipped likewise where it is not installed.
 
 add_library(pliant_flags INTERFACE)
 target_include_directories(pliant_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
@@ -19,18 +21,18 @@ if(PLIANT_FUZZ)
 endif()
 
 function(pliant_module)
-  cmake_parse_arguments(M "" "NAME" "SOURCES;USES;PRIVATE_USES;TESTS;REFERENCE_TESTS;TEST_USES" ${ARGN})
+  cmake_parse_arguments(M "" "NAME" "SOURCES;USES;PRIVATE_USES;TESTS;REFERENCE_TESTS;PEER_TESTS;TEST_USES" ${ARGN})
   set(library pliant_${M_NAME})
   add_library(${library} STATIC ${M_SOURCES})
   target_link_libraries(${library} PUBLIC pliant_flags ${M_USES} PRIVATE ${M_PRIVATE_USES})
-  if(PLIANT_TESTS AND (M_TESTS OR M_REFERENCE_TESTS))
-    pliant_test_program(${M_NAME} "${M_TESTS}" "${M_REFERENCE_TESTS}" "${library};${M_TEST_USES}")
+  if(PLIANT_TESTS AND (M_TESTS OR M_REFERENCE_TESTS OR M_PEER_TESTS))
+    pliant_test_program(${M_NAME} "${M_TESTS}" "${M_REFERENCE_TESTS}" "${library};${M_TEST_USES}" ${M_PEER_TESTS})
   endif()
 endfunction()
 
-function(pliant_test_program name tests reference_tests libraries)
+function(pliant_test_program name tests reference_tests libraries) # then the peer tests
   set(program pliant_${name}_test)
-  add_executable(${program} ${tests} ${reference_tests} ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
+  add_executable(${program} ${tests} ${reference_tests} ${ARGN} ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
   target_link_libraries(${program} PRIVATE ${libraries} doctest::doctest)
   foreach(file IN LISTS tests)
     string(REGEX REPLACE "_test\\.cpp$" "" stem ${file})
@@ -42,5 +44,11 @@ function(pliant_test_program name tests reference_tests libraries)
     add_test(NAME ${name}/reference/${stem} COMMAND ${program} --reference --source-file=*/${file}
              WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${name}/reference/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+  endforeach()
+  foreach(file IN LISTS ARGN)
+    string(REGEX REPLACE "_peer_test\\.cpp$" "" stem ${file})
+    add_test(NAME ${name}/peer/${stem} COMMAND ${program} --peer=ccx --source-file=*/${file}
+             WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${name}/peer/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
   endforeach()
 endfunction()
