@@ -64,7 +64,7 @@ Status read_dat(const std::string& text, Solution& solution) {
         const bool moves = line.find("displacements") != std::string::npos;
         if (!moves && line.find("forces") == std::string::npos) continue;
         const Status table =
-            moves ? read_table(in, solution.displacement_m, 1e-3) : read_table(in, solution.force_N, 1);
+            moves ? read_table(in, solution.displacement_m, 1e-3) : read_table(in, solution.force_N, 1e-6);
         if (!table) return table;
         ++tables;
     }

@@ -4,8 +4,8 @@
 // Same mesh, same law, same loads, another code: C3D4 or C3D10 with NLGEOM, *HYPERELASTIC or *ELASTIC, supports as
 // *BOUNDARY, loads as *CLOAD, pressures as *DLOAD (with NLGEOM they follow the surface), and cables of given tension
 // as one SPRINGA element of constant force per segment, which follows its two nodes as a taut cable does. The whole
-// load comes in one step that ramps from rest to time 1. The deck is in mm, N and MPa.
-// Source of the keywords: CalculiX CrunchiX user's manual 2.20, chapter 7.
+// load comes in one step that ramps from rest to time 1. The deck is in mm, uN and Pa: ccx takes every force below 1e-6
+// for none, whatever the unit. Source of the keywords: CalculiX CrunchiX user's manual 2.20, chapter 7.
 #pragma once
 
 #include <string>
@@ -18,7 +18,9 @@ namespace pliant::sim::calculix {
 
 struct Effort {
     double first_increment = 0.2;  ///< of the step; halved and grown by ccx itself
-    double tolerance = 1e-6;       ///< largest out-of-balance force over the mean force (ccx' own default is 5e-3)
+    /// Of the largest out-of-balance force over the mean force (ccx' own default is 5e-3), and of the last correction
+    /// over the increment's displacement (1e-2).
+    double tolerance = 1e-5;
 };
 
 struct Solution {

@@ -12,28 +12,32 @@ namespace pliant::sim::calculix {
 namespace {
 
 constexpr double mm_per_m = 1e3;
-constexpr double MPa_per_Pa = 1e-6;
+constexpr double uN_per_N = 1e6;
 /// Of the ramped springs: far more than a cable can stretch or shrink, so that ccx never extrapolates.
 constexpr double spring_range_mm = 1e5;
+
+/// For the terms (J - 1)^(2i) / D_i that our laws do not have. Zeros do not switch them off: they made a bar 2 %
+/// stiffer.
+constexpr double no_more_D = 1e20;
 
 /// CalculiX' number of the face opposite to a corner: its faces are 1-2-3, 1-4-2, 2-4-3, 3-4-1.
 constexpr std::array<int, 4> face_opposite_to = {3, 4, 2, 1};
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// 2/K per MPa, as CalculiX wants it.
+/// 2/K, as CalculiX wants it.
 double d1(double bulk_Pa) {
-    return 2 / (bulk_Pa * MPa_per_Pa);
+    return 2 / (bulk_Pa);
 }
 
-/// mu and alpha of every term, D1, and zeros for the higher D; at most eight numbers a line.
+/// mu and alpha of every term, D1, and the higher D without effect; at most eight numbers a line.
 Status write_ogden(Out out, const material::Ogden& law) {
     if (law.terms > 4) return input_error("CalculiX: an Ogden law of at most 4 terms, not {}", law.terms);
     std::vector<double> numbers;
     for (std::size_t k = 0; k < static_cast<std::size_t>(law.terms); ++k)
-        numbers.insert(numbers.end(), {law.mu_Pa[k] * MPa_per_Pa, law.alpha[k]});
+        numbers.insert(numbers.end(), {law.mu_Pa[k], law.alpha[k]});
     numbers.push_back(d1(law.bulk_Pa));
-    numbers.resize(3 * static_cast<std::size_t>(law.terms), 0.0);
+    numbers.resize(3 * static_cast<std::size_t>(law.terms), no_more_D);
     fmt::format_to(out, "*HYPERELASTIC,OGDEN,N={}", law.terms);
     for (std::size_t k = 0; k < numbers.size(); ++k)
         fmt::format_to(out, "{}{:.10g}", k % 8 == 0 ? "\n" : ",", numbers[k]);
@@ -46,20 +50,18 @@ Status write_law(Out out, const material::Law& any) {
         [&](const auto& law) -> Status {
             using L = std::decay_t<decltype(law)>;
             if constexpr (std::is_same_v<L, material::NeoHookean>) {
-                fmt::format_to(out, "*HYPERELASTIC,NEO HOOKE\n{:.10g},{:.10g}\n", law.shear_Pa / 2 * MPa_per_Pa,
-                               d1(law.bulk_Pa));
+                fmt::format_to(out, "*HYPERELASTIC,NEO HOOKE\n{:.10g},{:.10g}\n", law.shear_Pa / 2, d1(law.bulk_Pa));
             } else if constexpr (std::is_same_v<L, material::MooneyRivlin>) {
-                fmt::format_to(out, "*HYPERELASTIC,MOONEY-RIVLIN\n{:.10g},{:.10g},{:.10g}\n", law.c10_Pa * MPa_per_Pa,
-                               law.c01_Pa * MPa_per_Pa, d1(law.bulk_Pa));
-            } else if constexpr (std::is_same_v<L, material::Yeoh>) {
-                fmt::format_to(out, "*HYPERELASTIC,YEOH\n{:.10g},{:.10g},{:.10g},{:.10g},0.,0.\n",
-                               law.c10_Pa * MPa_per_Pa, law.c20_Pa * MPa_per_Pa, law.c30_Pa * MPa_per_Pa,
+                fmt::format_to(out, "*HYPERELASTIC,MOONEY-RIVLIN\n{:.10g},{:.10g},{:.10g}\n", law.c10_Pa, law.c01_Pa,
                                d1(law.bulk_Pa));
+            } else if constexpr (std::is_same_v<L, material::Yeoh>) {
+                fmt::format_to(out, "*HYPERELASTIC,YEOH\n{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", law.c10_Pa,
+                               law.c20_Pa, law.c30_Pa, d1(law.bulk_Pa), no_more_D, no_more_D);
             } else if constexpr (std::is_same_v<L, material::Ogden>) {
                 return write_ogden(out, law);
             } else if constexpr (std::is_same_v<L, material::StVenantKirchhoff>) {
                 const material::Moduli m = material::moduli(any);
-                fmt::format_to(out, "*ELASTIC\n{:.10g},{:.10g}\n", material::youngs_modulus(m) * MPa_per_Pa,
+                fmt::format_to(out, "*ELASTIC\n{:.10g},{:.10g}\n", material::youngs_modulus(m),
                                material::poisson_ratio(m));
             } else {
                 return input_error("CalculiX has no counterpart of the law {}", material::name(any));
@@ -156,7 +158,7 @@ private:
             }
             line("*ELEMENT,TYPE=SPRINGA,ELSET=C{}", c);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
-            const double tension = d_.cables[c].target.at(1);
+            const double tension = uN_per_N * d_.cables[c].target.at(1);
             line("*SPRING,NONLINEAR,ELSET=C{}", c);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})
@@ -172,7 +174,10 @@ private:
     Status step() {
         for (const int n : anchors_) line("*BOUNDARY\n{},1,3", n);
         line("*STEP,NLGEOM,INC=1000\n*STATIC\n{:.10g},1.", effort_.first_increment);
-        line("*CONTROLS,PARAMETERS=FIELD\n{:.3g},1.,,,,,,", effort_.tolerance);
+        // Both residual limits: ccx takes the second, 2 % if nothing is said, once it has tried a number of times. It
+        // has no stiffness of following pressures and then needs many more iterations than it allows itself.
+        line("*CONTROLS,PARAMETERS=TIME INCREMENTATION\n20,40,60,60,30,10,,5");
+        line("*CONTROLS,PARAMETERS=FIELD\n{0:.3g},{0:.3g},,,{0:.3g},,,", effort_.tolerance);
         if (!d_.supports.empty()) line("*BOUNDARY");
         for (const Support& support : d_.supports) {
             const Vec3 move = support.share.at(1) * mm_per_m * support.move_m;
@@ -182,7 +187,7 @@ private:
         if (!d_.loads.empty()) line("*CLOAD");
         for (const Load& load : d_.loads) {
             for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-                const Vec3 f = load.share.at(1) * load.shares[k] * load.force_N;
+                const Vec3 f = load.share.at(1) * load.shares[k] * uN_per_N * load.force_N;
                 line("{0},1,{1:.12g}\n{0},2,{2:.12g}\n{0},3,{3:.12g}", load.nodes[k] + 1, f.x, f.y, f.z);
             }
         }
@@ -222,7 +227,7 @@ private:
             const auto found = outer_.find(corners);
             if (found == outer_.end())
                 return input_error("CalculiX: the wall of {} does not lie on faces of the mesh", name);
-            line("{},P{},{:.12g}", found->second[0] + 1, found->second[1], pressure_Pa * MPa_per_Pa);
+            line("{},P{},{:.12g}", found->second[0] + 1, found->second[1], pressure_Pa);
         }
         return {};
     }

@@ -13,8 +13,14 @@ using namespace pliant::sim;
 
 namespace {
 
-constexpr double same_displacement = 1e-3;  // what is asked for; measured: docs/comparison.md
-constexpr double same_force = 5e-3;
+// ccx prints seven digits. Displacements are shares of the largest one.
+constexpr double same_displacement = 1e-5;
+constexpr double same_force = 1e-5;
+// CalculiX has no stiffness of following pressures and so converges slowly; and on curved faces it integrates them with
+// three points, we with the six that the integral needs: two schemes, which meet on finer meshes.
+constexpr double same_flat_chamber = 2e-4;
+constexpr double same_curved_chamber = 1e-3;
+constexpr double same_pressure = 1e-4;
 
 Trajectory ours(const Description& d, int steps) {
     const auto model = Model::create(d);
@@ -48,7 +54,7 @@ double mismatch(const Description& d, const Step& step, const calculix::Solution
 /// Every node and the force at the grip.
 void check_bar(int order, const material::Law& hard, const material::Law& soft, double strain) {
     CAPTURE(order);
-    CAPTURE(material::name(hard));
+    CAPTURE(material::name(soft));
     const Description d = comparison::bar(order, hard, soft, strain);
     const Step last = ours(d, 5).steps.back();
     const calculix::Solution peer = theirs(d);
@@ -83,7 +89,7 @@ void check_finger(int order, double nu) {
 
     const double ratio = comparison::cable_length(d, comparison::moved(d.mesh, peer.displacement_m)) /
                          comparison::cable_length(d, d.mesh.points);
-    CHECK(ratio == doctest::Approx(0.9).epsilon(same_displacement * 0.1));
+    CHECK(ratio == doctest::Approx(0.9).epsilon(same_displacement));
     d.cables[0].target = {CableTarget::Kind::length_ratio, ratio};
     const double again = ours(d, 5).steps.back().cables[0].tension_N;
     MESSAGE("tension " << again << " N, CalculiX " << tension << " N");
@@ -94,21 +100,22 @@ void check_finger(int order, double nu) {
 void check_chamber(int order, double nu) {
     CAPTURE(order);
     CAPTURE(nu);
-    const double pressure = 100e3;
+    const double pressure = 60e3;
     Description d =
         comparison::air_block(order, material::neo_hookean(1e6, nu), {ChamberTarget::Kind::pressure_Pa, pressure});
     const Step by_pressure = ours(d, 5).steps.back();
     const calculix::Solution peer = theirs(d);
-    CHECK(mismatch(d, by_pressure, peer) < same_displacement);
+    const double allowed = order == 2 ? same_curved_chamber : same_flat_chamber;
+    CHECK(mismatch(d, by_pressure, peer) < allowed);
     const double volume = comparison::chamber_volume(d, comparison::moved(d.mesh, peer.displacement_m));
-    CHECK(by_pressure.chambers[0].volume_m3 == doctest::Approx(volume).epsilon(same_displacement));
+    CHECK(by_pressure.chambers[0].volume_m3 == doctest::Approx(volume).epsilon(allowed));
 
     const double ratio = volume / comparison::chamber_volume(d, d.mesh.points);
     CHECK(ratio > 1.1);
     d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, ratio};
     const double found = ours(d, 5).steps.back().chambers[0].pressure_Pa;
     MESSAGE("volume ratio " << ratio << ", pressure " << found << " Pa, CalculiX " << pressure << " Pa");
-    CHECK(found == doctest::Approx(pressure).epsilon(same_force));
+    CHECK(found == doctest::Approx(pressure).epsilon(same_pressure));
 }
 
 const std::array<double, 3> poisson_ratios = {0.3, 0.45, 0.49};

@@ -99,8 +99,8 @@ void check_shear(const PrincipalForm& form, double g) {
     }
 }
 
-/// u = grad(phi) with phi harmonic has no divergence and no Laplacian, so it solves Navier's equation without body
-/// force for every E and nu (Gurtin, The Linear Theory of Elasticity, 1972, section 44).
+/// u = grad(phi) with phi harmonic has neither divergence nor Laplacian: every term of Navier's equation,
+/// mu lap(u) + (lambda + mu) grad(div u) = 0, vanishes, for every E and nu and without body force.
 Vec3 harmonic_gradient(Vec3 p) {
     const double k = 2;
     const double q = k / std::numbers::sqrt2;
@@ -151,13 +151,13 @@ double l2_error(const mesh::TetMesh& mesh, const std::vector<Vec3>& positions, d
 
 /// log2 of the ratio of the errors on the last two of three meshes, each twice as fine as the one before.
 double measured_order(int order, double nu, std::array<int, 3> cells) {
-    const double amplitude = 1e-6;  // small enough for the difference between neo-Hooke and Hooke to vanish
+    const double amplitude = 1e-5;  // small enough for the difference between neo-Hooke and Hooke to vanish
     std::array<double, 3> error{};
     for (std::size_t k = 0; k < 3; ++k) {
         const auto outside = [](Vec3 p) { return on_side(p, 0) || on_side(p, 1) || on_side(p, 2); };
         const Description d = cube(order, cells[k], material::neo_hookean(1e6, nu), outside,
                                    [&](Vec3 p) { return amplitude * harmonic_gradient(p); });
-        error[k] = l2_error(d.mesh, solve(d, 1, 1e-9).steps.back().positions, amplitude);
+        error[k] = l2_error(d.mesh, solve(d, 1, 1e-6).steps.back().positions, amplitude);
     }
     MESSAGE("order " << order << ", nu " << nu << ": errors " << error[0] << " " << error[1] << " " << error[2]
                      << ", measured orders " << std::log2(error[0] / error[1]) << " "
@@ -206,7 +206,7 @@ TEST_CASE("a slender beam under a small load bends as Euler and Bernoulli say") 
         d.loads = {{"tip", shares.nodes, shares.shares, {0, 0, force}}};
         d.markers = {
             {"tip", reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) { return p.x > L - tiny; }))}};
-        const double tip = solve(d, 1, 1e-8).steps.back().markers[0].position_m.z - h / 2;
+        const double tip = solve(d, 1, 1e-5).steps.back().markers[0].position_m.z - h / 2;
         const double bending = force * L * L * L / (3 * E * h * h * h * h / 12);
         // Timoshenko's shear term: a square section's shear coefficient is 5/6 (at nu = 0).
         const double shear = force * L / (5.0 / 6 * E / (2 * (1 + nu)) * h * h);
