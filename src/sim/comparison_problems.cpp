@@ -53,15 +53,15 @@ Vec3 to_finger(Vec3 p) {
     return {start + x[k] + (k == 2 ? -open : 0) + (k == 3 ? open : 0), p.y, p.z};
 }
 
+/// Region 0: the finger, region 1: its notches.
 mesh::TetMesh finger_mesh() {
     const double cell = pitch / cells_per_notch;
     const auto region = [&](Vec3 c) {
         return static_cast<int>(c.x / cell) % cells_per_notch == 2 && c.z > notch_floor ? 1 : 0;
     };
     mesh::TetMesh whole = kuhn_box({notches * pitch, 6 * mm, height}, notches * cells_per_notch, 2, 6, region);
-    mesh::TetMesh finger = mesh::extract_regions(whole, {true, false}).mesh;
-    for (Vec3& p : finger.points) p = to_finger(p);
-    return finger;
+    for (Vec3& p : whole.points) p = to_finger(p);
+    return whole;
 }
 
 Cable finger_cable(const mesh::TetMesh& mesh, const CableTarget& target) {
@@ -78,6 +78,17 @@ Cable finger_cable(const mesh::TetMesh& mesh, const CableTarget& target) {
     }
     guide(notches * cells_per_notch);
     return cable;
+}
+
+/// Region 1 of `whole` as empty space (dropped), or as elements whose target shape actuator 0 scales.
+void set_bodies(Description& d, mesh::Extract solid, const material::Law& law, Drive drive, Vec3 direction) {
+    d.mesh = std::move(solid.mesh);
+    d.materials = {{"rubber", law, 0}};
+    d.material_of_region = {0};
+    if (drive == Drive::constraint) return;
+    d.materials.push_back({"space", material::ScaledTarget{material::youngs_modulus(material::moduli(law))}, 0});
+    d.material_of_region.push_back(1);
+    d.growths = {{1, direction, 0}};
 }
 
 }  // namespace
@@ -115,20 +126,21 @@ Description beam(int order, const material::Law& law, int cells) {
     return d;
 }
 
-Description cable_finger(int order, const material::Law& law, const CableTarget& target) {
+Description cable_finger(int order, const material::Law& law, const CableTarget& target, Drive drive) {
+    mesh::TetMesh whole = finger_mesh();
+    const auto at_end = beyond_x(notches * pitch);
+    mesh::Extract linear = mesh::extract_regions(whole, {true, drive == Drive::elements});
+    const auto end = nodes_where(linear.mesh, at_end);
+    if (order == 2) linear.mesh = mesh::to_quadratic(linear.mesh);
     Description d;
-    d.mesh = finger_mesh();
-    const auto end = nodes_where(d.mesh, beyond_x(notches * pitch));
-    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
-    d.materials = {{"rubber", law, 0}};
-    d.material_of_region = {0};
+    set_bodies(d, std::move(linear), law, drive, {1, 0, 0});
     d.supports = {clamp(d.mesh)};
     d.cables = {finger_cable(d.mesh, target)};
     d.markers = {{"tip", mean_of(end)}};
     return d;
 }
 
-Description air_block(int order, const material::Law& law, const ChamberTarget& target) {
+Description air_block(int order, const material::Law& law, const ChamberTarget& target, Drive drive) {
     const auto region = [](Vec3 c) {
         const bool inside =
             c.x > 5 * mm && c.x < 25 * mm && c.y > 2.5 * mm && c.y < 7.5 * mm && c.z > 2 * mm && c.z < 6 * mm;
@@ -137,17 +149,15 @@ Description air_block(int order, const material::Law& law, const ChamberTarget& 
     mesh::TetMesh whole = kuhn_box({30 * mm, 10 * mm, 10 * mm}, 6, 4, 5, region);
     const auto corners = whole.points.size();
     if (order == 2) whole = mesh::to_quadratic(whole);
-    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
+    mesh::Extract solid = mesh::extract_regions(whole, {true, drive == Drive::elements});
     Description d;
-    d.mesh = std::move(solid.mesh);
-    d.materials = {{"rubber", law, 0}};
-    d.material_of_region = {0};
-    d.supports = {clamp(d.mesh)};
     d.chambers = {{"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), target}};
     std::vector<int> end;
     for (std::size_t n = 0; n < corners; ++n) {
-        if (whole.points[n].x > 30 * mm - tiny && solid.node[n] >= 0) end.push_back(solid.node[n]);
+        if (whole.points[n].x > 30 * mm - tiny) end.push_back(solid.node[n]);
     }
+    set_bodies(d, std::move(solid), law, drive, {});
+    d.supports = {clamp(d.mesh)};
     d.markers = {{"tip", mean_of(end)}};
     return d;
 }

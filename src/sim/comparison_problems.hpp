@@ -17,13 +17,19 @@ namespace pliant::sim::comparison {
 /// 100 x 5 x 5 mm in `cells` x 2 x 2 Kuhn cells, clamped at x = 0, 0.06 N upwards spread over the far end.
 [[nodiscard]] Description beam(int order, const material::Law& law, int cells);
 
+/// What a cable or chamber acts through: its own constraint, or the thesis' elements that mesh the empty space and
+/// scale their target shapes (T3.5, T3.6), of the softness of `law`.
+enum class Drive { constraint, elements };
+
 /// 60 x 6 x 9 mm with four V notches from the top, clamped at x = 0; a cable runs lengthwise at z = 6 mm through
 /// nodes of the mesh, jumping the notches.
-[[nodiscard]] Description cable_finger(int order, const material::Law& law, const CableTarget& target);
+[[nodiscard]] Description cable_finger(int order, const material::Law& law, const CableTarget& target,
+                                       Drive drive = Drive::constraint);
 
 /// 30 x 10 x 10 mm, clamped at x = 0, with a closed empty box of 20 x 5 x 4 mm nearer to the bottom: it bends upwards
 /// when it is inflated.
-[[nodiscard]] Description air_block(int order, const material::Law& law, const ChamberTarget& target);
+[[nodiscard]] Description air_block(int order, const material::Law& law, const ChamberTarget& target,
+                                    Drive drive = Drive::constraint);
 
 /// Length of cable 0, and volume of chamber 0, for node positions (n, 3).
 [[nodiscard]] double cable_length(const Description& description, const std::vector<Vec3>& positions);
