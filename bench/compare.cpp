@@ -51,7 +51,7 @@ Cell ours(const Problem& problem, int order, bool blend, Drive drive) {
     const auto model = Model::create(d);
     if (!model) return fmt::print(stderr, "{}: {}\n", problem.name, model.error().message), std::nullopt;
     Progress silent;
-    const Trajectory t = run(*model, {.steps = 10, .tolerance = 1e-5}, silent);
+    const Trajectory t = run(*model, {.steps = 5, .tolerance = 1e-5}, silent);
     if (!t.converged) return fmt::print(stderr, "{}: {}\n", problem.name, t.message), std::nullopt;
     return Outcome{tip_of(problem, comparison::tip_displacement(d, t.steps.back())), actuation_of(d, t.steps.back()),
                    t.setup_s + t.solve_s};
@@ -70,7 +70,7 @@ Cell theirs(const Problem& problem, int order, const Cell& found) {
 }
 
 std::string figure(const std::optional<double>& value) {
-    return value ? fmt::format("{:.4g}", *value) : "-";
+    return value ? fmt::format("{:.5g}", *value) : "-";
 }
 
 void print_row(const Problem& problem, double nu) {
