@@ -1,11 +1,15 @@
 // The table of docs/comparison.md, made again: the thesis' model, linear and quadratic tets, and CalculiX on the same
 // meshes, one row per problem and Poisson ratio. CalculiX runs beside us (Debian package calculix-ccx) and its columns
 // stay empty without it.
-//   build/release/bench/pliant_compare
+//   build/release/bench/pliant_compare [PROBLEM]...        all, or those named
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
+#include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "sim/calculix.hpp"
 #include "sim/comparison_problems.hpp"
@@ -131,12 +135,17 @@ std::vector<Problem> problems(double nu) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const std::vector<std::string> wanted(argv + 1, argv + argc);
     fmt::print(
         "| problem | nu | figure | thesis | blend, quadratic | linear | CalculiX C3D4 | quadratic | CalculiX C3D10 "
         "|\n");
     fmt::print("|---|---|---|---|---|---|---|---|---|\n");
     for (std::size_t p = 0; p < problems(0.3).size(); ++p) {
-        for (const double nu : {0.3, 0.45, 0.49}) print_row(problems(nu)[p], nu);
+        for (const double nu : {0.3, 0.45, 0.49}) {
+            const Problem problem = problems(nu)[p];
+            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), problem.name) != wanted.end())
+                print_row(problem, nu);
+        }
     }
 }

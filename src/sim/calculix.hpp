@@ -36,7 +36,7 @@ struct Solution {
 
 /// The input deck at the end of the program (time 1). Errors where CalculiX has no counterpart: laws that it lacks,
 /// cables that are not driven by tension or whose points are not nodes, chambers that are not driven by pressure,
-/// gravity, contact, growth.
+/// friction, turning supports, rigid plates, gravity, contact, growth.
 [[nodiscard]] Result<std::string> deck(const Description& description, const Effort& effort = {});
 
 /// Runs `ccx` on one thread in a temporary folder of its own, which goes again.

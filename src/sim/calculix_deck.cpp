@@ -92,11 +92,15 @@ private:
     }
 
     Status check() {
-        if (d_.contact || !d_.growths.empty() || norm(d_.gravity_m_s2) > 0)
-            return input_error("the CalculiX deck has no contact, growth or gravity");
+        if (d_.contact || !d_.growths.empty() || !d_.plates.empty() || norm(d_.gravity_m_s2) > 0)
+            return input_error("the CalculiX deck has no contact, growth, rigid plates or gravity");
+        for (const Support& support : d_.supports) {
+            if (support.turn.angle_rad != 0) return input_error("CalculiX: support {} must not turn", support.name);
+        }
         for (const Cable& cable : d_.cables) {
             if (cable.target.kind != CableTarget::Kind::tension_N)
                 return input_error("CalculiX: cable {} must be driven by its tension", cable.name);
+            if (cable.friction != 0) return input_error("CalculiX: cable {} must be without friction", cable.name);
         }
         for (const Chamber& chamber : d_.chambers) {
             if (chamber.target.kind != ChamberTarget::Kind::pressure_Pa)
