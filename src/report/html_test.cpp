@@ -48,6 +48,15 @@ TEST_CASE("contact has a table with the largest force of all steps") {
     CHECK(html.find("as near as 0.04 mm") != std::string::npos);
 }
 
+TEST_CASE("iterations are in the page where there are any") {
+    auto robot = test::bent_bar(2, 1);
+    CHECK(page(robot.simulation()).find("id=\"iterations\"") == std::string::npos);
+    robot.result.iterations = {{.step = 1, .solver = sim::Solver::anderson, .residual = 0.5}};
+    CHECK(
+        page(robot.simulation()).find("id=\"iterations\">{\"solvers\":[\"anderson\"],\"rows\":[[0,0,0.5]]}</script>") !=
+        std::string::npos);
+}
+
 TEST_CASE("names from a robot file are text, whatever they hold") {
     const std::string evil = "</script><script>alert(1)</script>\"'&";
     auto robot = test::bent_bar(2, 1);

@@ -19,22 +19,29 @@ constexpr double left = 140, right = 1460, top = 90, bottom = 880;
 struct Axis {
     std::vector<double> marks;
     double from, to;
+    bool log;
+    [[nodiscard]] double scale(double value) const { return log ? std::log10(value) : value; }
     [[nodiscard]] double at(double value) const {
-        return from + (value - marks.front()) / (marks.back() - marks.front()) * (to - from);
+        const double first = scale(marks.front());
+        return from + (scale(value) - first) / (scale(marks.back()) - first) * (to - from);
     }
 };
 
-Axis axis_for(const Plot& plot, double Point2::*member, double from, double to) {
+bool is_shown(const Plot& plot, const Point2& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && (p.x > 0 || !plot.log_x) && (p.y > 0 || !plot.log_y);
+}
+
+Axis axis_for(const Plot& plot, bool log, double Point2::*member, double from, double to) {
     double low = INFINITY;
     double high = -INFINITY;
     for (const Series& series : plot.series) {
         for (const Point2& p : series.points) {
-            if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+            if (!is_shown(plot, p)) continue;
             low = std::min(low, p.*member);
             high = std::max(high, p.*member);
         }
     }
-    return {ticks(low, high), from, to};
+    return {log ? log_ticks(low, high) : ticks(low, high), from, to, log};
 }
 
 void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
@@ -50,10 +57,12 @@ void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
     canvas.line(corner, 2.5, frame);
 }
 
-void draw_series(Canvas& canvas, const Series& series, const Colour& colour, const Axis& x, const Axis& y) {
+void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {
+    const Series& series = plot.series[index];
+    const Colour colour = palette(static_cast<int>(index));
     std::vector<Point2> line;
     for (const Point2& p : series.points) {
-        if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+        if (!is_shown(plot, p)) continue;
         line.push_back({x.at(p.x), y.at(p.y)});
         if (series.dots) canvas.disc(line.back(), 7, colour);
     }
@@ -75,6 +84,16 @@ void draw_legend(Canvas& canvas, const Plot& plot) {
 
 }  // namespace
 
+std::vector<double> log_ticks(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high) || !(low > 0)) return {0.1, 1};
+    const auto first = static_cast<int>(std::floor(std::log10(low) + 1e-9));
+    const int last = std::max(first + 1, static_cast<int>(std::ceil(std::log10(high) - 1e-9)));
+    const int stride = (last - first + 9) / 10;
+    std::vector<double> marks;
+    for (int k = first; k < last + stride; k += stride) marks.push_back(std::pow(10, k));
+    return marks;
+}
+
 std::vector<double> ticks(double low, double high) {
     if (!std::isfinite(low) || !std::isfinite(high)) return {0, 1};
     if (!(high - low > 1e-12 * std::max(std::fabs(low), std::fabs(high)))) {
@@ -95,11 +114,10 @@ std::vector<double> ticks(double low, double high) {
 
 Result<std::string> plot_png(const Plot& plot) {
     Canvas canvas(1200, 800, white);
-    const Axis x = axis_for(plot, &Point2::x, left, right);
-    const Axis y = axis_for(plot, &Point2::y, bottom, top);
+    const Axis x = axis_for(plot, plot.log_x, &Point2::x, left, right);
+    const Axis y = axis_for(plot, plot.log_y, &Point2::y, bottom, top);
     draw_grid(canvas, x, y);
-    for (std::size_t i = 0; i < plot.series.size(); ++i)
-        draw_series(canvas, plot.series[i], palette(static_cast<int>(i)), x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, plot, i, x, y);
     draw_legend(canvas, plot);
     canvas.text({left, 50}, plot.title, {.size = 32, .bold = true});
     canvas.text({(left + right) / 2, 965}, plot.x_label, {.size = 28, .align = Align::centre});

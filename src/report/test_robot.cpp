@@ -52,6 +52,7 @@ sim::Step step_at(int index, int steps) {
     sim::Step step;
     step.index = index;
     step.time = static_cast<double>(index) / steps;
+    step.solver = index == 0 ? sim::Solver::automatic : sim::Solver::newton;
     step.iterations = index == 0 ? 0 : 5 + index % 3;
     step.residual = index == 0 ? 0 : 3.5e-5 / index;
     step.wall_s = index == 0 ? 0 : 0.012;
