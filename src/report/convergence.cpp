@@ -112,7 +112,15 @@ Result<std::string> convergence_png(std::span<const SolverRun> runs) {
         for (const sim::IterationRecord& record : run.result.iterations) {
             if (record.step == 1 && record.iteration > 0) series.points.push_back({++count, record.residual});
         }
-        plot.series.push_back(std::move(series));
+        // auto is mostly one of the others: then one line has both names.
+        const auto same = std::ranges::find_if(plot.series, [&](const Series& s) {
+            return std::ranges::equal(s.points, series.points,
+                                      [](const Point2& a, const Point2& b) { return a.x == b.x && a.y == b.y; });
+        });
+        if (same == plot.series.end())
+            plot.series.push_back(std::move(series));
+        else
+            same->name += ", " + series.name;
     }
     return plot_png(plot);
 }

@@ -44,14 +44,20 @@ Axis axis_for(const Plot& plot, bool log, double Point2::*member, double from, d
     return {log ? log_ticks(low, high) : ticks(low, high), from, to, log};
 }
 
+/// "0.01", "1e-5": powers of ten stay short.
+std::string label(const Axis& axis, double value) {
+    if (axis.log && (value > 2e3 || value < 5e-4)) return fmt::format("1e{:.0f}", std::log10(value));
+    return fmt::format("{:.6g}", value);
+}
+
 void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
     for (const double value : x.marks) {
         canvas.line(std::array{Point2{x.at(value), top}, Point2{x.at(value), bottom}}, 1.5, grid);
-        canvas.text({x.at(value), bottom + 34}, fmt::format("{:.6g}", value), {.size = 24, .align = Align::centre});
+        canvas.text({x.at(value), bottom + 34}, label(x, value), {.size = 24, .align = Align::centre});
     }
     for (const double value : y.marks) {
         canvas.line(std::array{Point2{left, y.at(value)}, Point2{right, y.at(value)}}, 1.5, grid);
-        canvas.text({left - 14, y.at(value) + 8}, fmt::format("{:.6g}", value), {.size = 24, .align = Align::right});
+        canvas.text({left - 14, y.at(value) + 8}, label(y, value), {.size = 24, .align = Align::right});
     }
     const std::array corner = {Point2{left, top}, Point2{left, bottom}, Point2{right, bottom}};
     canvas.line(corner, 2.5, frame);
@@ -69,15 +75,17 @@ void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis
     if (!series.dots && line.size() > 1) canvas.line(line, 4, colour);
 }
 
+/// At the upper left; what falls by powers of ten passes there, and ends before the lower right.
 void draw_legend(Canvas& canvas, const Plot& plot) {
-    double height = top + 40;
+    const double side = plot.log_y ? right - 420 : left;
+    double height = plot.log_y ? bottom - 38 * static_cast<double>(plot.series.size()) : top + 40;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const Colour colour = palette(static_cast<int>(i));
         if (plot.series[i].dots)
-            canvas.disc({left + 50, height - 8}, 7, colour);
+            canvas.disc({side + 50, height - 8}, 7, colour);
         else
-            canvas.line(std::array{Point2{left + 30, height - 8}, Point2{left + 70, height - 8}}, 4, colour);
-        canvas.text({left + 84, height}, plot.series[i].name, {.size = 26});
+            canvas.line(std::array{Point2{side + 30, height - 8}, Point2{side + 70, height - 8}}, 4, colour);
+        canvas.text({side + 84, height}, plot.series[i].name, {.size = 26});
         height += 38;
     }
 }
