@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "compare_solvers.hpp"
 #include "core/files.hpp"
 #include "report/results.hpp"
 #include "report/summary.hpp"
@@ -25,6 +26,8 @@ struct Options {
     std::string folder;
     int steps = 0;
     std::string picture_size;
+    std::string solvers;  ///< one, or several with commas
+    bool compare = false;
     std::vector<std::string> assignments;
     Output output;
 };
@@ -110,10 +113,20 @@ Result<report::PictureSize> read_picture_size(const std::string& text) {
     return size;
 }
 
+/// None: the robot file's. More than one: a comparison.
+Result<std::vector<sim::Solver>> asked_solvers(const Options& options) {
+    if (options.compare) return std::vector(sim::all_solvers.begin(), sim::all_solvers.end());
+    if (options.solvers.empty()) return std::vector<sim::Solver>{};
+    return read_solvers(options.solvers);
+}
+
 Result<int> simulate(const Options& options) {
     const Result<report::PictureSize> picture_size = read_picture_size(options.picture_size);
     if (!picture_size) return tl::unexpected(picture_size.error());
+    const Result<std::vector<sim::Solver>> solvers = asked_solvers(options);
+    if (!solvers) return tl::unexpected(solvers.error());
     std::vector<std::string> assignments = options.assignments;
+    if (solvers->size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers->front())));
     if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
     const auto progress = terminal_progress(options.output);
     Result<robot::Robot> robot = robot::load_robot(options.robot, assignments);
@@ -122,6 +135,7 @@ Result<int> simulate(const Options& options) {
     if (!mesh) return tl::unexpected(mesh.error());
     Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
     if (!model) return tl::unexpected(model.error());
+    if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
     const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
     const report::Simulation simulation = describe(*robot, *model, trajectory);
     if (!options.folder.empty()) {
@@ -153,6 +167,11 @@ void add_simulate(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
     command->add_option("--steps", options->steps, "number of steps, instead of the file's")
         ->check(CLI::Range(1, 100000));
+    auto* solver = command->add_option("--solver", options->solvers,
+                                       "instead of the file's: auto, newton, quasi-newton, anderson, local-global; "
+                                       "several with commas are compared");
+    command->add_flag("--compare-solvers", options->compare, "runs the program with every solver and compares them")
+        ->excludes(solver);
     command->add_option("--picture-size", options->picture_size, "WIDTHxHEIGHT of the pictures in pixels (1600x1000)");
     command
         ->add_option("--set", options->assignments,

@@ -8,6 +8,7 @@
 #include "core/base64.hpp"
 #include "report/assets.hpp"
 #include "report/canvas.hpp"
+#include "report/convergence.hpp"
 #include "report/summary.hpp"
 
 namespace pliant::report {
@@ -204,15 +205,15 @@ std::string contact_section(const Simulation& s) {
 }
 
 std::string steps_section(const Simulation& s) {
-    std::vector<std::string> header = {"step", "time", "iterations", "residual", "wall time", "min J"};
+    std::vector<std::string> header = {"step", "time", "solver", "iterations", "residual", "wall time", "min J"};
     for (const auto& c : s.result.steps.front().cables) header.push_back(c.name + ", N");
     for (const auto& c : s.result.steps.front().chambers) header.push_back(c.name + ", kPa");
     for (const auto& o : s.result.steps.front().contacts) header.push_back(o.name + ", N");
     std::vector<std::vector<std::string>> rows;
     for (const auto& step : s.result.steps) {
         rows.push_back({fmt::format("{}", step.index), fmt::format("{:.4g}", step.time),
-                        fmt::format("{}", step.iterations), fmt::format("{:.2e}", step.residual), seconds(step.wall_s),
-                        fmt::format("{:.4f}", step.min_J)});
+                        step.index == 0 ? "–" : std::string(sim::name(step.solver)), fmt::format("{}", step.iterations),
+                        fmt::format("{:.2e}", step.residual), seconds(step.wall_s), fmt::format("{:.4f}", step.min_J)});
         for (const auto& c : step.cables) rows.back().push_back(fmt::format("{:.4g}", c.tension_N));
         for (const auto& c : step.chambers) rows.back().push_back(fmt::format("{:.4g}", 1e-3 * c.pressure_Pa));
         for (const auto& o : step.contacts) rows.back().push_back(vector_text(o.force_N));
@@ -292,6 +293,9 @@ std::string report_html(const Simulation& s, const std::vector<Picture>& picture
            "<details><summary>Licence of the plotting library</summary><pre>" +
            escaped_lines(assets::dygraphs_licence) + "</pre></details></footer>\n</main>\n";
     out += "<script type=\"application/json\" id=\"data\">" + script_safe_json(summary_json(s, -1)) + "</script>\n";
+    if (!s.result.iterations.empty())
+        out += "<script type=\"application/json\" id=\"iterations\">" + script_safe_json(iterations_json(s.result)) +
+               "</script>\n";
     out += fmt::format("<script>{}</script>\n<script>{}</script>\n</body>\n</html>\n", assets::dygraphs_js,
                        assets::report_js);
     return out;

@@ -48,6 +48,16 @@ TEST_CASE("contact has a table with the largest force of all steps") {
     CHECK(html.find("as near as 0.04 mm") != std::string::npos);
 }
 
+TEST_CASE("iterations are in the page where there are any") {
+    auto robot = test::bent_bar(2, 1);
+    robot.result.iterations.clear();
+    CHECK(page(robot.simulation()).find("id=\"iterations\"") == std::string::npos);
+    robot.result.iterations = {{.step = 1, .solver = sim::Solver::anderson, .residual = 0.5}};
+    CHECK(
+        page(robot.simulation()).find("id=\"iterations\">{\"solvers\":[\"anderson\"],\"rows\":[[0,0,0.5]]}</script>") !=
+        std::string::npos);
+}
+
 TEST_CASE("names from a robot file are text, whatever they hold") {
     const std::string evil = "</script><script>alert(1)</script>\"'&";
     auto robot = test::bent_bar(2, 1);
@@ -68,7 +78,7 @@ TEST_CASE("names from a robot file are text, whatever they hold") {
     CHECK(html.find("&lt;/script&gt;&lt;script&gt;alert(1)") != std::string::npos);
     std::size_t scripts = 0;
     for (std::size_t at = 0; (at = html.find("<script", at)) != std::string::npos; ++at) ++scripts;
-    CHECK(scripts == 2);  // the data and the page's own code; the library was taken out
+    CHECK(scripts == 3);  // the data, the iterations and the page's own code; the library was taken out
 }
 
 TEST_CASE("the data in the page are the summary") {

@@ -19,6 +19,27 @@ TEST_CASE("ticks are round, cover the range, and are neither few nor many") {
     CHECK(ticks(NAN, 1).size() == 2);
 }
 
+TEST_CASE("ticks by powers of ten cover the range") {
+    CHECK(log_ticks(1, 1000) == std::vector<double>{1, 10, 100, 1000});
+    CHECK(log_ticks(0.02, 0.03).size() == 2);
+    const auto many = log_ticks(3e-17, 4e9);
+    CHECK(many.front() <= 3e-17);
+    CHECK(many.back() >= 4e9);
+    CHECK(many.size() <= 11);
+    CHECK(log_ticks(0, 1).size() == 2);
+}
+
+TEST_CASE("on axes by powers of ten what is not above zero is left out") {
+    Plot plot{"title", "x", "y", {{"line", {{1, 1}, {10, 1e-3}, {1000, 1e-6}}, false}}, true, true};
+    const auto png = plot_png(plot);
+    REQUIRE(png);
+    plot.series[0].points.push_back({0, 1e-6});
+    plot.series[0].points.push_back({1000, -1});
+    CHECK(*plot_png(plot) == *png);
+    plot.log_x = false;
+    CHECK(*plot_png(plot) != *png);
+}
+
 TEST_CASE("a plot is a PNG of its size, and shows its lines") {
     const Plot plot{"title", "x", "y", {{"line", {{0, 0}, {1, 2}}, false}, {"points", {{0.5, 1.5}, {NAN, 1}}, true}}};
     const auto png = plot_png(plot);

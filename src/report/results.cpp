@@ -18,6 +18,7 @@ Status write_results(const std::filesystem::path& folder, const Simulation& s, P
     if (Status status = write_file(folder / "summary.json", summary_json(s)); !status) return status;
     if (Status status = write_file(folder / "steps.csv", steps_csv(s.result)); !status) return status;
     if (Status status = write_file(folder / "markers.csv", markers_csv(s.result)); !status) return status;
+    if (Status status = write_file(folder / "iterations.csv", iterations_csv(s.result)); !status) return status;
     if (Status status = write_frames(folder, s, progress); !status) return status;
 
     const Surface surface = outer_surface(s.mesh, s.region_material);

@@ -19,9 +19,9 @@ TEST_CASE("the folder holds every file that the design names") {
     Progress progress;
     const auto status = write_results(folder.path(), robot.simulation(), progress, {240, 150});
     REQUIRE_MESSAGE(status.has_value(), status.error().message);
-    for (const char* name : {"summary.json", "steps.csv", "markers.csv", "frames.pvd", "frames/frame_0000.vtu",
-                             "frames/frame_0003.vtu", "robot.glb", "pictures/rest.png", "pictures/final.png",
-                             "pictures/stages.png", "pictures/von_mises.png", "report.html"}) {
+    for (const char* name : {"summary.json", "steps.csv", "markers.csv", "iterations.csv", "frames.pvd",
+                             "frames/frame_0000.vtu", "frames/frame_0003.vtu", "robot.glb", "pictures/rest.png",
+                             "pictures/final.png", "pictures/stages.png", "pictures/von_mises.png", "report.html"}) {
         CHECK_MESSAGE(std::filesystem::file_size(folder.path() / name) > 100, name);
     }
 }

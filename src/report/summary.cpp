@@ -32,11 +32,17 @@ Json actuators_json(const sim::Step& step) {
 }
 
 Json step_json(const sim::Step& step, bool contact) {
-    Json out = {{"index", step.index},          {"time", step.time},
-                {"converged", step.converged},  {"iterations", step.iterations},
-                {"substeps", step.substeps},    {"residual", step.residual},
-                {"wall_ms", 1e3 * step.wall_s}, {"min_J", step.min_J},
-                {"energy_J", step.energy_J},    {"kinetic_energy_J", step.kinetic_energy_J}};
+    Json out = {{"index", step.index},
+                {"time", step.time},
+                {"converged", step.converged},
+                {"iterations", step.iterations},
+                {"substeps", step.substeps},
+                {"residual", step.residual},
+                {"wall_ms", 1e3 * step.wall_s},
+                {"min_J", step.min_J},
+                {"solver", step.index == 0 ? "" : sim::name(step.solver)},
+                {"energy_J", step.energy_J},
+                {"kinetic_energy_J", step.kinetic_energy_J}};
     out.update(actuators_json(step));
     out["supports"] = Json::object();
     for (const auto& support : step.supports) {

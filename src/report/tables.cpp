@@ -32,8 +32,8 @@ void names(Row& row, const std::string& name, std::span<const std::string_view> 
 }
 
 std::string steps_header(const sim::Step& rest, bool contact) {
-    static constexpr std::array<std::string_view, 8> common = {"index",    "time",     "converged", "iterations",
-                                                               "substeps", "residual", "wall_ms",   "min_J"};
+    static constexpr std::array<std::string_view, 9> common = {
+        "index", "time", "converged", "iterations", "substeps", "residual", "wall_ms", "min_J", "solver"};
     static constexpr std::array<std::string_view, 3> cable = {"length_ratio", "length_mm", "tension_N"};
     static constexpr std::array<std::string_view, 3> chamber = {"volume_ratio", "volume_mm3", "pressure_kPa"};
     static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
@@ -60,6 +60,7 @@ std::string steps_row(const sim::Step& step, bool contact) {
     row.number(step.residual);
     row.number(1e3 * step.wall_s);
     row.number(step.min_J);
+    row.text(step.index == 0 ? "" : sim::name(step.solver));
     for (const auto& c : step.cables) {
         row.number(c.length_ratio);
         row.number(1e3 * c.length_m);
@@ -117,6 +118,17 @@ std::string markers_csv(const sim::Trajectory& result) {
         for (const auto& marker : step.markers) row.vector(marker.position_m, 1e3);
         out += row.line();
     }
+    return out;
+}
+
+std::string iteration_row(const sim::IterationRecord& r) {
+    return fmt::format("{},{:.10g},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", r.step, r.time, sim::name(r.solver),
+                       r.iteration, r.residual, r.violation, r.energy_J, r.alpha, r.min_J);
+}
+
+std::string iterations_csv(const sim::Trajectory& result) {
+    std::string out = "step,time,solver,iteration,residual,violation,energy_J,alpha,min_J\n";
+    for (const sim::IterationRecord& record : result.iterations) out += iteration_row(record) + "\n";
     return out;
 }
 

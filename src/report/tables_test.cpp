@@ -27,10 +27,10 @@ TEST_CASE("steps.csv has a row per step, with rest, in the units its header name
     const auto lines = lines_of(steps_csv(robot.result));
     REQUIRE(lines.size() == 12);
     CHECK(lines[0] ==
-          "index,time,converged,iterations,substeps,residual,wall_ms,min_J,flexor_length_ratio,flexor_length_mm,"
+          "index,time,converged,iterations,substeps,residual,wall_ms,min_J,solver,flexor_length_ratio,flexor_length_mm,"
           "flexor_tension_N,base_force_x_N,base_force_y_N,base_force_z_N");
-    CHECK(lines[1] == "0,0,1,0,1,0,0,1,1,120,0,-0,0,0.5");
-    CHECK(lines[11].starts_with("10,1,1,6,1,3.5e-06,12,0.98,0.9333"));
+    CHECK(lines[1] == "0,0,1,0,1,0,0,1,,1,120,0,-0,0,0.5");
+    CHECK(lines[11].starts_with("10,1,1,6,1,3.5e-06,12,0.98,newton,0.9333"));
     CHECK(lines[11].ends_with(",71,-71,0,0.5"));
 }
 
@@ -42,6 +42,17 @@ TEST_CASE("markers.csv gives millimetres") {
     CHECK(lines[1] == "0,0,100,10,7.5,50,10,7.5");
     // A quarter circle of length 100 mm: radius 200 / pi.
     CHECK(lines[11].starts_with("10,1,63.66197724,10,71.16197724,"));
+}
+
+TEST_CASE("iterations.csv has a row per iteration") {
+    sim::Trajectory result;
+    result.iterations = {{1, 0.05, sim::Solver::anderson, 0, 1, 0.01, -0.5, 0, 0.9},
+                         {1, 0.05, sim::Solver::quasi_newton, 1, 0.25, 0, -0.75, 0.5, 0.875}};
+    const auto lines = lines_of(iterations_csv(result));
+    REQUIRE(lines.size() == 3);
+    CHECK(lines[0] == "step,time,solver,iteration,residual,violation,energy_J,alpha,min_J");
+    CHECK(lines[1] == "1,0.05,anderson,0,1,0.01,-0.5,0,0.9");
+    CHECK(lines[2] == "1,0.05,quasi-newton,1,0.25,0,-0.75,0.5,0.875");
 }
 
 TEST_CASE("forces of obstacles and of the robot on itself have columns where anything could touch") {

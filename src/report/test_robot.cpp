@@ -52,6 +52,7 @@ sim::Step step_at(int index, int steps) {
     sim::Step step;
     step.index = index;
     step.time = static_cast<double>(index) / steps;
+    step.solver = index == 0 ? sim::Solver::automatic : sim::Solver::newton;
     step.iterations = index == 0 ? 0 : 5 + index % 3;
     step.residual = index == 0 ? 0 : 3.5e-5 / index;
     step.wall_s = index == 0 ? 0 : 0.012;
@@ -113,6 +114,13 @@ Robot bent_bar(int steps, int order) {
         step.supports = {{"base", {-71 * step.time, 0, 0.5}}};
         step.markers = {{"tip", bent({0.1, 0.01, 0.0075}, angle)}, {"middle", bent({0.05, 0.01, 0.0075}, angle)}};
         robot.cable_points.push_back({cable});
+        for (int k = 0; k <= step.iterations && i > 0; ++k)
+            robot.result.iterations.push_back({.step = i,
+                                               .time = step.time,
+                                               .solver = step.solver,
+                                               .iteration = k,
+                                               .residual = std::pow(10, -k),
+                                               .alpha = k == 0 ? 0.0 : 1.0});
         robot.result.steps.push_back(std::move(step));
     }
     return robot;

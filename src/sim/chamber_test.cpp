@@ -185,7 +185,7 @@ TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {
 }
 
 TEST_CASE("every solver inflates and deflates a chamber") {
-    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::local_global}) {
+    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson, Solver::local_global}) {
         for (const double ratio : {1.4, 0.7}) {
             Description d = hollow_block(1);
             d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, ratio};

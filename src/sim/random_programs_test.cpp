@@ -146,7 +146,7 @@ TEST_CASE("random programs converge or say why not, and keep the last good state
         Dice dice(seed);
         Description d = random_robot(dice);
         Program program{.steps = 1 + dice.up_to(4), .iteration_limit = 60};
-        program.solver = static_cast<Solver>(dice.chance(0.8) ? 0 : dice.up_to(3));
+        program.solver = static_cast<Solver>(dice.chance(0.8) ? 0 : dice.up_to(4));
         if (dice.chance(0.2)) program.dynamics = Dynamics{{dice.between(0, 10), dice.between(0, 0.01)}};
         const auto model = Model::create(std::move(d));
         if (!model) {

@@ -168,7 +168,7 @@ TEST_CASE("a rotation about no axis is refused") {
 
 TEST_CASE("every solver finds the same bent bar under a cable, and no step turns a tet inside out") {
     std::vector<double> tensions;
-    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::local_global}) {
+    for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson, Solver::local_global}) {
         for (const int order : {1, 2}) {
             Description d = bar(order);
             d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
@@ -188,9 +188,9 @@ TEST_CASE("every solver finds the same bent bar under a cable, and no step turns
     CHECK(tensions[0] > tensions[1]);  // linear tets lock
 }
 
-TEST_CASE("the thesis' shape blend bends under a cable and under a load, with both of its solvers") {
+TEST_CASE("the thesis' shape blend bends under a cable and under a load, with each of its solvers") {
     std::vector<double> tensions;
-    for (const Solver solver : {Solver::quasi_newton, Solver::local_global}) {
+    for (const Solver solver : {Solver::quasi_newton, Solver::local_global, Solver::anderson}) {
         for (const int order : {1, 2}) {
             Description d = bar(order, material::shape_blend(1e6, 0.3));
             d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
@@ -209,6 +209,8 @@ TEST_CASE("the thesis' shape blend bends under a cable and under a load, with bo
     }
     CHECK(tensions[2] == doctest::Approx(tensions[0]).epsilon(1e-2));
     CHECK(tensions[3] == doctest::Approx(tensions[1]).epsilon(1e-2));
+    CHECK(tensions[4] == doctest::Approx(tensions[0]).epsilon(1e-2));
+    CHECK(tensions[5] == doctest::Approx(tensions[1]).epsilon(1e-2));
 }
 
 TEST_CASE("a given tension and the length it leads to belong together") {

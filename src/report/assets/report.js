@@ -169,7 +169,20 @@ function solverPlots() {
          steps.map((s) => [s.index, Math.max(s.residual, 1e-16), data.tolerance]),
          { logscale: true, axes: { y: { axisLabelWidth: 58, valueFormatter: shown,
                                         axisLabelFormatter: (v) => v.toExponential(0) } } });
+    iterationPlot();
     plot("Smallest det F", "step", "", ["min J"], states.map((s) => [s.index, s.min_J]));
+}
+
+/** Every iteration of the program, each step beginning anew; one line per solver that took part. */
+function iterationPlot() {
+    const holder = document.getElementById("iterations");
+    if (!holder) return;
+    const { solvers, rows } = JSON.parse(holder.textContent);
+    const series = solvers.map((_, k) => rows.filter((row) => row[1] === k)
+        .map((row) => [row[0], Math.max(row[2], 1e-16)]));
+    plot("Residual of every iteration", "iteration", "", solvers, merged(series),
+         { logscale: true, axes: { y: { axisLabelWidth: 58, valueFormatter: shown,
+                                        axisLabelFormatter: (v) => v.toExponential(0) } } });
 }
 
 function zoom() {

@@ -1,0 +1,22 @@
+// One robot, several solvers: what each change to the thesis' iteration buys.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "sim/simulate.hpp"
+
+namespace pliant::app {
+
+/// "newton,anderson" -> solvers in that order; an error names what is not one.
+[[nodiscard]] Result<std::vector<sim::Solver>> read_solvers(const std::string& list);
+
+/// Runs the program with each solver in turn, prints the table and, where `folder` is not empty, writes
+/// comparison.json, comparison.csv, convergence.csv and convergence.png there. The exit status: failed if none could
+/// finish.
+[[nodiscard]] Result<int> compare_solvers(const sim::Model& model, const sim::Program& program,
+                                          const std::vector<sim::Solver>& solvers, const std::string& folder,
+                                          const Output& output);
+
+}  // namespace pliant::app
