@@ -1,6 +1,7 @@
 // The cable finger of the SoftRobots examples (softrobots/README.md of the reference data), from rest to 50 mm of pull.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -83,4 +84,105 @@ TEST_CASE("finger.vtk, linear and quadratic, 0 to 50 mm") {
 TEST_CASE("finger_7k.vtk, linear, 0 to 50 mm") {
     const sim::Trajectory result = pull(finger("finger_7k.vtk", 1, 25), 0);
     check_pull(result);
+}
+
+namespace {
+
+sim::Trajectory simulate(const std::string& text) {
+    const auto robot = robot::parse_robot(text, "robot.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    auto mesh = robot::build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    const auto model = robot::build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    return sim::run(*model, robot->program, silent);
+}
+
+/// The pneunet of softrobots/README.md with its stiff layer, and a target for its air.
+std::string pneunet(const std::string& target, int steps) {
+    const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
+    return fmt::format(R"(
+name = "pneunet"
+length_unit = "mm"
+material.soft = {{ youngs_modulus = "500 kPa", poisson_ratio = 0.3 }}
+material.stiff = {{ youngs_modulus = "2000 kPa", poisson_ratio = 0.3 }}
+mesh = {{ file = "{0}/softrobots/pneunet_finger/pneunetCut.vtk", order = 1 }}
+[[body]]
+name = "finger"
+region = "all"
+material = "soft"
+[[body]]
+name = "layer"
+region = "all"
+box = [[-100, 22.5, -8], [-19, 28, 8]]
+material = "stiff"
+[[fixed]]
+name = "base"
+box = [[-10, 0, -20], [0, 30, 20]]
+[[chamber]]
+name = "air"
+surface = "{0}/softrobots/pneunet_finger/pneunetCavityCut.stl"
+target = {{ {1} }}
+[program]
+steps = {2}
+)",
+                       folder, target, steps);
+}
+
+}  // namespace
+
+TEST_CASE("with self-contact the finger goes to 75 mm of pull, where its flanks have long met") {
+    std::string text = finger("finger_7k.vtk", 1, 30) + "[contact]\n";
+    text.replace(text.find("50 mm"), 5, "75 mm");
+    const sim::Trajectory result = simulate(text);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.warnings.empty());
+    double before = 0;
+    for (const sim::Step& step : result.steps) {
+        CHECK(step.residual <= 1e-4);
+        CHECK(step.min_J > 0);
+        CHECK(step.smallest_distance_m > 0);
+        CHECK(step.cables[0].tension_N >= before);  // closed flanks only make it stiffer
+        before = step.cables[0].tension_N;
+    }
+    CHECK(result.steps.back().self_contact_N > 10);
+    CHECK(result.steps[10].self_contact_N == 0);
+}
+
+TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hold") {
+    const sim::Trajectory grown = simulate(pneunet("volume_ratio = 4.5", 30));
+    REQUIRE_MESSAGE(grown.converged, grown.message);
+    double highest = 0;
+    for (const sim::Step& step : grown.steps) highest = std::max(highest, step.chambers[0].pressure_Pa);
+    CHECK(grown.steps.back().chambers[0].pressure_Pa < highest);
+    CHECK(grown.steps.back().chambers[0].volume_ratio == doctest::Approx(4.5).epsilon(1e-5));
+
+    // Driven by pressure it gets there and no further, keeps what it has, and says so.
+    const sim::Trajectory pressed = simulate(pneunet("pressure = \"150 kPa\"", 30));
+    CHECK_FALSE(pressed.converged);
+    CHECK(pressed.message.find("its pressure has a maximum of") != std::string::npos);
+    CHECK(pressed.steps.back().chambers[0].pressure_Pa > 0.9 * highest);
+}
+
+TEST_CASE("a mesh full of slivers inflates by 146 %") {
+    const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
+    const sim::Trajectory result = simulate(fmt::format(R"(
+name = "bellows"
+length_unit = "cm"
+material.soft = {{ youngs_modulus = "500 kPa", poisson_ratio = 0.3 }}
+mesh = {{ file = "{0}/softrobots/springy/Springy.vtk", order = 1 }}
+body = [{{ name = "bellows", region = "all", material = "soft" }}]
+fixed = [{{ name = "base", box = [[-2.001, -2.001, -0.001], [2.001, 2.001, 0.5]] }}]
+[[chamber]]
+name = "air"
+surface = "{0}/softrobots/springy/Springy_Cavity.stl"
+target = {{ volume_ratio = 2.46 }}
+[program]
+steps = 20
+)",
+                                                        folder));
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(2.46).epsilon(1e-5));
+    for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }

@@ -32,8 +32,8 @@ struct StiffnessMatrix {
 };
 
 /// The step that leads from a history to x. With steps of one length it is BDF2, else implicit Euler; both only
-/// take energy out of a linear system (A-stable; Euler much, BDF2 little). In both v = c (x - p) and a = c (v - q), so that the step's equations are the
-/// gradient of  c^2/2 |x - x~|_M^2 + c/2 |x - p|_C^2  with  x~ = p + q / c:
+/// take energy out of a linear system (A-stable; Euler much, BDF2 little). In both v = c (x - p) and a = c (v - q), so
+/// that the step's equations are the gradient of  c^2/2 |x - x~|_M^2 + c/2 |x - p|_C^2  with  x~ = p + q / c:
 ///   Euler  c = 1/h       p = x_n                    q = v_n
 ///   BDF2   c = 3/(2 h)   p = (4 x_n - x_{n-1})/3    q = (4 v_n - v_{n-1})/3
 /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, chapter III.
