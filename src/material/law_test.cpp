@@ -71,7 +71,7 @@ TEST_CASE("stress is the derivative of the energy") {
                 plus.data()[k] += h;
                 minus.data()[k] -= h;
                 const double difference = (*energy(law, plus) - *energy(law, minus)) / (2 * h);
-                CHECK(P.data()[k] == doctest::Approx(difference).epsilon(1e-6).scale(P.norm()));
+                CHECK(P.data()[k] == doctest::Approx(difference).scale(0).epsilon(1e-6).scale(P.norm()));
             }
         }
     }
@@ -102,7 +102,7 @@ TEST_CASE("a rotation of the deformed body rotates the stress and leaves the ene
         CAPTURE(name);
         for (const Matrix3& F : deformations()) {
             CHECK((stress(law, Q * F) - Q * stress(law, F)).norm() < 1e-11 * (scale(law) + stress(law, F).norm()));
-            if (has_energy(law)) CHECK(*energy(law, Q * F) == doctest::Approx(*energy(law, F)).epsilon(1e-11));
+            if (has_energy(law)) CHECK(*energy(law, Q * F) == doctest::Approx(*energy(law, F)).scale(0).epsilon(1e-11));
         }
     }
 }
@@ -126,7 +126,7 @@ TEST_CASE("small strains follow Hooke's law with the given E and nu") {
         const double strain = 1e-7;  // uniaxial stress: sideways contraction nu
         const Matrix3 F = Eigen::Vector3d(1 + strain, 1 - nu * strain, 1 - nu * strain).asDiagonal();
         const Matrix3 P = stress(law, F);
-        CHECK(P(0, 0) == doctest::Approx(E * strain).epsilon(1e-5));
+        CHECK(P(0, 0) == doctest::Approx(E * strain).scale(0).epsilon(1e-5));
         CHECK(std::fabs(P(1, 1)) < 1e-5 * E * strain);
         const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(tangent(law, Matrix3::Identity()));
         CHECK(eigen.eigenvalues().maxCoeff() == doctest::Approx(stiffness_bound(law)));
@@ -139,7 +139,7 @@ TEST_CASE("a rotation of the body before it is deformed changes nothing: the law
         CAPTURE(name);
         for (const Matrix3& F : deformations()) {
             CHECK((stress(law, F * Q) - stress(law, F) * Q).norm() < 1e-11 * (scale(law) + stress(law, F).norm()));
-            if (has_energy(law)) CHECK(*energy(law, F * Q) == doctest::Approx(*energy(law, F)).epsilon(1e-11));
+            if (has_energy(law)) CHECK(*energy(law, F * Q) == doctest::Approx(*energy(law, F)).scale(0).epsilon(1e-11));
         }
     }
 }
@@ -213,15 +213,15 @@ TEST_CASE("nearly incompressible bodies follow the closed forms of tension, comp
         for (const double l : {0.6, 0.9, 1.2, 1.7, 2.5}) {
             CAPTURE(l);
             CHECK(stress(form.law, stretched(form.law, l, false))(0, 0) ==
-                  doctest::Approx(form.uniaxial(l)).epsilon(1e-5));
+                  doctest::Approx(form.uniaxial(l)).scale(0).epsilon(1e-5));
             CHECK(stress(form.law, stretched(form.law, l, true))(0, 0) ==
-                  doctest::Approx(form.equibiaxial(l)).epsilon(1e-5));
+                  doctest::Approx(form.equibiaxial(l)).scale(0).epsilon(1e-5));
         }
         for (const double g : {0.1, 0.8, 2.0}) {
             Matrix3 F = Matrix3::Identity();
             F(0, 1) = g;
             CAPTURE(g);
-            CHECK(stress(form.law, F)(0, 1) == doctest::Approx(form.shear(g)).epsilon(1e-9));
+            CHECK(stress(form.law, F)(0, 1) == doctest::Approx(form.shear(g)).scale(0).epsilon(1e-9));
         }
     }
 }
@@ -250,7 +250,7 @@ TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches 
         }
     }
     for (const Matrix3& F : list) {
-        CHECK(*energy(ogden, F) == doctest::Approx(*energy(mooney, F)).epsilon(1e-11).scale(1e6));
+        CHECK(*energy(ogden, F) == doctest::Approx(*energy(mooney, F)).scale(0).epsilon(1e-11).scale(1e6));
         CHECK((stress(ogden, F) - stress(mooney, F)).norm() < 1e-11 * scale(mooney));
         const Matrix9 H = tangent(mooney, F);
         CHECK((tangent(ogden, F) - H).norm() < 1e-11 * H.norm());
@@ -258,7 +258,7 @@ TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches 
 }
 
 TEST_CASE("shape parameters of the thesis' example, 12 and 45 MPa") {
-    CHECK(shape_parameter_of_thesis(45.0 / 12) == doctest::Approx(7.08).epsilon(1e-3));
+    CHECK(shape_parameter_of_thesis(45.0 / 12) == doctest::Approx(7.08).scale(0).epsilon(1e-3));
     CHECK(shape_parameter_small_strain(45.0 / 12) == doctest::Approx(5.125));
 }
 

@@ -64,7 +64,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         for (const Vec3& p : d.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
         const ChamberSurface wall(d.chambers[0].wall, rest);
         CHECK(is_closed(d.chambers[0].wall));
-        CHECK(wall.volume(rest) == doctest::Approx(0.02 * 0.005 * 0.005).epsilon(1e-12));
+        CHECK(wall.volume(rest) == doctest::Approx(0.02 * 0.005 * 0.005).scale(0).epsilon(1e-12));
 
         std::vector<double> x = distorted(d.mesh);
         std::vector<double> gradient(x.size(), 0.0);
@@ -89,7 +89,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
             ahead[i] += h * direction[i];
             behind[i] -= h * direction[i];
         }
-        CHECK((wall.volume(ahead) - wall.volume(behind)) / (2 * h) == doctest::Approx(slope).epsilon(1e-5));
+        CHECK((wall.volume(ahead) - wall.volume(behind)) / (2 * h) == doctest::Approx(slope).scale(0).epsilon(1e-5));
         std::vector<double> gradient_ahead(x.size(), 0.0);
         std::vector<double> gradient_behind(x.size(), 0.0);
         wall.add_gradient(ahead, 1, gradient_ahead);
@@ -167,20 +167,20 @@ TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {
         const Trajectory by_volume = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_volume.converged, by_volume.message);
         const ChamberState air = by_volume.steps.back().chambers[0];
-        CHECK(air.volume_ratio == doctest::Approx(1.6).epsilon(1e-9));
+        CHECK(air.volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-9));
         CHECK(air.pressure_Pa > 1000);
 
         d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, air.pressure_Pa};
         const Trajectory by_pressure = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_pressure.converged, by_pressure.message);
-        CHECK(by_pressure.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).epsilon(1e-6));
+        CHECK(by_pressure.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-6));
 
         const double gas = 1.6 * (air.pressure_Pa + d.ambient_pressure_Pa) / d.ambient_pressure_Pa;
         d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, gas};
         const Trajectory by_gas = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_gas.converged, by_gas.message);
-        CHECK(by_gas.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).epsilon(1e-6));
-        CHECK(by_gas.steps.back().chambers[0].pressure_Pa == doctest::Approx(air.pressure_Pa).epsilon(1e-6));
+        CHECK(by_gas.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-6));
+        CHECK(by_gas.steps.back().chambers[0].pressure_Pa == doctest::Approx(air.pressure_Pa).scale(0).epsilon(1e-6));
     }
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("every solver inflates and deflates a chamber") {
             CAPTURE(result.solver);
             CAPTURE(ratio);
             REQUIRE_MESSAGE(result.converged, result.message);
-            CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(ratio).epsilon(1e-6));
+            CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(ratio).scale(0).epsilon(1e-6));
             CHECK((result.steps.back().chambers[0].pressure_Pa > 0) == (ratio > 1));
         }
     }
@@ -209,7 +209,7 @@ TEST_CASE("a sealed chamber stiffens the block that holds it") {
     REQUIRE_MESSAGE(sealed.converged, sealed.message);
     const ChamberState air = sealed.steps.back().chambers[0];
     CHECK((air.pressure_Pa + d.ambient_pressure_Pa) * air.volume_m3 ==
-          doctest::Approx(d.ambient_pressure_Pa * 0.02 * 0.005 * 0.005).epsilon(1e-9));
+          doctest::Approx(d.ambient_pressure_Pa * 0.02 * 0.005 * 0.005).scale(0).epsilon(1e-9));
     d.chambers.clear();
     const Trajectory open = solve(d, {.steps = 3, .tolerance = 1e-7});
     REQUIRE(open.converged);
@@ -238,7 +238,7 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is what the s
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 force = result.steps.back().supports[0].force_N;
     // Little bending: the top presses down with pressure times area, to the order of the rotation.
-    CHECK(force.z == doctest::Approx(pressure * 3 * side * side).epsilon(0.1));
+    CHECK(force.z == doctest::Approx(pressure * 3 * side * side).scale(0).epsilon(0.1));
     CHECK(result.steps.back().markers[0].position_m.z < 0.5 * side - 1e-4);
     // Four times the pressure: the surface turns and carries the force with it.
     d.pressures[0].pressure_Pa = 4 * pressure;

@@ -66,8 +66,8 @@ TEST_CASE("the mass matrix moves as the whole body does") {
             energy += 0.5 * u[i] * momentum[i];
         }
         const double mass = density * length * thickness * thickness;
-        CHECK(x == doctest::Approx(mass).epsilon(1e-12));
-        CHECK(energy == doctest::Approx(0.5 * mass * 5).epsilon(1e-12));
+        CHECK(x == doctest::Approx(mass).scale(0).epsilon(1e-12));
+        CHECK(energy == doctest::Approx(0.5 * mass * 5).scale(0).epsilon(1e-12));
     }
 }
 
@@ -93,8 +93,8 @@ TEST_CASE("a beam let go under gravity swings at its natural frequency and gains
         }
     }
     REQUIRE(crossings.size() >= 3);
-    CHECK(crossings[2] - crossings[0] == doctest::Approx(period).epsilon(0.03));
-    CHECK(lowest == doctest::Approx(-(thickness / 2 - rest)).epsilon(0.1));  // as far below as it began above
+    CHECK(crossings[2] - crossings[0] == doctest::Approx(period).scale(0).epsilon(0.03));
+    CHECK(lowest == doctest::Approx(-(thickness / 2 - rest)).scale(0).epsilon(0.1));  // as far below as it began above
 
     double energy = 0;  // undeformed, at rest
     for (std::size_t k = 1; k < swing.steps.size(); ++k) {
@@ -127,7 +127,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
             const Trajectory still = solve(d, {.steps = 4, .tolerance = 1e-6});
             CHECK(damped.steps.back().kinetic_energy_J < 1e-3 * largest_kinetic);
             CHECK(damped.steps.back().markers[0].position_m.z ==
-                  doctest::Approx(still.steps.back().markers[0].position_m.z).epsilon(0.02));
+                  doctest::Approx(still.steps.back().markers[0].position_m.z).scale(0).epsilon(0.02));
         }
     }
 }

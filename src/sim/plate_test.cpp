@@ -53,7 +53,7 @@ TEST_CASE("a plate that moves as a whole has no energy, and its gradient and Hes
         ahead[static_cast<std::size_t>(column)] += h;
         behind[static_cast<std::size_t>(column)] -= h;
         CHECK((plate.energy(ahead) - plate.energy(behind)) / (2 * h) ==
-              doctest::Approx(gradient[static_cast<std::size_t>(column)]).epsilon(1e-6));
+              doctest::Approx(gradient[static_cast<std::size_t>(column)]).scale(0).epsilon(1e-6));
         std::vector<double> up(x.size(), 0.0);
         std::vector<double> down(x.size(), 0.0);
         plate.add_gradient(ahead, up);
