@@ -251,6 +251,11 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     Eigen::MatrixXd plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
+    // And what has misled is forgotten.
+    REQUIRE(mixing->refresh(state, controls, false));
+    plain = columns;
+    mixing->solve(plain);
+    CHECK((plain - inverse).norm() == 0);
 }
 
 TEST_CASE("a pressure beyond a chamber's largest: the message names the limit, and volume passes it") {
