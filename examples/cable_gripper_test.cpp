@@ -38,17 +38,18 @@ TEST_CASE("the gripper curls as it did") {
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0.5);
 }
 
-TEST_CASE("both solvers of the thesis' family agree on the gripper") {
+TEST_CASE("all solvers agree on the gripper") {
     const std::vector<std::string> coarse = {"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=5",
                                              "cable.flexor.target.length_ratio=0.9"};
     std::vector<double> tension;
-    for (const char* solver : {"newton", "quasi-newton", "local-global"}) {
+    for (const char* solver : {"newton", "quasi-newton", "anderson", "local-global"}) {
         auto assignments = coarse;
         assignments.push_back(std::string("program.solver=") + solver);
         tension.push_back(run(assignments).steps.back().cables[0].tension_N);
     }
     CHECK(tension[1] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
     CHECK(tension[2] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
+    CHECK(tension[3] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
 }
 
 TEST_CASE("the number of gaps is one parameter") {

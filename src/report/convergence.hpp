@@ -26,7 +26,7 @@ struct SolverRow {
     double energy_J = 0;       ///< as Step::energy_J
     double difference_mm = 0;  ///< largest distance of a marker (of a node, without markers) from the reference's at
                                ///< that step; not a number if the reference has none
-    std::string message;  ///< why it stopped, if it did
+    std::string message;       ///< why it stopped, if it did
 };
 [[nodiscard]] std::vector<SolverRow> compare(std::span<const SolverRun> runs);
 

@@ -9,9 +9,9 @@
 
 namespace pliant::report {
 
-/// Writes summary.json, steps.csv, markers.csv, iterations.csv, frames.pvd with frames/*.vtu, robot.glb, pictures/*.png and report.html
-/// into `folder`, which exists and is written aside by the caller (core/files.hpp, write_folder). Ray casting the
-/// pictures takes seconds; the rest is quick.
+/// Writes summary.json, steps.csv, markers.csv, iterations.csv, frames.pvd with frames/*.vtu, robot.glb, pictures/*.png
+/// and report.html into `folder`, which exists and is written aside by the caller (core/files.hpp, write_folder). Ray
+/// casting the pictures takes seconds; the rest is quick.
 [[nodiscard]] Status write_results(const std::filesystem::path& folder, const Simulation& simulation,
                                    Progress& progress, const PictureSize& picture_size = {});
 

@@ -25,9 +25,11 @@ public:
     [[nodiscard]] int default_iteration_limit() const override { return 5000; }
     void restart() override { steps_.clear(); }
 
-    /// The accelerated step has no descent to promise: cautiously, it is the plain one.
+    /// The accelerated step has no descent to promise: cautiously, it is the plain one. What misled is forgotten, or it
+    /// would mislead again at every iteration to come, and all steps would be plain ones.
     [[nodiscard]] bool refresh(const State&, const Controls&, bool cautious) override {
-        mixing_ = !cautious && !steps_.empty();
+        if (cautious) steps_.clear();
+        mixing_ = !steps_.empty();
         if (mixing_) factorise();
         return true;
     }

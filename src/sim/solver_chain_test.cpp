@@ -156,6 +156,22 @@ TEST_CASE("a solver that was asked for by name stays alone") {
     CHECK(result.steps.back().solver == Solver::newton);
 }
 
+TEST_CASE("auto: a step for which the iterations of its solver do not suffice is finished by the other, not halved") {
+    Description d = pulled_bar(0.95);
+    d.materials = {{"A", material::shape_blend(1e6, 0.3), 1000}};  // no energy: quasi-newton, then anderson
+    const Trajectory alone = solve(d, {.steps = 1, .tolerance = 1e-5, .solver = Solver::quasi_newton});
+    REQUIRE_MESSAGE(alone.converged, alone.message);
+    const int needed = alone.steps.back().iterations;
+    const Trajectory helped = solve(d, {.steps = 1, .tolerance = 1e-5, .iteration_limit = needed - 1});
+    REQUIRE_MESSAGE(helped.converged, helped.message);
+    CHECK(helped.solver == "quasi-newton");
+    CHECK(helped.steps.back().solver == Solver::anderson);
+    CHECK(helped.steps.back().substeps == 1);
+    CHECK(helped.steps.back().iterations >= needed);
+    CHECK(helped.steps.back().cables[0].tension_N ==
+          doctest::Approx(alone.steps.back().cables[0].tension_N).epsilon(1e-3));
+}
+
 TEST_CASE("every iteration is recorded as the state that it led to") {
     for (const Solver solver : {Solver::newton, Solver::anderson}) {
         const Trajectory result = solve(pulled_bar(0.9), {.steps = 3, .tolerance = 1e-6, .solver = solver});
@@ -233,6 +249,11 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     // Cautious: the plain step.
     REQUIRE(mixing->refresh(state, controls, true));
     Eigen::MatrixXd plain = columns;
+    mixing->solve(plain);
+    CHECK((plain - inverse).norm() == 0);
+    // And what has misled is forgotten.
+    REQUIRE(mixing->refresh(state, controls, false));
+    plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
 }
