@@ -74,6 +74,7 @@ Result<Columns> read_header(std::string_view line, const std::string& place) {
     }
     const auto cells = split(line, columns.separator);
     std::vector<std::string> low;
+    low.reserve(cells.size());
     for (const std::string_view cell : cells) low.push_back(lower(cell));
     const auto stretch = find_column(low, "stretch");
     const auto strain = stretch ? stretch : find_column(low, "strain");
