@@ -190,6 +190,7 @@ Json animation_json(Buffer& buffer, const Simulation& s, const std::vector<std::
     }
     for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
         std::vector<Vec3> places;
+        places.reserve(steps.size());
         for (const std::size_t step : steps) places.push_back(y_up(s.obstacles[k].offset_m[step]));
         const int moves = buffer.vectors(places, false, false);
         animation["samplers"].push_back({{"input", input}, {"output", moves}, {"interpolation", "LINEAR"}});

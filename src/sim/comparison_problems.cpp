@@ -45,7 +45,8 @@ constexpr double flare = 1.4 * mm;  ///< of each flank, from floor to top
 Vec3 to_finger(Vec3 p) {
     const double cell = pitch / cells_per_notch;
     const int line = static_cast<int>(std::lround(p.x / cell));
-    const double start = pitch * (line / cells_per_notch);
+    const int notches_before = line / cells_per_notch;
+    const double start = pitch * notches_before;
     const double third = pitch / 4.5;  // four wide cells and a notch of half their width
     const double x[cells_per_notch] = {0, third, 2 * third, 2.5 * third, 3.5 * third};
     const double open = std::max(0.0, (p.z - notch_floor) / (height - notch_floor)) * flare;

@@ -131,6 +131,7 @@ std::vector<PrincipalForm> principal_forms() {
         material::shape_blend(1e6, 0.3),         material::MooneyRivlin{1e5, 0.7e5, K},
         material::Yeoh{1.7e5, -1e4, 2e3, K},     material::Ogden{2, {2.5e5, 0.9e5}, {1.8, -2.5}, K}};
     std::vector<PrincipalForm> forms;
+    forms.reserve(laws.size());
     for (const material::Law& law : laws) forms.push_back(principal_form(law));
     return forms;
 }
