@@ -97,13 +97,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         double largest = 0;
         double wrong = 0;
         std::vector<double> product(x.size(), 0.0);
-        for (int column = 0; column < pattern.size(); ++column) {
-            for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-                const int row = pattern.row[k];
-                product[row] += hessian[k] * direction[column];
-                if (row != column) product[column] += hessian[k] * direction[row];
-            }
-        }
+        linalg::add_product(pattern, hessian, direction, 1, product);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const double expected = (gradient_ahead[i] - gradient_behind[i]) / (2 * h);
             largest = std::max(largest, std::fabs(expected));
@@ -130,13 +124,7 @@ TEST_CASE("an open wall: symmetric and skew part together are the derivative of 
     std::vector<double> hessian(pattern.entries(), 0.0);
     surface.add_hessian(x, 1, free_index, pattern, hessian, false);
     std::vector<double> product(x.size(), 0.0);
-    for (int column = 0; column < pattern.size(); ++column) {
-        for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-            const int row = pattern.row[k];
-            product[row] += hessian[k] * v[column];
-            if (row != column) product[column] += hessian[k] * v[row];
-        }
-    }
+    linalg::add_product(pattern, hessian, v, 1, product);
     std::vector<double> skew(x.size(), 0.0);
     surface.apply_skew(x, 1, v, skew);
     const double h = 1e-5;
