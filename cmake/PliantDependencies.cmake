@@ -29,3 +29,8 @@ endfunction()
 
 pliant_find_plain(metis metis.h metis)
 pliant_find_plain(gmsh gmsh.h gmsh)
+
+# Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose
+# size is not known when they are compiled (SVE, RVV) do not fit into arrays.
+set(PLIANT_SIMD_TARGETS
+  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")

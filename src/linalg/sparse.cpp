@@ -43,6 +43,10 @@ int SymmetricPattern::find(int i, int j) const {
     return static_cast<int>(found - node_row.begin());
 }
 
+bool SymmetricPattern::holds(int i, int j) const {
+    return std::binary_search(node_row.begin() + node_start[j], node_row.begin() + node_start[j + 1], i);
+}
+
 SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vector<int>>& cliques) {
     std::vector<std::vector<int>> below(nodes);
     const auto tidy = [](std::vector<int>& list) {

@@ -23,6 +23,8 @@ struct SymmetricPattern {
 
     /// Index into `node_row` of the pair (i, j), i >= j. The pair must be in the pattern.
     [[nodiscard]] int find(int i, int j) const;
+    /// True if the pair (i, j), i >= j, is in the pattern.
+    [[nodiscard]] bool holds(int i, int j) const;
     /// Adds `value(r, c)` for the block at (i, j) of the full matrix, where i >= j.
     template <class Value>
     void add_block(std::span<double> values, int i, int j, const Value& value) const {

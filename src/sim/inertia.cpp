@@ -34,7 +34,7 @@ Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
     if (damping_.mass_per_s > 0) force += damping_.mass_per_s * mass_times(*elements_, motion);
     if (!stiffness_) return force;
-    const linalg::SymmetricPattern& pattern = stiffness_->pattern;
+    const linalg::SymmetricPattern& pattern = *stiffness_->pattern;
     const auto& index = *free_index_;
     Eigen::VectorXd free = Eigen::VectorXd::Zero(pattern.size());
     for (std::size_t node = 0; node < index.size(); ++node) {
@@ -64,7 +64,7 @@ void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) co
 void Inertia::add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
     elements_->add_mass(*free_index_, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
     if (!stiffness_) return;
-    const linalg::SymmetricPattern& own = stiffness_->pattern;
+    const linalg::SymmetricPattern& own = *stiffness_->pattern;
     for (int j = 0; j < own.nodes; ++j) {
         for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
             const int i = own.node_row[k];
