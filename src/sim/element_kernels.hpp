@@ -31,4 +31,21 @@ struct BatchResult {
 /// columns; rows belong to a. Precondition: min_J > 0.
 void batch_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks);
 
+/// A motion in which every tet turns by a rate M instead of growing: from F at `now` to exp(M) F. `end` is where the
+/// nodes would be without that. All positions (3n).
+struct Turning {
+    const double* now;
+    const double* end;
+    /// Null: M F is the gradient of the motion from `now` to `end`. Else M = onward L1 + earlier L0 with the rates L1
+    /// from `before` to `now` and L0 from `first` to `before` (L1 where `first` is null): F_now = exp(L1) F_before.
+    const double* before = nullptr;
+    const double* first = nullptr;
+    double onward = 1;
+    double earlier = 0;
+};
+
+/// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * (exp(M) F - F_end) grad N_a.
+/// Preconditions: F is regular at `now` and, where given, at `before`.
+void batch_turning(const TetBatch& batch, const Turning& turning, double stiffness, double* forces);
+
 }  // namespace pliant::sim

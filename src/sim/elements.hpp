@@ -46,6 +46,10 @@ public:
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 
+    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: what a straight motion leaves out of a turning
+    /// one. W as in the Laplacian.
+    void add_turning(const Turning& turning, std::span<double> result) const;
+
     /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
     /// block 3, and result (3n) += M u.
     void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
@@ -103,6 +107,8 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
+    /// Adds what each batch wrote for its nodes, (batches, nodes_per_tet, 3, lanes), in the order of the batches.
+    void gather_forces(const AlignedArray<double>& buffer, std::span<double> forces) const;
     void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
                     std::span<double> values) const;
 

@@ -279,26 +279,6 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
            controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
 }
 
-Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls,
-                                      const Eigen::VectorXd& prices) const {
-    const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {}, controls.laws);
-    Merit merit{elastic.min_J, 0};
-    if (!(merit.min_J > 0)) return merit;
-    merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_) + contact_energy(x, controls);
-    for (const Plate& plate : plates_) merit.value_J += plate.energy(view(x));
-    if (controls.inertia) merit.value_J += controls.inertia->energy(x);
-    for (std::size_t a = 0; a < actuators_.size(); ++a) {
-        const Drive& drive = controls.drives[a];
-        const double g = actuators_[a].measure(view(x), controls.shares[a]);
-        merit.value_J += drive_energy(drive, a, g);
-        if (drive.kind != Drive::Kind::measure) continue;
-        const double excess = (g - drive.value) / actuators_[a].rest_measure();
-        const double counted = actuators_[a].only_pulls() ? std::max(excess, 0.0) : std::fabs(excess);
-        merit.value_J += prices[static_cast<Eigen::Index>(a)] * counted;
-    }
-    return merit;
-}
-
 std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
     std::vector<double> all(x.data(), x.data() + x.size());
     all.insert(all.end(), obstacles.data(), obstacles.data() + obstacles.size());

@@ -73,13 +73,6 @@ public:
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Energies and measures only: what a line search needs. `prices` (actuators): J for each unit of excess.
-    struct Merit {
-        double min_J = 0;
-        double value_J = 0;
-    };
-    [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, const Eigen::VectorXd& prices) const;
-
     /// Elastic and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 

@@ -58,7 +58,7 @@ public:
         : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 1000; }
-    [[nodiscard]] bool refresh(const State&, const Controls&, bool) override {
+    [[nodiscard]] bool refresh(const State&, const Controls&, Care) override {
         ++*asked_;
         return creeps_;
     }
@@ -96,7 +96,7 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
             REQUIRE_MESSAGE(outcome.converged, outcome.reason);
             CHECK(outcome.solver == Solver::quasi_newton);
             CHECK(outcome.evaluation.residual <= 1e-6);
-            CHECK(asked - before == (creeps ? 30 : 2));  // plain and cautious, or until patience ends
+            CHECK(asked - before == (creeps ? 30 : 3));  // plain and cautious, or until patience ends
             before = asked;
             const auto first_of = [&](Solver solver) {
                 return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
@@ -220,7 +220,7 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->restart();
     mixing->learn(inverse.col(0), 5 * u);
     mixing->learn(inverse.col(1), 0.2 * v);
-    REQUIRE(mixing->refresh(state, controls, false));
+    REQUIRE(mixing->refresh(state, controls, Care::usual));
     Eigen::MatrixXd asked(n, 2);
     asked << 5 * u, u + v;
     Eigen::MatrixXd expected(n, 2);
@@ -228,12 +228,12 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->solve(asked);
     CHECK((asked - expected).norm() < 1e-8 * expected.norm());
     // Cautious: the plain step.
-    REQUIRE(mixing->refresh(state, controls, true));
+    REQUIRE(mixing->refresh(state, controls, Care::cautious));
     Eigen::MatrixXd plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
     // And what has misled is forgotten.
-    REQUIRE(mixing->refresh(state, controls, false));
+    REQUIRE(mixing->refresh(state, controls, Care::usual));
     plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
