@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mesh/tet_file.hpp"
+#include "mesh/tet_writer.hpp"
 #include "robot/build.hpp"
 
 using namespace pliant;
