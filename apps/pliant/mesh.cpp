@@ -13,6 +13,7 @@
 #include "mesh/tet_writer.hpp"
 #include "report/mesh_picture.hpp"
 #include "robot/build.hpp"
+#include "sim/calculix_deck.hpp"
 
 namespace pliant::app {
 namespace {
@@ -28,20 +29,31 @@ struct Options {
     Output output;
 };
 
+mesh::Encoding encoding(const Options& options) {
+    return options.text ? mesh::Encoding::text : mesh::Encoding::binary;
+}
+
 bool is_robot_file(const std::string& file) {
     return std::filesystem::path(file).extension() == ".toml";
 }
 
-Result<mesh::TetMesh> build(const Options& options) {
+Result<robot::Robot> load(const Options& options) {
     if (!options.from_unit.empty() || !options.to_unit.empty())
         return input_error("--from and --to are for mesh files; a robot's mesh is written in its length_unit");
-    const auto progress = terminal_progress(options.output);
-    Result<robot::Robot> robot = robot::load_robot(options.files.front(), options.assignments);
-    if (!robot) return tl::unexpected(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
-    if (!mesh) return tl::unexpected(mesh.error());
-    // Files carry the robot's own unit, as the drawing did.
-    return mesh::scaled(std::move(*mesh), 1 / robot->unit_m);
+    return robot::load_robot(options.files.front(), options.assignments);
+}
+
+/// A robot is more than its mesh: as .inp it becomes a deck that CalculiX can run.
+Status write_robot(const Options& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
+    if (std::filesystem::path(options.output_file).extension() != ".inp") {
+        // Files carry the robot's own unit, as the drawing did.
+        return mesh::write_tet_mesh(options.output_file, mesh::scaled(mesh_m, 1 / robot.unit_m), encoding(options));
+    }
+    const Result<sim::Model> model = robot::build_model(robot, mesh_m);
+    if (!model) return tl::unexpected(model.error());
+    const Result<std::string> deck = sim::calculix::deck(model->description());
+    if (!deck) return input_error("{}: {}", options.files.front(), deck.error().message);
+    return write_file(options.output_file, *deck);
 }
 
 /// No mesh file carries a unit: to change it, both must be said.
@@ -78,16 +90,27 @@ Status draw(const Options& options, const std::string& title, const mesh::MeshRe
     return write_file(options.picture_file, *png);
 }
 
-/// One file in, one file out.
-Status convert(const Options& options) {
-    const std::string& file = options.files.front();
-    const Result<mesh::TetMesh> mesh = is_robot_file(file) ? build(options) : read(options);
-    if (!mesh) return tl::unexpected(mesh.error());
-    const auto encoding = options.text ? mesh::Encoding::text : mesh::Encoding::binary;
-    if (Status status = mesh::write_tet_mesh(options.output_file, *mesh, encoding); !status) return status;
-    const mesh::MeshReport report = mesh::report_on(*mesh);
+Status tell(const Options& options, const mesh::TetMesh& mesh) {
+    const mesh::MeshReport report = mesh::report_on(mesh);
     print(options, options.output_file, report);
     return draw(options, options.output_file, report);
+}
+
+Status build(const Options& options) {
+    const auto progress = terminal_progress(options.output);
+    const Result<robot::Robot> robot = load(options);
+    if (!robot) return tl::unexpected(robot.error());
+    const Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
+    if (!mesh) return tl::unexpected(mesh.error());
+    if (Status status = write_robot(options, *robot, *mesh); !status) return status;
+    return tell(options, mesh::scaled(*mesh, 1 / robot->unit_m));
+}
+
+Status convert(const Options& options) {
+    const Result<mesh::TetMesh> mesh = read(options);
+    if (!mesh) return tl::unexpected(mesh.error());
+    if (Status status = mesh::write_tet_mesh(options.output_file, *mesh, encoding(options)); !status) return status;
+    return tell(options, *mesh);
 }
 
 Status describe(const Options& options, const std::string& file) {
@@ -107,7 +130,7 @@ Status run(const Options& options) {
     if (options.files.size() > 1 &&
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
-    if (!options.output_file.empty()) return convert(options);
+    if (!options.output_file.empty()) return is_robot_file(options.files.front()) ? build(options) : convert(options);
     for (const std::string& file : options.files) {
         if (is_robot_file(file))
             return input_error("{}: name the mesh to write with -o: FILE{}", file, mesh::tet_writer_list);
