@@ -1,7 +1,6 @@
 // Ties what the robot file names by place (boxes, points, paths) to nodes of the mesh.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -98,6 +97,7 @@ private:
         return fmt::format("the robot reaches from {} to {}", show(box_.low), show(box_.high));
     }
 
+    /// Meshed space resists as much as the softest body, with a Poisson ratio of zero.
     void add_materials() {
         for (const MaterialSpec& m : robot_.materials)
             description_.materials.push_back({m.name, m.law, m.density_kg_m3});
@@ -105,7 +105,7 @@ private:
         for (const Region& region : regions_of(robot_)) {
             if (region.use == Region::Use::body || !region.has_elements) continue;
             description_.material_of_region.push_back(static_cast<int>(description_.materials.size()));
-            description_.materials.push_back({std::string(region.name), material::ScaledTarget{softest_Pa()}, 0});
+            description_.materials.push_back({std::string(region.name), material::ScaledTarget{softest_Pa(robot_)}, 0});
         }
     }
 
@@ -119,16 +119,6 @@ private:
             bodies.nodes.insert(bodies.nodes.end(), all.tet(t).begin(), all.tet(t).end());
         }
         return bodies;
-    }
-
-    /// Young's modulus of the softest body: meshed space resists as much, with a Poisson ratio of zero.
-    double softest_Pa() const {
-        double softest = std::numeric_limits<double>::infinity();
-        for (const BodySpec& body : robot_.bodies) {
-            const MaterialSpec& material = robot_.materials[static_cast<std::size_t>(body.material)];
-            softest = std::min(softest, material::youngs_modulus(material::moduli(material.law)));
-        }
-        return softest;
     }
 
     /// Index of a region of the whole mesh among those that were kept, whose material is its target shape.

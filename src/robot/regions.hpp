@@ -23,4 +23,7 @@ struct Region {
 /// In the order of the mesh's regions; the robot must outlive it. A chamber whose wall is a surface file has none.
 [[nodiscard]] std::vector<Region> regions_of(const Robot& robot);
 
+/// Young's modulus of the softest body at small strains, Pa; infinity where there is no body.
+[[nodiscard]] double softest_Pa(const Robot& robot);
+
 }  // namespace pliant::robot
