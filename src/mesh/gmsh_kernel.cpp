@@ -163,6 +163,50 @@ struct BuildSolid {
         return !boxes_meet(box, {box.low + s.step, box.high + s.step}, gap);
     }
 
+    /// The empty space between the walls falls into pieces; the one that holds the point, unless it is the outermost.
+    Entities operator()(const EnclosedSolid& s) const {
+        Entities walls;
+        Box3 box;
+        for (const Solid& wall : s.walls) {
+            const Entities one = build(wall);
+            walls.insert(walls.end(), one.begin(), one.end());
+            const Box3 around = bounds(wall);
+            box.add(around.low);
+            box.add(around.high);
+        }
+        const double margin = 0.1 * box.diagonal();
+        const Vec3 low = box.low - Vec3{margin, margin, margin};
+        const Vec3 size = box.size() + 2 * Vec3{margin, margin, margin};
+        Entities pieces;
+        std::vector<Entities> map;
+        occ::cut({{3, occ::addBox(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls, pieces, map);
+        Entities kept;
+        for (const auto& piece : pieces) {
+            if (kept.empty() && !reaches(piece, low) && holds(piece, s.point, 1e-6 * margin))
+                kept.push_back(piece);
+            else
+                occ::remove({piece}, true);
+        }
+        return kept;
+    }
+
+    static bool reaches(const std::pair<int, int>& piece, const Vec3& low) {
+        Vec3 a;
+        Vec3 b;
+        occ::getBoundingBox(piece.first, piece.second, a.x, a.y, a.z, b.x, b.y, b.z);
+        return a.x < low.x + 1e-3 * (b.x - a.x);
+    }
+
+    static bool holds(const std::pair<int, int>& piece, const Vec3& point, double radius) {
+        const int probe =
+            occ::addBox(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
+        Entities copy;
+        occ::copy({piece}, copy);
+        const Entities common = intersect(copy, {{3, probe}});
+        if (!common.empty()) occ::remove(common, true);
+        return !common.empty();
+    }
+
     static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
 
     static Entities intersect(const Entities& a, const Entities& b) {
@@ -183,26 +227,33 @@ double mass(const Entities& volumes) {
     return sum;
 }
 
-Status check_overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
+/// Volume that two solids share.
+double common_volume(const Entities& one, const Entities& other) {
+    Entities a;
+    Entities b;
+    occ::copy(one, a);
+    occ::copy(other, b);
+    const Entities common = BuildSolid::intersect(a, b);
+    const double volume = mass(common);
+    if (!common.empty()) occ::remove(common, true);
+    return volume;
+}
+
+/// A line for every two solids that overlap; join_volumes() gives what they share to the later one.
+std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
+    std::vector<std::string> notes;
     for (std::size_t i = 0; i < solids.size(); ++i) {
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
             if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid), 0)) continue;
-            Entities a;
-            Entities b;
-            occ::copy(volumes[i], a);
-            occ::copy(volumes[j], b);
-            const Entities common = BuildSolid::intersect(a, b);
-            const double overlap = mass(common);
-            if (!common.empty()) occ::remove(common, true);
-            if (overlap > 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) {
-                return input_error(
-                    "bodies \"{}\" and \"{}\" overlap in a volume of {:.6g} (in the file's unit, cubed); cut one from "
-                    "the other with difference",
-                    solids[i].name, solids[j].name, overlap);
-            }
+            const double overlap = common_volume(volumes[i], volumes[j]);
+            if (overlap <= 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) continue;
+            notes.push_back(
+                fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
+                            "belongs to \"{1}\", the later one",
+                            solids[i].name, solids[j].name, overlap));
         }
     }
-    return {};
+    return notes;
 }
 
 /// Order of Gmsh's 10-node tet in ours: its last two mid-edge nodes are swapped.
@@ -387,6 +438,17 @@ TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
     return surface;
 }
 
+tl::unexpected<Error> nothing_left(const NamedSolid& named) {
+    if (const auto* air = std::get_if<EnclosedSolid>(&named.solid->shape)) {
+        return input_error(
+            "chamber \"{}\": the point ({:.6g}, {:.6g}, {:.6g}) lies in no closed cavity: it is in a body, or the "
+            "space "
+            "around it is open; close each mouth with cap = SHAPE",
+            named.name, air->point.x, air->point.y, air->point.z);
+    }
+    return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+}
+
 Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, int refinement) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
@@ -394,11 +456,16 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         for (const NamedSolid& named : solids) {
             volumes.push_back(BuildSolid::build(named.solid));
             const double one = mass(volumes.back());
-            if (!(one > 0)) return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+            if (!(one > 0)) return nothing_left(named);
             volume += one;
         }
-        if (Status status = check_overlaps(solids, volumes); !status) return tl::unexpected(status.error());
+        std::vector<std::string> notes = overlaps(solids, volumes);
         const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        for (std::size_t i = 0; i < solids.size(); ++i) {
+            const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
+            if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
+                return input_error("body \"{}\" is empty: all of it belongs to later ones", solids[i].name);
+        }
         occ::synchronize();
         Entities joined;
         for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
@@ -407,7 +474,9 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         set_size(size);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
         gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
-        return generate(solid_of_volume, order);
+        Result<TetMesh> mesh = generate(solid_of_volume, order);
+        if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
+        return mesh;
     });
 }
 

@@ -17,8 +17,8 @@ struct NamedSolid {
     Solid solid;
 };
 
-/// One conforming mesh; region i is solid i, without region names. An empty solid, solids that overlap and a size that
-/// gives too many tets are errors.
+/// One conforming mesh; region i is solid i, without region names. Where solids overlap the later one has what they
+/// share, and a note tells the volume. An empty solid and a size that gives too many tets are errors.
 [[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order);
 
 /// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper

@@ -27,10 +27,11 @@ struct MeshSettings {
     double angle_deg = 30;  ///< edges of a surface file sharper than this are kept
 };
 
-/// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; bodies
-/// that overlap are an error with the volume. A surface may have several shells and cavities; it is meshed anew, its
-/// sharp edges kept (or, where that fails, it keeps its triangles, and a note says so), and must stand apart from every
-/// other body. The same input gives the same mesh. A mesh of more than 20 million tets is refused.
+/// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; of
+/// those that overlap the later one has what they share, and a note tells the volume. A surface may have several shells
+/// and cavities; it is meshed anew, its sharp edges kept (or, where that fails, it keeps its triangles, and a note says
+/// so), and must stand apart from every other body. The same input gives the same mesh. A mesh of more than 20 million
+/// tets is refused.
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
                                           Progress& progress);
 

@@ -38,14 +38,32 @@ double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
     return std::max({box.size().x, box.size().y, box.size().z}) / 24;
 }
 
-/// The drawn air of all chambers and gaps, in the order of the mesh's regions.
+/// The drawn air of all chambers and gaps that is cut out of the bodies. Enclosed air is outside them as it is.
 std::vector<mesh::Solid> drawn_air(const Robot& robot) {
     std::vector<mesh::Solid> solids;
     for (const Region& region : regions_of(robot)) {
         if (region.use == Region::Use::body) continue;
-        if (const auto* solid = std::get_if<mesh::Solid>(region.geometry)) solids.push_back(*solid);
+        const auto* solid = std::get_if<mesh::Solid>(region.geometry);
+        if (solid != nullptr && !std::holds_alternative<mesh::EnclosedSolid>((*solid)->shape)) solids.push_back(*solid);
     }
     return solids;
+}
+
+bool boxes_overlap(const Box3& a, const Box3& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (a.low[k] >= b.high[k] || b.low[k] >= a.high[k]) return false;
+    }
+    return true;
+}
+
+/// Where drawn bodies overlap the later one is printed, as it is the later one that is meshed.
+std::vector<mesh::Solid> cut_from(const Robot& robot, std::size_t body, std::vector<mesh::Solid> air) {
+    const auto& own = std::get<mesh::Solid>(robot.bodies[body].geometry);
+    for (std::size_t b = body + 1; b < robot.bodies.size(); ++b) {
+        const auto* later = std::get_if<mesh::Solid>(&robot.bodies[b].geometry);
+        if (later != nullptr && boxes_overlap(mesh::bounds(own), mesh::bounds(*later))) air.push_back(*later);
+    }
+    return air;
 }
 
 /// A drawn body without the air that is cut out of it.
@@ -161,7 +179,7 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         Result<mesh::TriMesh> surface;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
             constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
-            surface = mesh::tessellate(without_air(*solid, air), printable_m / robot.unit_m);
+            surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
         } else if (const auto* file = std::get_if<SurfaceFile>(&body.geometry)) {
             surface = read_body_surface(robot, body, *file);
         } else {

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "mesh/cavity.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/build.hpp"
@@ -243,6 +244,8 @@ private:
         sim::Chamber chamber{spec.name, {}, spec.target};
         if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
             chamber.wall = wall_of_file(spec, file->path);
+        else if (const auto* cavity = std::get_if<CavityAt>(&spec.air))
+            chamber.wall = wall_of_cavity(spec, *cavity);
         else
             chamber.wall = wall_of_region(spec);
         if (chamber.wall.faces.empty()) return;
@@ -309,6 +312,15 @@ private:
                     fmt::format("{} faces of its wall belong to no body: the chamber is open; close it with a body, or "
                                 "let its mouth lie in a [[fixed]] without move or rotate",
                                 loose));
+    }
+
+    sim::Wall wall_of_cavity(const ChamberSpec& spec, const CavityAt& cavity) {
+        const Vec3 point = robot_.unit_m * cavity.point;
+        Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(bodies_, point);
+        if (faces) return pressed_wall(std::move(*faces));
+        problem(spec.line, "chamber", spec.name,
+                fmt::format("inside: the point {} {}", show(point), faces.error().message));
+        return {};
     }
 
     /// A closed surface whose points ride on the tets that hold them.

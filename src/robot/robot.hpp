@@ -42,7 +42,11 @@ struct MeshRegion {
     std::string name;
     std::optional<BoxSelector> box;  ///< only the tets whose centroid lies inside, taken from those named before
 };
-using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion>;
+/// The closed cavity of the bodies around a point; air alone is drawn so.
+struct CavityAt {
+    Vec3 point;
+};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt>;
 
 struct BodySpec {
     std::string name;
@@ -121,7 +125,8 @@ struct GapSpec {
     int line = 0;
 };
 
-/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, or a region of the mesh file.
+/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, a region of the mesh file, or a
+/// cavity of the bodies.
 struct ChamberSpec {
     std::string name;
     Geometry air;
