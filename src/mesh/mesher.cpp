@@ -8,6 +8,7 @@
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
+#include "mesh/winding_mesher.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -76,28 +77,51 @@ double surface_area(const TriMesh& surface) {
     return sum;
 }
 
-/// One part per solid piece of the surface of body `b`.
+/// A body whose surface is closed and simple: one mesh per solid piece.
+Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings) {
+    if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
+    const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
+    if (!pieces) return tl::unexpected(pieces.error());
+    std::vector<TetMesh> meshes;
+    for (const TriMesh& piece : *pieces) {
+        Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg);
+        if (!mesh) return tl::unexpected(mesh.error());
+        int region = 0;
+        for (const TetMesh& before : meshes) {
+            if (reaches_into(*mesh, before, 0.01 * settings.size, region) ||
+                reaches_into(before, *mesh, 0.01 * settings.size, region))
+                return input_error("two shells of its surface touch or overlap");
+        }
+        meshes.push_back(std::move(*mesh));
+    }
+    return meshes;
+}
+
+/// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
                                             const MeshSettings& settings) {
-    TriMesh surface = std::get<TriMesh>(bodies[b].shape);
+    const auto& drawn = std::get<TriMesh>(bodies[b].shape);
+    TriMesh surface = drawn;
     const SliverCount slivers = remove_slivers(surface);
     const auto blame = [&](const Error& error) {
         return tl::unexpected(Error{error.cause, fmt::format("body \"{}\": {}", bodies[b].name, error.message)});
     };
-    if (Status status = check_closed(surface); !status) return blame(status.error());
-    const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
-    if (!pieces) return blame(pieces.error());
-    Status few = kernel::check_tet_count(signed_volume(surface), surface_area(surface), settings.size);
+    Status few = kernel::check_tet_count(std::fabs(signed_volume(surface)), surface_area(surface), settings.size);
     if (!few) return blame(few.error());
+    Result<std::vector<TetMesh>> meshes = mesh_pieces(surface, settings);
+    if (!meshes) {
+        Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg);
+        if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
+        meshes = std::vector<TetMesh>{std::move(*mesh)};
+    } else if (slivers.removed > 0) {
+        meshes->front().notes.insert(meshes->front().notes.begin(),
+                                     fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
+    }
     std::vector<Part> parts;
-    for (const TriMesh& piece : *pieces) {
-        Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg);
-        if (!mesh) return blame(mesh.error());
-        mesh->region.assign(mesh->region.size(), static_cast<int>(b));
-        if (slivers.removed > 0 && parts.empty())
-            mesh->notes.push_back(fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
-        for (std::string& note : mesh->notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
-        parts.push_back({settings.order == 2 ? to_quadratic(*mesh) : std::move(*mesh), true});
+    for (TetMesh& mesh : *meshes) {
+        mesh.region.assign(mesh.region.size(), static_cast<int>(b));
+        for (std::string& note : mesh.notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
+        parts.push_back({settings.order == 2 ? to_quadratic(mesh) : std::move(mesh), true});
     }
     return parts;
 }

@@ -265,8 +265,10 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
           std::string::npos);
     CHECK(problem({{"a", box({0, 0, 0}, {100, 100, 100})}}, 0.1).find("tetrahedra, more than") != std::string::npos);
     TriMesh open = *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1);
-    open.triangles.pop_back();
-    CHECK(problem({{"a", open}}, 1).find("not closed") != std::string::npos);
+    open.triangles.resize(2);
+    const std::string sheet = problem({{"a", open}}, 1);
+    CHECK(sheet.find("body \"a\": the surface encloses nothing: it is an open sheet") == 0);
+    CHECK(sheet.find("not closed: ") != std::string::npos);
     const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
     CHECK(problem({{"a", cube}, {"b", box({10, 0, 0}, {20, 10, 10})}}, 4).find("touches or overlaps") !=
           std::string::npos);
