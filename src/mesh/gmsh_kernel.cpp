@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -349,6 +350,37 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
     return solid_of_volume;
 }
 
+/// Which solids an entity of the model belongs to or bounds.
+using SolidsOf = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+
+SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
+    SolidsOf solids;
+    for (const auto& [volume, solid] : solid_of_volume) {
+        Entities level = {{3, volume}};
+        for (int dimension = 3; dimension >= 0; --dimension) {
+            for (const auto& entity : level) solids[entity].push_back(static_cast<std::size_t>(solid));
+            if (dimension == 0) break;
+            Entities below;
+            gmsh::model::getBoundary(level, below, false, false, false);
+            level = std::move(below);
+        }
+    }
+    return solids;
+}
+
+/// Lets `size_at` decide; entities between solids take the smallest of theirs.
+void follow_size(const SizeAt& size_at, const SolidsOf& solids, double size) {
+    if (!size_at) return;
+    gmsh::model::mesh::setSizeCallback([&size_at, solids, size](int dimension, int tag, double x, double y, double z) {
+        double least = size;
+        const auto found = solids.find({dimension, tag});
+        if (found == solids.end()) return std::min(least, size_at(0, {x, y, z}));
+        least = std::numeric_limits<double>::infinity();
+        for (const std::size_t solid : found->second) least = std::min(least, size_at(solid, {x, y, z}));
+        return least;
+    });
+}
+
 /// The surface as one discrete entity of the model.
 int add_triangles(const TriMesh& surface) {
     const int entity = gmsh::model::addDiscreteEntity(2);
@@ -368,7 +400,7 @@ int add_triangles(const TriMesh& surface) {
 }
 
 /// Meshes what the model's surfaces enclose.
-Result<TetMesh> mesh_enclosed(double size) {
+Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
     Entities faces;
     gmsh::model::getEntities(faces, 2);
     std::vector<int> loop;
@@ -376,6 +408,7 @@ Result<TetMesh> mesh_enclosed(double size) {
     const int volume = gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(loop)});
     gmsh::model::geo::synchronize();
     set_size(size);
+    follow_size(size_at, {}, size);
     return generate({{volume, 0}}, 1);
 }
 
@@ -449,7 +482,8 @@ tl::unexpected<Error> nothing_left(const NamedSolid& named) {
     return input_error("body \"{}\" is empty: nothing is left of it", named.name);
 }
 
-Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, int refinement) {
+Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
+                                int refinement) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
         double volume = 0;
@@ -474,6 +508,10 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         set_size(size);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
         gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
+        if (size_at) {
+            gmsh::option::setNumber("Mesh.MeshSizeMin", 0.05 * size / refinement);
+            follow_size(size_at, solids_of_entities(solid_of_volume), size);
+        }
         Result<TetMesh> mesh = generate(solid_of_volume, order);
         if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
         return mesh;
@@ -498,24 +536,24 @@ Status check_tet_count(double volume, double area, double size) {
         estimate(size), most, enough);
 }
 
-Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order) {
-    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, 1);
+Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at) {
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, 1);
     // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
     for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
-        mesh = try_mesh_solids(solids, size, order, refinement);
+        mesh = try_mesh_solids(solids, size, order, size_at, refinement);
     return mesh;
 }
 
-Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg) {
+Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(surface);
         gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
         gmsh::model::mesh::createGeometry();
-        return mesh_enclosed(size);
+        return mesh_enclosed(size, size_at);
     };
     const auto as_drawn = [&]() -> Result<TetMesh> {
         add_triangles(surface);
-        return mesh_enclosed(size);
+        return mesh_enclosed(size, size_at);
     };
     // Gmsh's parametrisation never comes to an end, or worse, on triangles without area.
     Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")

@@ -17,14 +17,20 @@ namespace pliant::mesh {
 struct BodyGeometry {
     std::string name;
     std::variant<Solid, TriMesh> shape;
+    bool air = false;  ///< empty space: it has no walls of its own
+    double size = 0;   ///< wanted edge length in this body; 0: that of the whole mesh
 };
 
 [[nodiscard]] Box3 bounds(const BodyGeometry& body);
 
 struct MeshSettings {
-    double size = 0;        ///< wanted edge length, above zero
-    int order = 2;          ///< 1 or 2; mid-edge nodes lie on the curved faces of solids where that folds no tet
-    double angle_deg = 30;  ///< edges of a surface file sharper than this are kept
+    double size = 0;              ///< wanted edge length, above zero
+    int order = 2;                ///< 1 or 2; mid-edge nodes lie on the curved faces of solids where that folds no tet
+    double angle_deg = 30;        ///< edges of a surface file sharper than this are kept
+    int through_wall = 0;         ///< elements through every wall, at least; 0: as the size gives
+    bool judge_walls = false;     ///< a note names the thinnest wall that has fewer than three elements through it
+    double size_near_cables = 0;  ///< within twice this length of a cable; 0: no wish
+    std::vector<std::vector<Vec3>> cables = {};  ///< their points
 };
 
 /// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; of

@@ -74,25 +74,35 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
 }
 
+/// A size that the file gives is taken at its word; without one, walls get three elements.
+mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+    mesh::MeshSettings settings;
+    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
+    settings.order = robot.mesh.order;
+    settings.through_wall = robot.mesh.elements_through_wall.value_or(robot.mesh.size > 0 ? 0 : 3);
+    settings.judge_walls = !robot.mesh.elements_through_wall;
+    settings.size_near_cables = robot.mesh.size_near_cables;
+    for (const CableSpec& cable : robot.cables) settings.cables.push_back(cable.points);
+    return settings;
+}
+
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<mesh::BodyGeometry> bodies;
     for (const BodySpec& body : robot.bodies) {
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            bodies.push_back({body.name, without_air(*solid, air)});
+            bodies.push_back({body.name, without_air(*solid, air), false, body.size});
         } else {
             Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
             if (!surface) return tl::unexpected(surface.error());
-            bodies.push_back({body.name, std::move(*surface)});
+            bodies.push_back({body.name, std::move(*surface), false, body.size});
         }
     }
     for (const Region& region : regions_of(robot)) {
         if (region.use != Region::Use::body)
-            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry)});
+            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry), true});
     }
-    mesh::MeshSettings settings;
-    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
-    settings.order = robot.mesh.order;
+    const mesh::MeshSettings settings = mesh_settings(robot, bodies);
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     if (!mesh) {
         // The mesher names bodies, chambers and gaps; the line is that of the last one it names.

@@ -52,6 +52,7 @@ struct BodySpec {
     std::string name;
     int material = 0;  ///< index into Robot::materials
     Geometry geometry;
+    double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
     int line = 0;
 };
 
@@ -59,6 +60,8 @@ struct MeshSpec {
     double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
     std::optional<std::filesystem::path> file;
     int order = 2;
+    std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
+    double size_near_cables = 0;               ///< in length units; 0: no wish
     int line = 0;
 };
 
