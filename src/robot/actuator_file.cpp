@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <optional>
 
 namespace pliant::robot {
 namespace {
@@ -75,14 +77,9 @@ sim::ChamberTarget read_chamber_target(Reader& chamber) {
     return target;
 }
 
-/// surface = FILE, region = NAME (of the mesh file) or geometry = { shape }, exactly one.
-Geometry read_air(Reader& reader, Context& context) {
-    const int given = int{reader.has("surface")} + int{reader.has("region")} + int{reader.has("geometry")};
-    Geometry air = MeshRegion{};
-    if (given != 1)
-        reader.problem("",
-                       "takes one of geometry (a shape that is cut out of the bodies), surface (a file) and region "
-                       "(of the mesh file)");
+/// surface = FILE, region = NAME (of the mesh file) or geometry = { shape }.
+std::optional<Geometry> read_drawn_air(Reader& reader, Context& context) {
+    std::optional<Geometry> air;
     if (reader.has("surface")) {
         air = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context)};
     } else if (reader.has("region")) {
@@ -97,9 +94,57 @@ Geometry read_air(Reader& reader, Context& context) {
     return air;
 }
 
+/// The air between the drawn bodies and the cap, which is meshed.
+Geometry enclosed_by_bodies(Reader& reader, const Vec3& point, std::vector<mesh::Solid> walls, const Context& context) {
+    for (const BodySpec& body : context.robot.bodies) {
+        if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
+            walls.push_back(*solid);
+            continue;
+        }
+        reader.problem(
+            "",
+            fmt::format("body \"{}\" comes from a file: inside needs no cap and model = \"volume\" there", body.name));
+        return MeshRegion{};
+    }
+    if (walls.empty()) return MeshRegion{};
+    return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{mesh::EnclosedSolid{point, std::move(walls)}});
+}
+
+/// inside = [x, y, z], and cap = { shape } where the cavity has a mouth.
+Geometry read_cavity(Reader& reader, Context& context, bool meshed) {
+    const Vec3 point = reader.vector("inside");
+    std::vector<mesh::Solid> caps;
+    if (const config::Value* cap = reader.raw("cap"))
+        caps.push_back(mesh::read_solid(*cap, reader.path() + ".cap", context.shapes, context.problems));
+    if (caps.empty() && !meshed) return CavityAt{point};
+    return enclosed_by_bodies(reader, point, std::move(caps), context);
+}
+
+Geometry read_air(Reader& reader, Context& context) {
+    const int given = int{reader.has("surface")} + int{reader.has("region")} + int{reader.has("geometry")};
+    if (given != 1)
+        reader.problem("",
+                       "takes one of geometry (a shape that is cut out of the bodies), surface (a file) and region "
+                       "(of the mesh file)");
+    return read_drawn_air(reader, context).value_or(MeshRegion{});
+}
+
 void read_chamber(Reader& reader, Context& context, ChamberSpec& chamber) {
-    chamber.air = read_air(reader, context);
     chamber.elements = reader.choice("model", {"volume", "elements"}, "volume") == "elements";
+    if (reader.has("inside")) {
+        chamber.air = read_cavity(reader, context, chamber.elements);
+        if (read_drawn_air(reader, context))
+            reader.problem("inside", "finds a cavity of the bodies; leave geometry, surface and region out");
+    } else {
+        if (reader.raw("cap") != nullptr) reader.problem("cap", "closes a cavity that inside = [x, y, z] names");
+        const int given = int{reader.has("surface")} + int{reader.has("region")} + int{reader.has("geometry")};
+        if (given != 1)
+            reader.problem(
+                "",
+                "takes one of geometry (a shape that is cut out of the bodies), surface (a file), region (of "
+                "the mesh file) and inside (a point of a cavity of the bodies)");
+        chamber.air = read_drawn_air(reader, context).value_or(MeshRegion{});
+    }
     if (chamber.elements && std::holds_alternative<SurfaceFile>(chamber.air))
         reader.problem("surface", "model = \"elements\" needs meshed air: geometry or region");
     chamber.target = read_chamber_target(reader);

@@ -40,6 +40,18 @@ void read_materials(Reader& root, Context& context) {
     }
 }
 
+/// A length above zero, in length units; 0 where the key is missing.
+double read_size(Reader& reader, std::string_view key, const Context& context) {
+    if (!reader.has(key)) {
+        (void)reader.raw(key);
+        return 0;
+    }
+    const double size = reader.quantity(key, Dimension::length, 1) / context.robot.unit_m;
+    if (!(size > 0)) reader.problem(key, "must be above zero");
+    if (context.robot.mesh.file) reader.problem(key, "has no meaning beside a mesh file");
+    return size;
+}
+
 void read_mesh(Reader& root, Context& context) {
     Reader reader = root.table("mesh", false);
     MeshSpec& mesh = context.robot.mesh;
@@ -49,11 +61,16 @@ void read_mesh(Reader& root, Context& context) {
         reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
     if (reader.has("file")) {
         mesh.file = need_file(reader, "file", reader.text("file"), context);
-        if (reader.has("size")) reader.problem("size", "has no meaning beside a mesh file");
     }
-    if (reader.has("size")) mesh.size = reader.quantity("size", Dimension::length, 1) / context.robot.unit_m;
-    (void)reader.raw("size");
-    if (reader.has("size") && !(mesh.size > 0)) reader.problem("size", "must be above zero");
+    mesh.size = read_size(reader, "size", context);
+    mesh.size_near_cables = read_size(reader, "size_near_cables", context);
+    if (reader.has("elements_through_wall")) {
+        mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
+        if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)
+            reader.problem("elements_through_wall", "is a whole number from 0 to 20");
+        if (mesh.file) reader.problem("elements_through_wall", "has no meaning beside a mesh file");
+    }
+    (void)reader.raw("elements_through_wall");
     reader.finish();
 }
 
@@ -110,6 +127,7 @@ Geometry read_geometry(Reader& reader, Context& context) {
 void read_body(Reader& reader, Context& context, BodySpec& body) {
     body.material = find_material(reader, context);
     body.geometry = read_geometry(reader, context);
+    body.size = read_size(reader, "size", context);
 }
 
 }  // namespace

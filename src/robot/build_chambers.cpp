@@ -4,8 +4,10 @@
 
 #include <utility>
 
+#include "mesh/cavity.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
+#include "robot/build_places.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -80,10 +82,21 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
     return wall;
 }
 
+sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const CavityAt& cavity) {
+    const Vec3 point = draft.robot.unit_m * cavity.point;
+    Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(draft.bodies, point);
+    if (faces) return pressed_wall(draft, std::move(*faces));
+    draft.problem(spec.line, "chamber", spec.name,
+                  fmt::format("inside: the point {} {}", draft.show(point), faces.error().message));
+    return {};
+}
+
 void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
     sim::Chamber chamber{spec.name, {}, spec.target};
     if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
         chamber.wall = wall_of_file(draft, attacher, spec, file->path);
+    else if (const auto* cavity = std::get_if<CavityAt>(&spec.air))
+        chamber.wall = wall_of_cavity(draft, spec, *cavity);
     else
         chamber.wall = wall_of_region(draft, spec);
     if (chamber.wall.faces.empty()) return;

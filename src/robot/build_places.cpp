@@ -112,17 +112,6 @@ void add_plate(ModelDraft& draft, const PlateSpec& plate) {
     if (!nodes.empty()) draft.description.plates.push_back({plate.name, std::move(nodes)});
 }
 
-/// Faces of the outer surface as the air outside sees them: their normals point into the body.
-sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces) {
-    for (mesh::Face& face : faces) {
-        std::swap(face.nodes[1], face.nodes[2]);
-        std::swap(face.nodes[3], face.nodes[5]);
-    }
-    std::vector<int> same(draft.description.mesh.points.size());
-    std::iota(same.begin(), same.end(), 0);
-    return sim::wall_of_faces(draft.description.mesh, faces, same);
-}
-
 void add_load(ModelDraft& draft, const LoadSpec& load) {
     const Box3 box = draft.box_of(load.box);
     std::vector<mesh::Face> faces;
@@ -178,6 +167,16 @@ void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSp
 }
 
 }  // namespace
+
+sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces) {
+    for (mesh::Face& face : faces) {
+        std::swap(face.nodes[1], face.nodes[2]);
+        std::swap(face.nodes[3], face.nodes[5]);
+    }
+    std::vector<int> same(draft.description.mesh.points.size());
+    std::iota(same.begin(), same.end(), 0);
+    return sim::wall_of_faces(draft.description.mesh, faces, same);
+}
 
 void add_supports(ModelDraft& draft) {
     for (const FixedSpec& fixed : draft.robot.fixed) add_support(draft, fixed);

@@ -14,4 +14,7 @@ void add_loads(ModelDraft& draft);
 /// `attacher`: of the draft's bodies.
 void add_markers(ModelDraft& draft, const sim::Attacher& attacher);
 
+/// Faces of the bodies' surface as the air outside of them sees them: their normals point into the bodies.
+[[nodiscard]] sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces);
+
 }  // namespace pliant::robot

@@ -13,7 +13,7 @@ std::vector<Region> regions_of(const Robot& robot) {
     }
     for (std::size_t i = 0; i < robot.chambers.size(); ++i) {
         const ChamberSpec& chamber = robot.chambers[i];
-        if (std::holds_alternative<SurfaceFile>(chamber.air)) continue;
+        if (std::holds_alternative<SurfaceFile>(chamber.air) || std::holds_alternative<CavityAt>(chamber.air)) continue;
         regions.push_back(
             {Region::Use::chamber, i, "chamber", chamber.name, &chamber.air, chamber.line, chamber.elements});
     }
