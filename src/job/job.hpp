@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "slice/image.hpp"
+#include "slice/run_image.hpp"
 
 namespace pliant::job {
 
@@ -71,6 +71,7 @@ struct EncodedImage {
 /// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads. Precondition: at least
 /// one pixel, and as many values as pixels.
 [[nodiscard]] EncodedImage encode(const Image& image);
+[[nodiscard]] EncodedImage encode(const slice::RunImage& image);
 
 /// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
 /// give the same bytes. Encoded files stay in memory until finish(): some 10 kB per image of 2 megapixels.

@@ -11,7 +11,7 @@ namespace {
 
 /// One layer on its way from the slicer to the archive.
 struct Prepared {
-    slice::SlicedLayer sliced;         ///< its images without their pixels, which are encoded
+    slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
 };
 
@@ -89,7 +89,8 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
                     {}};
     const std::vector<std::string> words = file_words(job.manifest.materials);
     slice::Tally tally(*slicer);
-    const int count = slicer->layer_count(), batch = slice::batch_size(raster);
+    constexpr int batch = slice::layers_at_once;
+    const int count = slicer->layer_count();
     for (int first = 0; first < count; first += batch) {
         if (progress.cancelled()) return cancelled();
         progress.advance("slice", static_cast<double>(first) / count);

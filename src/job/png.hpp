@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/error.hpp"
-#include "slice/image.hpp"
+#include "slice/run_image.hpp"
 
 namespace pliant::job {
 
@@ -17,7 +17,10 @@ struct PngSize {
 /// The number of bytes that hold a PNG's size and kind.
 inline constexpr std::size_t png_head_bytes = 29;
 
+/// Not interlaced; fast rather than small. Preconditions: at least one pixel, and as many values as pixels.
 [[nodiscard]] std::string encode_png(const slice::Image& image);
+/// From runs straight to the file: the pixels never exist.
+[[nodiscard]] std::string encode_png(const slice::RunImage& image);
 
 /// Reads signature and header. Errors (prefixed with `where`): no PNG; not 8-bit grey without interlacing.
 [[nodiscard]] Result<PngSize> png_size(std::string_view head, std::string_view where);

@@ -42,6 +42,10 @@ EncodedImage encode(const Image& image) {
     return {image.width_px, image.height_px, encode_png(image)};
 }
 
+EncodedImage encode(const slice::RunImage& image) {
+    return {image.width_px(), image.height_px(), encode_png(image)};
+}
+
 Writer::Writer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;

@@ -16,19 +16,24 @@ struct Body {
     std::string name;  ///< for messages; where empty, the body's number is used
 };
 
-/// The projector's picture on the platform. x runs to the right and row 0 lies at the greatest y, unless mirrored.
+/// The projector's picture on the platform. x runs to the right and row 0 lies at the greatest y, unless mirrored. The
+/// part is turned about the platform's centre, moved, then mirrored.
 struct Raster {
     int width_px = 0;
     int height_px = 0;
     double pixel_um = 0;  ///< edge length of a (square) pixel
     bool mirror_x = false;
     bool mirror_y = false;
+    double rotation_deg = 0;  ///< counter-clockwise, seen from above
+    double offset_x_um = 0;   ///< of the platform's centre from the image's
+    double offset_y_um = 0;
 
     [[nodiscard]] double width_um() const { return width_px * pixel_um; }
     [[nodiscard]] double height_um() const { return height_px * pixel_um; }
 };
 
-/// Refuses a raster of no pixels, of more than 2^28, or with a pixel that is not in (0, 10] mm.
+/// Refuses a raster of no pixels, of more than 2^28, with a pixel that is not in (0, 10] mm, or a turn or an offset
+/// that is no number of reasonable size.
 [[nodiscard]] Status check(const Raster& raster);
 
 /// "body 'finger' (soft)" or "body 3 (soft)", counted from 1.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
 namespace pliant::slice {
@@ -20,27 +21,37 @@ Status check(const Settings& settings) {
     return {};
 }
 
-/// Bodies may pass the raster's border by what rounding does to them, no more.
-Status check_place(const Box3& box, const Raster& raster, const std::string& label) {
-    constexpr double rounding_um = 1;
-    const double x = raster.width_um() / 2, y = raster.height_um() / 2;
-    if (box.low.z < -rounding_um)
-        return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
-    if (box.low.x < -x - rounding_um || box.high.x > x + rounding_um || box.low.y < -y - rounding_um ||
-        box.high.y > y + rounding_um)
-        return input_error(
-            "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
-            "{:.3f} mm in y to both sides of the centre",
-            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, x / 1000, y / 1000);
-    return {};
-}
-
 Box3 used_box(const mesh::TriMesh& mesh) {
     Box3 box;
     for (const auto& triangle : mesh.triangles) {
         for (const int corner : triangle) box.add(mesh.points[corner]);
     }
     return box;
+}
+
+/// Bodies may pass the raster's border by what rounding does to them, no more.
+Status check_place(const mesh::TriMesh& mesh, const Raster& raster, const std::string& label) {
+    constexpr double rounding_um = 1;
+    const Box3 box = used_box(mesh);
+    if (box.low.z < -rounding_um)
+        return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
+    const double slack = rounding_um / raster.pixel_um;
+    const RasterFrame frame(raster, 1);
+    Box3 image;
+    for (const auto& triangle : mesh.triangles) {
+        for (const int corner : triangle) {
+            const Vec3& p = mesh.points[corner];
+            image.add({frame.column(p.x, p.y), frame.row(p.x, p.y), 0});
+        }
+    }
+    if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
+        image.high.y > raster.height_px + slack)
+        return input_error(
+            "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
+            "{:.3f} mm in y to both sides of the centre",
+            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, raster.width_um() / 2000,
+            raster.height_um() / 2000);
+    return {};
 }
 
 std::string size_text(const Vec3& size) {
@@ -57,7 +68,7 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
         const std::string label = describe(bodies[i], i);
         auto repaired = repair(bodies[i].surface_um, label, settings.layer_um);
         if (!repaired) return tl::unexpected(repaired.error());
-        if (auto status = check_place(used_box(bodies[i].surface_um), settings.raster, label); !status)
+        if (auto status = check_place(bodies[i].surface_um, settings.raster, label); !status)
             return tl::unexpected(status.error());
         std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(slicer.warnings_));
         slicer.labels_.push_back(label);
@@ -136,18 +147,13 @@ Summary Tally::summary() const {
     return summary;
 }
 
-int batch_size(const Raster& raster) {
-    constexpr double budget_bytes = 64.0 * (1 << 20);
-    const double image_bytes = static_cast<double>(raster.width_px) * raster.height_px;
-    return std::clamp(static_cast<int>(budget_bytes / image_bytes), 2, 64);
-}
-
 Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
-                             const std::function<Status(int, int, const Image&)>& emit, Progress& progress) {
+                             const std::function<Status(int, int, const RunImage&)>& emit, Progress& progress) {
     auto slicer = Slicer::prepare(bodies, settings);
     if (!slicer) return tl::unexpected(slicer.error());
     Tally tally(*slicer);
-    const int batch = batch_size(settings.raster), count = slicer->layer_count();
+    constexpr int batch = layers_at_once;
+    const int count = slicer->layer_count();
     for (int first = 0; first < count; first += batch) {
         if (progress.cancelled()) return cancelled();
         progress.advance("slice", static_cast<double>(first) / count);
