@@ -14,7 +14,7 @@
 #include "bumpy_ball.hpp"
 #include "core/files.hpp"
 #include "job/png.hpp"
-#include "job/zip_file.hpp"
+#include "zip/zip_file.hpp"
 #include "mesh/surface_file.hpp"
 
 using namespace pliant;
@@ -54,7 +54,7 @@ struct Lit {
 };
 
 Result<Lit> lit_volume(const fs::path& archive, const Screen& screen) {
-    const auto zip = job::ZipReader::open(archive);
+    const auto zip = ZipReader::open(archive);
     if (!zip) return tl::unexpected(zip.error());
     Lit lit;
     for (std::uint64_t i = 0; i < zip->entry_count(); ++i) {
