@@ -21,6 +21,47 @@ Status check(const Raster& raster) {
     return {};
 }
 
+void move(Body& body, const Vec3& shift_um) {
+    for (Vec3& p : body.surface_um.points) p += shift_um;
+    for (OutlineSlice& slice : body.slices) {
+        slice.bottom_um += shift_um.z;
+        slice.top_um += shift_um.z;
+        for (auto& outline : slice.outlines_um) {
+            for (auto& [x, y] : outline) {
+                x += shift_um.x;
+                y += shift_um.y;
+            }
+        }
+    }
+}
+
+Result<Box3> bounds(const Body& body, const std::string& label) {
+    Box3 box;
+    for (const OutlineSlice& slice : body.slices) {
+        for (const auto& outline : slice.outlines_um) {
+            for (const auto& [x, y] : outline) {
+                for (const double z : {slice.bottom_um, slice.top_um}) {
+                    const Vec3 p{x, y, z};
+                    if (!is_finite(p)) return input_error("{}: a point of its outlines is not finite", label);
+                    box.add(p);
+                }
+            }
+        }
+    }
+    if (!body.slices.empty()) return box;
+    const mesh::TriMesh& surface = body.surface_um;
+    const int count = static_cast<int>(surface.points.size());
+    for (const auto& triangle : surface.triangles) {
+        for (const int corner : triangle) {
+            if (corner < 0 || corner >= count)
+                return input_error("{}: a triangle names point {}, there are {}", label, corner, count);
+            if (!is_finite(surface.points[corner])) return input_error("{}: point {} is not finite", label, corner);
+            box.add(surface.points[corner]);
+        }
+    }
+    return box;
+}
+
 std::string describe(const Body& body, std::size_t index) {
     if (!body.name.empty()) return fmt::format("body '{}' ({})", body.name, body.material);
     return fmt::format("body {} ({})", index + 1, body.material);

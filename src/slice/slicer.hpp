@@ -11,12 +11,14 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "slice/body.hpp"
 #include "slice/compose.hpp"
+#include "slice/outline_stack.hpp"
 #include "slice/run_image.hpp"
 #include "slice/section.hpp"
 
@@ -62,12 +64,14 @@ public:
 
 private:
     Slicer() = default;
-    void add_body(const Body& body, GridSurface surface);
+    Status add_body(const Body& body, const std::string& label);
+    void add_shape(const Body& body, const Vec3& size_um);
+    void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
 
     Settings settings_;
-    std::vector<Sectioner> sectioners_;  ///< per body
-    std::vector<int> material_of_;       ///< per body
-    std::vector<Measures> measures_;     ///< per body
+    std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
+    std::vector<int> material_of_;                               ///< per body
+    std::vector<Measures> measures_;                             ///< per body
     std::vector<std::string> materials_, labels_, warnings_;
     int layer_count_ = 0;
 };
