@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/units.hpp"
 #include "job/make_job.hpp"
+#include "job/png.hpp"
 #include "machine/printer.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -91,6 +92,24 @@ void print_summary(const Options& options, const job::Manifest& manifest, const 
     fmt::print("{} swaps, {} in all\n", plan.swaps, plan::clock_text(plan.seconds.total));
 }
 
+slice::Raster raster_of(const machine::Projector& p) {
+    return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
+}
+
+/// The mask lies beside the printer file and has the projector's size.
+Result<slice::LightCorrection> light_of(const machine::Projector& projector, const std::filesystem::path& printer) {
+    slice::LightCorrection light;
+    if (!projector.grey.empty()) light.grey = slice::grey_values(projector.grey);
+    if (projector.mask.empty()) return light;
+    const std::filesystem::path path = printer.parent_path() / projector.mask;
+    const Result<std::string> png = read_file(path);
+    if (!png) return tl::unexpected(png.error());
+    Result<slice::Image> mask = job::decode_png(*png, {projector.width_px, projector.height_px}, path.string());
+    if (!mask) return tl::unexpected(mask.error());
+    light.mask = std::move(*mask);
+    return light;
+}
+
 /// Turns the part, lays out its copies and stands them on the platform.
 Status arrange(const Options& options, const slice::Raster& raster, Drawing& drawing) {
     if (!options.turn.empty()) {
@@ -118,13 +137,14 @@ Status slice(const Options& options) {
     if (!drawing) return tl::unexpected(drawing.error());
     if (Status status = set_resins(options.resins, *drawing); !status) return status;
 
-    const machine::Projector& projector = printer->projector;
     job::JobSettings settings;
     settings.name = drawing->name;
     settings.pliant_version = PLIANT_VERSION;
     settings.bottom_layers = bottom_layers(*printer);
-    settings.slicing.raster = {projector.width_px, projector.height_px, projector.pixel_um, projector.mirror_x,
-                               projector.mirror_y};
+    settings.slicing.raster = raster_of(printer->projector);
+    Result<slice::LightCorrection> light = light_of(printer->projector, options.printer);
+    if (!light) return tl::unexpected(light.error());
+    settings.light = std::move(*light);
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
     settings.slicing.rules.anti_alias = !options.no_anti_alias;

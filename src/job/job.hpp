@@ -21,9 +21,10 @@ namespace pliant::job {
 using Image = slice::Image;
 
 struct Material {
-    std::string name;              ///< as in the robot file; unique
-    std::string resin;             ///< what a printer's vat is filled with
-    double model_volume_mm3 = 0;   ///< of the bodies as drawn, for the comparison after the print
+    std::string name;   ///< as in the robot file; unique
+    std::string resin;  ///< what a printer's vat is filled with
+    double model_volume_mm3 =
+        0;  ///< of the bodies as drawn, less overlaps that others keep, for the comparison after the print
     double model_area_mm2 = 0;     ///< of their surface: one pixel layer around it is the error a raster may make
     double exposure_s = 0;         ///< of a normal layer
     double bottom_exposure_s = 0;  ///< of the first `bottom_layers`

@@ -15,10 +15,10 @@ struct Prepared {
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
 };
 
-Prepared prepare_layer(const slice::Slicer& slicer, int k) {
+Prepared prepare_layer(const slice::Slicer& slicer, const slice::LightCorrection& light, int k) {
     Prepared prepared{slicer.layer(k), {}};
     for (slice::MaterialImage& m : prepared.sliced.images) {
-        prepared.images.push_back(encode(m.image));
+        prepared.images.push_back(encode(light.none() ? m.image : corrected(m.image, light)));
         m.image = {};
     }
     return prepared;
@@ -96,7 +96,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
         progress.advance("slice", static_cast<double>(first) / count);
         std::vector<Prepared> layers(static_cast<std::size_t>(std::min(batch, count - first)));
         parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t) {
-            layers[begin] = prepare_layer(*slicer, first + static_cast<int>(begin));
+            layers[begin] = prepare_layer(*slicer, settings.light, first + static_cast<int>(begin));
         });
         for (std::size_t i = 0; i < layers.size(); ++i) {
             const int k = first + static_cast<int>(i);
@@ -108,6 +108,12 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     }
     progress.advance("slice", 1);
     job.summary = tally.summary();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        for (Material& m : job.manifest.materials) {
+            if (m.name == bodies[b].material)
+                m.model_volume_mm3 = std::max(0.0, m.model_volume_mm3 - job.summary.lost_mm3[b]);
+        }
+    }
     job.manifest.warnings = job.summary.warnings;
     return job;
 }

@@ -7,6 +7,7 @@
 
 #include "core/progress.hpp"
 #include "job/job.hpp"
+#include "slice/light.hpp"
 #include "slice/slicer.hpp"
 
 namespace pliant::job {
@@ -18,6 +19,7 @@ struct JobSettings {
     slice::Settings slicing;
     /// Resin and exposures of every material that a body names; model_volume_mm3 and model_area_mm2 are filled in.
     std::vector<Material> materials;
+    slice::LightCorrection light{};  ///< of the stored images; areas and volumes are those before it
 };
 
 struct MadeJob {

@@ -160,7 +160,7 @@ Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, s
     const auto size = png_size(png.substr(0, png_head_bytes), where);
     if (!size) return tl::unexpected(size.error());
     if (size->width_px != expected.width_px || size->height_px != expected.height_px)
-        return input_error("{}: {} x {} pixels, the manifest says {} x {}", where, size->width_px, size->height_px,
+        return input_error("{}: {} x {} pixels, {} x {} are needed", where, size->width_px, size->height_px,
                            expected.width_px, expected.height_px);
     const std::size_t count = static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px);
     if (count / max_deflate_ratio > png.size())

@@ -46,7 +46,7 @@ TEST_CASE("what is no such image is refused") {
     CHECK(refused("").find("is not a PNG") != std::string::npos);
     CHECK(refused(good.substr(0, 28)).find("is not a PNG") != std::string::npos);
     CHECK(refused("GIF89a" + good.substr(6)).find("is not a PNG") != std::string::npos);
-    CHECK(refused(good, {30, 21}).find("30 x 20 pixels, the manifest says 30 x 21") != std::string::npos);
+    CHECK(refused(good, {30, 21}).find("30 x 20 pixels, 30 x 21 are needed") != std::string::npos);
     std::string changed = good;
     changed[24] = 16;
     CHECK(refused(changed).find("8-bit grey") != std::string::npos);

@@ -143,10 +143,11 @@ void Tally::add(int k, const SlicedLayer& layer) {
 
 Summary Tally::summary() const {
     const Settings& settings = slicer_.settings();
-    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings()};
+    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings(), {}};
     const double voxel_mm3 = settings.raster.pixel_um * settings.raster.pixel_um * settings.layer_um / 1e9;
     for (std::size_t b = 0; b < lost_px_.size(); ++b) {
         const double lost_mm3 = lost_px_[b] * voxel_mm3;
+        summary.lost_mm3.push_back(lost_mm3);
         if (lost_mm3 < voxel_mm3) continue;
         summary.overlap_mm3 += lost_mm3;
         summary.warnings.push_back(

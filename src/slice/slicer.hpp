@@ -82,6 +82,7 @@ struct Summary {
     double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
     std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
     std::vector<std::string> warnings;
+    std::vector<double> lost_mm3{};  ///< per body: its share of overlap_mm3, which a later body keeps
 };
 
 /// Collects the remarks of all layers, added in order.
