@@ -145,6 +145,7 @@ Status slice(const Options& options) {
     Result<slice::LightCorrection> light = light_of(printer->projector, options.printer);
     if (!light) return tl::unexpected(light.error());
     settings.light = std::move(*light);
+    settings.copies = options.copies;
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
     settings.slicing.rules.anti_alias = !options.no_anti_alias;

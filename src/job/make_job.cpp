@@ -1,10 +1,12 @@
 #include "job/make_job.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "slice/inspect.hpp"
 
 namespace pliant::job {
 namespace {
@@ -13,10 +15,12 @@ namespace {
 struct Prepared {
     slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
+    slice::LayerShape shape;
 };
 
 Prepared prepare_layer(const slice::Slicer& slicer, const slice::LightCorrection& light, int k) {
-    Prepared prepared{slicer.layer(k), {}};
+    Prepared prepared{slicer.layer(k), {}, {}};
+    prepared.shape = slice::shape_of(prepared.sliced, slicer.settings().raster.width_px);
     for (slice::MaterialImage& m : prepared.sliced.images) {
         prepared.images.push_back(encode(light.none() ? m.image : corrected(m.image, light)));
         m.image = {};
@@ -68,6 +72,51 @@ Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const s
     return layer;
 }
 
+std::vector<std::size_t> layers_of(const Manifest& manifest, int material) {
+    std::vector<std::size_t> layers;
+    for (std::size_t k = 0; k < manifest.layers.size(); ++k) {
+        for (const LayerImage& image : manifest.layers[k].images) {
+            if (image.material == material) layers.push_back(k);
+        }
+    }
+    return layers;
+}
+
+/// Materials that cost swaps for next to nothing.
+void note_rare_materials(Manifest& manifest) {
+    constexpr std::size_t few = 3;
+    for (std::size_t m = 0; manifest.materials.size() > 1 && m < manifest.materials.size(); ++m) {
+        const std::vector<std::size_t> layers = layers_of(manifest, static_cast<int>(m));
+        if (!layers.empty() && layers.size() <= few && manifest.layers.size() > 10 * few)
+            manifest.warnings.push_back(
+                fmt::format("material \"{}\" occurs in {} of {} layers only, the first is layer {}",
+                            manifest.materials[m].name, layers.size(), manifest.layers.size(), layers.front()));
+    }
+}
+
+/// The images must hold the volume that was drawn.
+void note_volume(Manifest& manifest) {
+    double drawn = 0, lit = 0;
+    for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
+    for (const Layer& layer : manifest.layers) {
+        for (const LayerImage& image : layer.images) lit += image.area_mm2 * layer.thickness_um / 1000;
+    }
+    constexpr double tolerance = 1e-3;
+    if (std::fabs(lit - drawn) > tolerance * drawn)
+        manifest.warnings.push_back(fmt::format("the images hold {:.6g} mm^3, the bodies {:.6g} mm^3: {:+.2f} %", lit,
+                                                drawn, 100 * (lit / drawn - 1)));
+}
+
+void note_findings(const slice::Findings& findings, const JobSettings& settings, Manifest& manifest) {
+    for (std::string& line : describe(findings, settings.slicing.raster, settings.slicing.layer_um))
+        manifest.warnings.push_back(std::move(line));
+    if (static_cast<int>(findings.pieces.size()) > settings.copies)
+        manifest.warnings.push_back(
+            fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
+    note_rare_materials(manifest);
+    note_volume(manifest);
+}
+
 }  // namespace
 
 Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings, Writer& writer,
@@ -89,6 +138,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
                     {}};
     const std::vector<std::string> words = file_words(job.manifest.materials);
     slice::Tally tally(*slicer);
+    slice::Inspector inspector;
     constexpr int batch = slice::layers_at_once;
     const int count = slicer->layer_count();
     for (int first = 0; first < count; first += batch) {
@@ -101,6 +151,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
         for (std::size_t i = 0; i < layers.size(); ++i) {
             const int k = first + static_cast<int>(i);
             tally.add(k, layers[i].sliced);
+            inspector.add(std::move(layers[i].shape));
             auto layer = store(layers[i], k, job.manifest, words, settings.slicing.layer_um, writer);
             if (!layer) return tl::unexpected(layer.error());
             job.manifest.layers.push_back(std::move(*layer));
@@ -115,6 +166,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
         }
     }
     job.manifest.warnings = job.summary.warnings;
+    note_findings(inspector.finish(), settings, job.manifest);
     return job;
 }
 

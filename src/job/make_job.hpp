@@ -19,6 +19,7 @@ struct JobSettings {
     slice::Settings slicing;
     /// Resin and exposures of every material that a body names; model_volume_mm3 and model_area_mm2 are filled in.
     std::vector<Material> materials;
+    int copies = 1;                  ///< of the part: how many pieces may touch each other nowhere
     slice::LightCorrection light{};  ///< of the stored images; areas and volumes are those before it
 };
 
