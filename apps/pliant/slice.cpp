@@ -150,11 +150,17 @@ Status slice(const Options& options) {
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
     settings.slicing.rules.anti_alias = !options.no_anti_alias;
     settings.slicing.rules.threshold = options.threshold;
-    if (Status status = arrange(options, settings.slicing.raster, *drawing); !status) return status;
+    if (drawing->stacks.empty()) {
+        if (Status status = arrange(options, settings.slicing.raster, *drawing); !status) return status;
+    } else if (options.copies != 1 || !options.turn.empty()) {
+        return input_error("--copies, --turn: layer images are printed as they are");
+    }
 
     Result<job::Writer> writer = job::Writer::create(options.job);
     if (!writer) return tl::unexpected(writer.error());
-    Result<job::MadeJob> made = job::slice_to_job(drawing->bodies, settings, *writer, *progress);
+    Result<job::MadeJob> made = drawing->stacks.empty()
+                                    ? job::slice_to_job(drawing->bodies, settings, *writer, *progress)
+                                    : job::stacks_to_job(drawing->stacks, settings, *writer, *progress);
     if (!made) return tl::unexpected(made.error());
     made->manifest.warnings.insert(made->manifest.warnings.begin(), drawing->warnings.begin(), drawing->warnings.end());
     const Result<plan::Plan> plan = plan::make_plan(made->manifest, *printer);
@@ -176,7 +182,8 @@ void add_slice(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
     command
         ->add_option("inputs", options->inputs,
-                     "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE")
+                     "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE or "
+                     "folder or zip of layer images")
         ->required();
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
     command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();

@@ -26,7 +26,8 @@ Result<Drawing> read_robot(const std::string& path, const std::vector<std::strin
     if (!robot) return tl::unexpected(robot.error());
     Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(*robot, progress);
     if (!surfaces) return tl::unexpected(surfaces.error());
-    Drawing drawing{robot->name, {}, {}, {}};
+    Drawing drawing;
+    drawing.name = robot->name;
     for (robot::BodySurface& body : *surfaces) {
         const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
         drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
@@ -84,6 +85,20 @@ Status add_surface(std::string_view bytes, const std::filesystem::path& path, co
     return {};
 }
 
+Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
+                           path.string());
+    const auto same = [&](const job::MaterialStack& s) { return s.material == material; };
+    if (std::any_of(drawing.stacks.begin(), drawing.stacks.end(), same))
+        return input_error("{}: material \"{}\" has layer images already", path.string(), material);
+    Result<job::ImageStack> stack = job::ImageStack::open(path);
+    if (!stack) return tl::unexpected(stack.error());
+    drawing.stacks.push_back({material, std::move(*stack)});
+    add_resin(drawing, material, material);
+    return {};
+}
+
 Status add_file(const std::string& input, Drawing& drawing) {
     const std::size_t equals = input.find('=');
     if (equals == 0) return input_error("{}: write MATERIAL=FILE with a material in front", input);
@@ -91,6 +106,7 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const std::string material = whole ? "" : input.substr(0, equals);
     const std::filesystem::path path = whole ? input : input.substr(equals + 1);
     if (drawing.name.empty()) drawing.name = path.stem().string();
+    if (job::is_image_stack(path)) return add_stack(path, material, drawing);
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
@@ -110,6 +126,8 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
             return input_error("{}: a robot file stands alone; for other files write MATERIAL=FILE", input);
         if (auto status = add_file(input, drawing); !status) return tl::unexpected(status.error());
     }
+    if (!drawing.stacks.empty() && !drawing.bodies.empty())
+        return input_error("layer images and bodies cannot be printed together: slice the bodies first");
     for (const slice::Body& body : drawing.bodies) add_resin(drawing, body.material, body.material);
     return drawing;
 }

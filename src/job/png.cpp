@@ -144,39 +144,81 @@ std::string encode_png(const slice::RunImage& image) {
     return png;
 }
 
-Result<PngSize> png_size(std::string_view head, std::string_view where) {
+namespace {
+
+Result<PngSize> size_in_header(std::string_view head, std::string_view where) {
     if (head.size() < png_head_bytes || std::memcmp(head.data(), signature.data(), signature.size()) != 0 ||
         head.substr(12, 4) != "IHDR")
         return input_error("{}: is not a PNG image", where);
     const std::uint32_t width = get_u32(head, 16), height = get_u32(head, 20);
-    if (head.substr(24, 5) != std::string_view("\x08\0\0\0\0", 5))
-        return input_error("{}: an 8-bit grey PNG without interlacing is needed", where);
     if (width == 0 || height == 0 || width > INT32_MAX || height > INT32_MAX)
         return input_error("{}: claims {} x {} pixels", where, width, height);
     return PngSize{static_cast<int>(width), static_cast<int>(height)};
 }
 
-Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where) {
-    const auto size = png_size(png.substr(0, png_head_bytes), where);
-    if (!size) return tl::unexpected(size.error());
-    if (size->width_px != expected.width_px || size->height_px != expected.height_px)
-        return input_error("{}: {} x {} pixels, {} x {} are needed", where, size->width_px, size->height_px,
-                           expected.width_px, expected.height_px);
-    const std::size_t count = static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px);
-    if (count / max_deflate_ratio > png.size())
-        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
-                           size->height_px);
+/// By libpng; `size` is what the header says.
+Result<slice::Image> decode(std::string_view png, const PngSize& size, std::string_view where) {
+    const std::size_t count = static_cast<std::size_t>(size.width_px) * static_cast<std::size_t>(size.height_px);
     png_image reader{};
     reader.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_memory(&reader, png.data(), png.size()) == 0)
         return input_error("{}: {}", where, std::string(reader.message));
     reader.format = PNG_FORMAT_GRAY;
-    slice::Image image{size->width_px, size->height_px, std::vector<std::uint8_t>(count)};
-    const int done = png_image_finish_read(&reader, nullptr, image.pixels.data(), 0, nullptr);
+    slice::Image image{size.width_px, size.height_px, std::vector<std::uint8_t>(count)};
+    const png_color black{0, 0, 0};
+    const int done = png_image_finish_read(&reader, &black, image.pixels.data(), 0, nullptr);
     const std::string message = reader.message;
     png_image_free(&reader);
     if (done == 0) return input_error("{}: {}", where, message);
     return image;
+}
+
+Status check_size(const PngSize& size, const PngSize& expected, std::string_view where) {
+    if (size.width_px != expected.width_px || size.height_px != expected.height_px)
+        return input_error("{}: {} x {} pixels, {} x {} are needed", where, size.width_px, size.height_px,
+                           expected.width_px, expected.height_px);
+    return {};
+}
+
+}  // namespace
+
+Result<PngSize> png_size(std::string_view head, std::string_view where) {
+    const auto size = size_in_header(head, where);
+    if (size && head.substr(24, 5) != std::string_view("\x08\0\0\0\0", 5))
+        return input_error("{}: an 8-bit grey PNG without interlacing is needed", where);
+    return size;
+}
+
+Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where) {
+    const auto size = png_size(png.substr(0, png_head_bytes), where);
+    if (!size) return tl::unexpected(size.error());
+    if (auto status = check_size(*size, expected, where); !status) return tl::unexpected(status.error());
+    const std::size_t count = static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px);
+    if (count / max_deflate_ratio > png.size())
+        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
+                           size->height_px);
+    return decode(png, *size, where);
+}
+
+Result<PngSize> any_png_size(std::string_view png, std::string_view where) {
+    const auto size = size_in_header(png.substr(0, png_head_bytes), where);
+    constexpr long long most = 1LL << 28;
+    if (size && static_cast<long long>(size->width_px) * size->height_px > most)
+        return input_error("{}: {} x {} pixels, more than 2^28", where, size->width_px, size->height_px);
+    // The least that a pixel takes is a bit, packed.
+    if (size &&
+        static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px) / 8 / max_deflate_ratio >
+            png.size())
+        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
+                           size->height_px);
+    return size;
+}
+
+Result<slice::Image> decode_any_png(std::string_view png, const PngSize& expected, std::string_view where) {
+    const auto size = any_png_size(png, where);
+    if (!size) return tl::unexpected(size.error());
+    if (auto status = check_size(*size, expected, where); !status) return tl::unexpected(status.error());
+    return decode(png, *size, where);
 }
 
 }  // namespace pliant::job

@@ -29,4 +29,9 @@ inline constexpr std::size_t png_head_bytes = 29;
 /// long enough to hold that many pixels at deflate's greatest ratio.
 [[nodiscard]] Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where);
 
+/// The same for PNG images of any kind (colours become grey, what is transparent dark); at most 2^28 pixels.
+[[nodiscard]] Result<PngSize> any_png_size(std::string_view png, std::string_view where);
+[[nodiscard]] Result<slice::Image> decode_any_png(std::string_view png, const PngSize& expected,
+                                                  std::string_view where);
+
 }  // namespace pliant::job
