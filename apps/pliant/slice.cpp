@@ -15,6 +15,7 @@
 #include "machine/printer.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
+#include "report/job_picture.hpp"
 #include "slice/arrange.hpp"
 #include "slice/place.hpp"
 #include "slice_input.hpp"
@@ -27,6 +28,7 @@ struct Options {
     std::string printer;
     std::string layer;
     std::string job;
+    std::string picture;
     std::vector<std::string> assignments, resins;
     int copies = 1;
     std::string spacing = "2 mm";
@@ -125,6 +127,14 @@ Status arrange(const Options& options, const slice::Raster& raster, Drawing& dra
     return {};
 }
 
+Status draw_picture(const Options& options) {
+    const Result<job::Archive> archive = job::Archive::open(options.job);
+    if (!archive) return tl::unexpected(archive.error());
+    const Result<std::string> png = report::job_picture(*archive);
+    if (!png) return tl::unexpected(png.error());
+    return write_file(options.picture, *png);
+}
+
 Status slice(const Options& options) {
     const auto progress = terminal_progress(options.output);
     const Result<machine::Printer> printer = machine::load_printer(options.printer);
@@ -171,6 +181,7 @@ Status slice(const Options& options) {
     if (status) status = writer->add_file("plan.json", plan::plan_json(*plan));
     if (status) status = writer->add_file("job.gcode", gcode);
     if (status) status = writer->finish(made->manifest);
+    if (status && !options.picture.empty()) status = draw_picture(options);
     if (status) print_summary(options, made->manifest, *plan);
     return status;
 }
@@ -187,6 +198,7 @@ void add_slice(CLI::App& app, int& status) {
         ->required();
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
     command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();
+    command->add_option("--picture", options->picture, "PNG file: the part from the front, and some layers");
     command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
     command->add_option("--resin", options->resins, "MATERIAL=RESIN: what a material is printed in")
         ->type_name("MATERIAL=RESIN")
