@@ -1,11 +1,11 @@
-#include "job/zip_file.hpp"
+#include "zip/zip_file.hpp"
 
 #include <zip.h>
 
 #include <algorithm>
 #include <deque>
 
-namespace pliant::job {
+namespace pliant {
 namespace {
 
 struct Discard {
@@ -156,4 +156,4 @@ Result<std::string> ZipReader::read_head(const std::string& name, std::uint64_t 
     return read_bytes(name, std::min(*size, count), false);
 }
 
-}  // namespace pliant::job
+}  // namespace pliant

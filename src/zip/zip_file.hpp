@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace pliant::job {
+namespace pliant {
 
 /// Gathers entries in memory; close() writes the file.
 class ZipWriter {
@@ -53,4 +53,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace pliant::job
+}  // namespace pliant
