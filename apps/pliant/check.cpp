@@ -42,7 +42,7 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
 Result<std::string> check_printer(const std::string& file) {
     const Result<machine::Printer> printer = machine::load_printer(file);
     if (!printer) return tl::unexpected(printer.error());
-    return fmt::format("printer \"{}\": {} slots, {} vats, {} x {} px", printer->name, printer->tower.slots,
+    return fmt::format("printer \"{}\": {} places, {} vats, {} x {} px", printer->name, printer->slot_count(),
                        printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
 }
 

@@ -204,7 +204,7 @@ TEST_CASE("a command that the machine does not know ends the print") {
 
 TEST_CASE("a wrong order of vats shows as foreign resin") {
     Print p;
-    std::swap(p.plan.vat_of_material[0], p.plan.vat_of_material[1]);
+    for (std::vector<int>& images : p.plan.vat_of_image) std::swap(images[0], images[1]);
     p.gcode = plan::write_gcode(p.plan, p.job, p.printer);
     p.run();
     REQUIRE(p.status);

@@ -105,11 +105,12 @@ TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, n
 
 TEST_CASE("blank layers and resin that runs out are noticed") {
     machine::Printer printer = test::tower();
-    printer.vats[0].fill_ml = 0.01;
+    printer.vats[0].fill_ml = 60.01;  // of which 60 must stay
     const Plan plan = planned(test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
     REQUIRE(plan.warnings.size() == 3);
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
-    CHECK(holds(plan.warnings[1], "holds 0.0 ml"));
+    CHECK(
+        holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
     CHECK(holds(plan.warnings[2], "1 layers lie higher"));
 }
 

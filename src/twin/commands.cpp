@@ -14,7 +14,7 @@ using machine::Command;
 
 /// Commands that are accepted and change nothing that the twin models.
 bool is_quiet(const Command& c) {
-    constexpr std::array<int, 6> numbers = {18, 85, 108, 110, 113, 410};
+    constexpr std::array<int, 8> numbers = {18, 82, 85, 108, 110, 113, 302, 410};
     return c.letter == 'M' && std::find(numbers.begin(), numbers.end(), c.number) != numbers.end();
 }
 
@@ -30,7 +30,7 @@ std::vector<Axis> Twin::axes_to_home(const Command& command) const {
     for (const machine::Word& word : command.words) {
         if (const auto axis = machine::axis_of_letter(printer_, word.letter)) axes.push_back(*axis);
     }
-    if (axes.empty()) axes = {Axis::platform, Axis::carriage, Axis::tower};
+    if (axes.empty()) axes = machine::homing_order(printer_);
     return axes;
 }
 
@@ -49,7 +49,8 @@ double Twin::blocks_until(const Command& c) {
 void Twin::execute(const Command& c, const Queued& queued) {
     if (c.is('G', 0) || c.is('G', 1)) return execute_move(c);
     if (c.is('G', 28)) return execute_home(c);
-    if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c, queued.line);
+    if (c.is('G', 92)) return execute_set(c);
+    if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c);
     if (c.is('G', 4) || c.is('G', 90) || c.is('M', 400) || is_quiet(c)) {
         // M110 in an unnumbered line sets the number here; a numbered one did so when it was verified.
         if (c.is('M', 110) && !queued.number) reader_.set_last_number(static_cast<long>(c.value('N').value_or(0)));
@@ -76,6 +77,18 @@ void Twin::execute_home(const Command& c) {
     }
 }
 
+/// G92 stands for homing where a person has stood the axis at its home; anything else would move the origin.
+void Twin::execute_set(const Command& c) {
+    for (const machine::Word& word : c.words) {
+        const auto axis = machine::axis_of_letter(printer_, word.letter);
+        if (!axis || !printer_.axis(*axis).homes_by_hand) {
+            violation(fmt::format("G92 moves the origin of {}", word.letter));
+            continue;
+        }
+        if (Status status = motors_.home(now_s_, *axis); !status) violation(status.error().message);
+    }
+}
+
 /// Counts swaps, and those with too little cleaning between the last light and the new vat.
 void Twin::note_vat() {
     const auto vat = interlock().hooked_vat();
@@ -89,14 +102,15 @@ void Twin::note_vat() {
     last_vat_ = *vat;
 }
 
-void Twin::execute_switch(const Command&, std::string_view line) {
-    if (line == printer_.pump.on && !pump_on_) {
-        pump_on_ = true;
+void Twin::execute_switch(const Command& c) {
+    const auto on = machine::switched(printer_.pump, c);
+    if (!on || *on == pump_on_) return;
+    if (Status status = motors_.interlock().pump(*on); !status) return violation(status.error().message);
+    pump_on_ = *on;
+    if (pump_on_)
         pump_since_s_ = now_s_;
-    } else if (line == printer_.pump.off && pump_on_) {
-        pump_on_ = false;
+    else
         sprayed_s_ += now_s_ - pump_since_s_;
-    }
 }
 
 void Twin::execute_other(const Command& c) {
@@ -108,6 +122,7 @@ void Twin::execute_other(const Command& c) {
     } else if (c.is('M', 114)) {
         std::string line;
         for (const Axis axis : machine::all_axes) {
+            if (!printer_.axis(axis).present()) continue;
             line += fmt::format("{}:{:.3f} ", printer_.axis(axis).letter, interlock().position()[axis] / 1000.0);
         }
         say(line);

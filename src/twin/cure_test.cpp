@@ -12,7 +12,7 @@ machine::Printer small() {
     machine::Printer p;
     p.tower.slots = 2;
     p.vats = {{1, "soft", 1}, {2, "rigid", 1}};
-    p.resins = {{"soft", 2, 2, 0, 120, 0.8}, {"rigid", 2, 2, 0, 120, 0.8}};
+    p.resins = {{"soft", 2, 2, 0, 120, 0.8, 0, 0}, {"rigid", 2, 2, 0, 120, 0.8, 0, 0}};
     p.projector.width_px = 4;
     p.projector.height_px = 2;
     p.projector.pixel_um = 100;

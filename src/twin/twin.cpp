@@ -19,6 +19,7 @@ machine::Position unknown_start(const machine::Printer& printer) {
         start[axis] = printer.axis(axis).min_um + (printer.axis(axis).max_um - printer.axis(axis).min_um) / 2;
     }
     start[machine::Axis::carriage] = printer.carriage.print_um;
+    start[machine::Axis::table] = printer.table.stations_um.empty() ? 0 : printer.station_um(1);
     return start;
 }
 

@@ -108,7 +108,8 @@ private:
     void execute(const machine::Command& command, const Queued& queued);
     void execute_move(const machine::Command& command);
     void execute_home(const machine::Command& command);
-    void execute_switch(const machine::Command& command, std::string_view line);
+    void execute_switch(const machine::Command& command);
+    void execute_set(const machine::Command& command);
     void execute_other(const machine::Command& command);
     void note_vat();
     void kill();
