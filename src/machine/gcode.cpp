@@ -82,11 +82,11 @@ Result<Command> parse_command(std::string_view line) {
         return input_error("\"{}\" is not a command such as G1 or M400", head);
     }
     command.letter = head[0];
-    const bool message = command.is('M', 118);
+    const bool message = command.is('M', 118) || command.is('M', 117);
     while (!trim(rest).empty()) {
         std::string_view ahead = rest;
         const std::string_view token = take_token(ahead);
-        if (message && !is_message_parameter(token)) {
+        if (message && (command.number == 117 || !is_message_parameter(token))) {
             command.text = trim(rest);
             break;
         }

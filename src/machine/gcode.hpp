@@ -29,7 +29,7 @@ struct Command {
     char letter = '?';  ///< 'G' or 'M'
     int number = 0;
     std::vector<Word> words;
-    std::string text;  ///< M118 only: the message behind its parameters
+    std::string text;  ///< M117 and M118 only: the message behind its parameters
 
     [[nodiscard]] bool is(char l, int n) const { return letter == l && number == n; }
     [[nodiscard]] bool has(char l) const;

@@ -1,9 +1,9 @@
 #include "plan/check.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "machine/gcode.hpp"
-#include "machine/interlock.hpp"
 #include "machine/motion.hpp"
 
 namespace pliant::plan {
@@ -68,6 +68,38 @@ Status run_pump(Reading& r, bool on) {
     return r.interlock.pump(on);
 }
 
+/// Motors that let go: where the axes are is not known any more.
+Status run_release(Reading& r, const Command& command) {
+    if (command.has('S')) return {};
+    r.interlock.stopped_at(r.interlock.position());
+    return {};
+}
+
+/// What moves nothing that matters: units, messages, reports, fences.
+Status run_other(Reading& r, const Command& command) {
+    if (command.is('M', 84) || command.is('M', 18)) return run_release(r, command);
+    if (command.is('G', 91)) {
+        return input_error("G91 does not belong here: a relative move that the wire repeats is made twice; write G90");
+    }
+    const bool classic = r.printer.controller.dialect == machine::Dialect::classic;
+    if (classic && (command.is('M', 82) || command.is('M', 302))) return {};
+    constexpr int known_g[] = {21, 90};
+    constexpr int known_m[] = {17, 42, 73, 85, 105, 106, 107, 110, 113, 114, 115, 117, 118, 119, 400};
+    const auto knows = [&](const auto& list) {
+        return std::find(std::begin(list), std::end(list), command.number) != std::end(list);
+    };
+    const bool known = command.letter == 'G' ? knows(known_g) : knows(known_m);
+    return known ? Status{} : input_error("{}{} does not belong to the dialect", command.letter, command.number);
+}
+
+/// `N12 G1 X3*77` as it stands on the wire: only what it commands.
+std::string_view without_number(std::string_view line) {
+    if (line.empty() || line.front() != 'N') return line;
+    const std::size_t blank = line.find(' ');
+    if (blank == std::string_view::npos) return line;
+    return machine::strip_comment(line.substr(blank + 1, line.rfind('*') - blank - 1));
+}
+
 Status run_command(Reading& r, std::string_view line) {
     if (line.size() > machine::max_line_chars) return input_error("longer than {} characters", machine::max_line_chars);
     const auto command = machine::parse_command(line);
@@ -82,13 +114,7 @@ Status run_command(Reading& r, std::string_view line) {
         r.clock_s += command->value('P').value_or(0) / 1000 + command->value('S').value_or(0);
         return check_pump_time(r);
     }
-    const bool classic = r.printer.controller.dialect == machine::Dialect::classic;
-    if (classic && (command->is('M', 82) || command->is('M', 302))) return {};
-    constexpr int known_m[] = {42, 84, 106, 107, 118, 400};
-    const bool known = command->letter == 'G'
-                           ? command->number == 4 || command->number == 90
-                           : std::find(std::begin(known_m), std::end(known_m), command->number) != std::end(known_m);
-    return known ? Status{} : input_error("{}{} does not belong to the dialect", command->letter, command->number);
+    return run_other(r, *command);
 }
 
 Status run_directive(Reading& r, std::string_view line) {
@@ -106,14 +132,12 @@ Status run_directive(Reading& r, std::string_view line) {
 
 }  // namespace
 
-Status check_gcode(std::string_view gcode, const machine::Printer& printer) {
+Result<machine::Interlock> replay_gcode(std::string_view gcode, const machine::Printer& printer, int lines) {
     Reading reading{printer, machine::Interlock(printer), false, false, 0, 0, 0};
-    int number = 0;
-    while (!gcode.empty()) {
+    for (int number = 1; number <= lines && !gcode.empty(); ++number) {
         const std::string_view raw = gcode.substr(0, gcode.find('\n'));
         gcode.remove_prefix(std::min(gcode.size(), raw.size() + 1));
-        ++number;
-        const std::string_view line = machine::strip_comment(raw);
+        const std::string_view line = without_number(machine::strip_comment(raw));
         Status status;
         if (machine::is_directive(raw))
             status = run_directive(reading, raw);
@@ -123,7 +147,12 @@ Status check_gcode(std::string_view gcode, const machine::Printer& printer) {
             return tl::unexpected(
                 Error{status.error().cause, fmt::format("G-code line {}: {}", number, status.error().message)});
     }
-    return {};
+    return std::move(reading.interlock);
+}
+
+Status check_gcode(std::string_view gcode, const machine::Printer& printer) {
+    const auto end = replay_gcode(gcode, printer, std::numeric_limits<int>::max());
+    return end ? Status{} : tl::unexpected(end.error());
 }
 
 }  // namespace pliant::plan

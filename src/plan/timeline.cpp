@@ -55,20 +55,19 @@ SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer) {
     constexpr double same = 1e-9;  // of seconds that were added up differently
     const auto found =
         std::max_element(all.begin(), all.end(), [&](auto& a, auto& b) { return seconds[a] + same < seconds[b]; });
+    if (found == all.end()) return {};
+    return swap_timeline(printer, slot(found->first), slot(found->second));
+}
+
+SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int to_slot) {
     SwapTimeline timeline;
-    if (found == all.end()) return timeline;
-    timeline.from_slot = slot(found->first);
-    timeline.to_slot = slot(found->second);
+    timeline.from_slot = from_slot;
+    timeline.to_slot = to_slot;
     timeline.devices = devices_of(printer);
-    Sequence s = standing_at(printer, timeline.from_slot);
-    const double begin_s = s.seconds().total;
+    Sequence s = standing_at(printer, from_slot);
     s.record(&timeline.stretches);
-    swap_vat(s, timeline.from_slot, timeline.to_slot);
-    timeline.seconds = s.seconds().total - begin_s;
-    for (Stretch& stretch : timeline.stretches) {
-        stretch.begin_s -= begin_s;
-        stretch.end_s -= begin_s;
-    }
+    swap_vat(s, from_slot, to_slot);
+    timeline.seconds = s.seconds().total;
     return timeline;
 }
 

@@ -36,4 +36,7 @@ struct SwapTimeline {
 /// `printer` must be that of make_plan().
 [[nodiscard]] SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer);
 
+/// One change of vats, from slot to slot.
+[[nodiscard]] SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int to_slot);
+
 }  // namespace pliant::plan

@@ -98,11 +98,11 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
 }
 
 void draw_layers(Canvas& canvas, const plan::Plan& plan) {
-    constexpr double top = 602;
-    draw_title(canvas, 582, "Layers that each vat prints");
+    constexpr double top = 642;
+    draw_title(canvas, 622, "Layers that each vat prints");
     if (plan.layers == 0) return;
     const double rows = static_cast<double>(plan.vats.size());
-    const double height = std::min(row_height, 340 / std::max(1.0, rows));
+    const double height = std::min(row_height, 300 / std::max(1.0, rows));
     draw_axis(canvas, top, top + rows * height, plan.layers, 1, "layers");
     const double scale = (right - left) / plan.layers;
     for (std::size_t v = 0; v < plan.vats.size(); ++v) {

@@ -88,8 +88,8 @@ TEST_CASE("bars stand where their times and layers are") {
     CHECK(p.white(220 + 12 * 33 + 8, carriage));
     CHECK(p.white(220 + 8 * 33 + 8, spray));
     CHECK_FALSE(p.white(220 + 20 * 33 + 8, spray));
-    // Ten layers of 132 pixels, rows of 44 from y 602: the second vat prints layers 2, 3, 8 and 9.
-    const int second = 602 + 44 + 22;
+    // Ten layers of 132 pixels, rows of 44 from y 642: the second vat prints layers 2, 3, 8 and 9.
+    const int second = 642 + 44 + 22;
     for (int layer = 0; layer < 10; ++layer) {
         const bool printed = layer == 2 || layer == 3 || layer >= 8;
         CHECK(p.white(220 + 132 * layer + 66, second) == !printed);
