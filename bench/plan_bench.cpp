@@ -67,5 +67,28 @@ void plan_tall(benchmark::State& state, bool with_gcode) {
 
 }  // namespace
 
+/// 10,000 layers, all of eight materials in each: the most swaps there can be.
+void plan_full(benchmark::State& state) {
+    machine::Printer printer = full_tower();
+    printer.platform.build_height_um = 600000;
+    job::Manifest job = tall_job(printer);
+    job.layers.clear();
+    for (int i = 0; i < 10000; ++i) {
+        job::Layer layer{50 * (i + 1), 50, {}};
+        for (int m = 0; m < 8; ++m) layer.images.push_back({m, "a", 100});
+        job.layers.push_back(std::move(layer));
+    }
+    plan::Plan plan;
+    for (auto _ : state) {
+        auto made = plan::make_plan(job, printer);
+        if (!made) return state.SkipWithError(made.error().message.c_str());
+        plan = std::move(*made);
+    }
+    state.counters["layers"] = plan.layers;
+    state.counters["swaps"] = plan.swaps;
+    state.counters["hours"] = plan.seconds.total / 3600;
+}
+
+BENCHMARK(plan_full)->Name("plan_10000_layers_8_materials")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_tall, plan_only, false)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_tall, plan_gcode_check, true)->Unit(benchmark::kMillisecond);

@@ -3,17 +3,21 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "command.hpp"
 #include "core/config.hpp"
+#include "core/files.hpp"
 #include "job/job.hpp"
 #include "job/verify.hpp"
 #include "job_tools.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
+#include "plan/safe_stop.hpp"
 #include "robot/build.hpp"
 #include "threemf/read_3mf.hpp"
 
@@ -22,6 +26,8 @@ namespace {
 
 struct Options {
     std::vector<std::string> files;
+    std::string printer;
+    int cancel_after = -1;
     Output output;
 };
 
@@ -44,7 +50,7 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
 Result<std::string> check_printer(const std::string& file) {
     const Result<machine::Printer> printer = machine::load_printer(file);
     if (!printer) return tl::unexpected(printer.error());
-    return fmt::format("printer \"{}\": {} slots, {} vats, {} x {} px", printer->name, printer->tower.slots,
+    return fmt::format("printer \"{}\": {} places, {} vats, {} x {} px", printer->name, printer->slot_count(),
                        printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
 }
 
@@ -90,11 +96,29 @@ Result<std::string> check_3mf(const std::string& file) {
     return text;
 }
 
-Result<std::string> check(const std::string& file, Progress& progress) {
+/// G-code from anywhere, against the machine that is to run it.
+Result<std::string> check_program(const std::string& file, const Options& options) {
+    if (options.printer.empty()) return input_error("{}: give --printer, the machine that is to run it", file);
+    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    if (!printer) return tl::unexpected(printer.error());
+    const Result<std::string> text = read_file(file, std::uintmax_t{1} << 30);
+    if (!text) return tl::unexpected(text.error());
+    const int lines = options.cancel_after >= 0 ? options.cancel_after : std::numeric_limits<int>::max();
+    const Result<machine::Interlock> end = plan::replay_gcode(*text, *printer, lines);
+    if (!end) return input_error("{}: {}", file, end.error().message);
+    if (options.cancel_after >= 0) {
+        return fmt::format("to end safely after line {}:\n{}", lines, plan::cancel_program(*end, *printer));
+    }
+    return fmt::format("G-code of {} lines keeps the limits of {}", std::count(text->begin(), text->end(), '\n'),
+                       printer->name);
+}
+
+Result<std::string> check(const std::string& file, const Options& options, Progress& progress) {
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
     if (extension == ".zip") return check_job(file);
     if (extension == ".3mf") return check_3mf(file);
+    if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
     return mesh::describe_mesh_file(file);
 }
 
@@ -102,14 +126,17 @@ Result<std::string> check(const std::string& file, Progress& progress) {
 
 void add_check(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("check", "validate robot, printer, job and mesh files");
+    CLI::App* command = app.add_subcommand("check", "validate robot, printer, job, G-code and mesh files");
     command->add_option("files", options->files, "files to check")->required();
+    command->add_option("--printer", options->printer, "machine that G-code files are checked against");
+    command->add_option("--cancel-after", options->cancel_after,
+                        "line of a G-code program after which to end it: prints what would do so safely");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {
         const auto progress = terminal_progress(options->output);
         for (const std::string& file : options->files) {
-            const Result<std::string> text = check(file, *progress);
+            const Result<std::string> text = check(file, *options, *progress);
             if (!text)
                 status = report(text.error());
             else if (!options->output.quiet)

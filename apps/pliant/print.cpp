@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <map>
+#include <utility>
+
 #include "command.hpp"
 #include "core/files.hpp"
 #include "job_tools.hpp"
@@ -31,12 +34,22 @@ Result<int> print_on_twin(const Options& options) {
     if (!plan) return tl::unexpected(plan.error());
 
     TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
-    const auto images = [&](int layer, int material) { return image_of(job->archive, layer, material); };
+    // What has been shown is remembered: decoding is most of the work.
+    std::map<std::pair<int, int>, twin::Runs> shown;
+    const auto images = [&](int layer, int material) {
+        Result<job::Image> image = image_of(job->archive, layer, material);
+        if (image) shown[{layer, material}] = twin::runs_of(*image);
+        return image;
+    };
+    const twin::RunSource runs = [&](int layer, int material) -> Result<twin::Runs> {
+        if (const auto known = shown.find({layer, material}); known != shown.end()) return known->second;
+        return image_of(job->archive, layer, material).map(twin::runs_of);
+    };
     host::PrintRecord record;
     const host::LinkOptions link = link_options(job->printer.controller);
     if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
-    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, images);
+    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs);
     if (!report) return tl::unexpected(report.error());
 
     const std::string json = twin::report_json(*report);

@@ -162,7 +162,7 @@ TEST_CASE("the print survives a damaged, a lost and an unanswered line wherever 
         for (int n = 1; n < 220; n += 3) {
             CAPTURE(n);
             Print p;
-            p.run({n % 2 == 0, 2, {{kind, n}}});
+            p.run({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}});
             p.must_pass();
             resends += p.record.resends;
             if (kind == Fault::Kind::lose_line && n > 1) CHECK(p.record.resends > 0);
@@ -185,7 +185,7 @@ TEST_CASE("a storm of faults is survived too, also where a Resend is lost") {
 
 TEST_CASE("a restart in the middle ends the print, and the report says what is missing") {
     Print p;
-    p.run({false, 2, {{Fault::Kind::reset, 150}}});
+    p.run({.faults = {{Fault::Kind::reset, 150, 0}}});
     REQUIRE_FALSE(p.status);
     CHECK(p.status.error().cause == Cause::failed);
     CHECK(holds(p.status.error().message, "restarted"));
@@ -204,7 +204,7 @@ TEST_CASE("a command that the machine does not know ends the print") {
 
 TEST_CASE("a wrong order of vats shows as foreign resin") {
     Print p;
-    std::swap(p.plan.vat_of_material[0], p.plan.vat_of_material[1]);
+    for (std::vector<int>& images : p.plan.vat_of_image) std::swap(images[0], images[1]);
     p.gcode = plan::write_gcode(p.plan, p.job, p.printer);
     p.run();
     REQUIRE(p.status);
@@ -276,4 +276,186 @@ TEST_CASE("a job in resins that the printer does not hold prints once the vats a
     p.printer = plan::filled_printer(p.plan, p.job, p.printer);
     p.run();
     p.must_pass();
+}
+
+TEST_CASE("printed = drawn on every machine that is shipped") {
+    for (const char* name : {"tower", "tower8", "two_towers", "carousel", "rotary", "linear", "single"}) {
+        INFO(std::string(name));
+        Print p;
+        p.printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
+        p.printer.projector = small_tower().projector;
+        const std::size_t last = p.printer.vats.size() - 1;  // the farthest vat there is
+        p.job.materials[0].resin = p.printer.vats[0].resin;
+        p.job.materials[1].resin = p.printer.vats[last].resin;
+        p.plan = plan::make_plan(p.job, p.printer).value();
+        p.gcode = plan::write_gcode(p.plan, p.job, p.printer);
+        p.run();
+        p.must_pass();
+        CHECK(p.report.log.swaps == p.plan.swaps);
+        CHECK(p.report.log.clamped_moves == 0);
+    }
+}
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> all;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = text.find('\n', begin);
+        all.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return all;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + '\n';
+    return text;
+}
+
+/// Whether host, twin or oracle find fault with the program.
+bool noticed(const std::string& gcode) {
+    Print p;
+    p.gcode = gcode;
+    p.run();
+    return !p.status || !p.report.passed;
+}
+
+/// Lines that may go without harm to the part: comments, fences before something that waits itself, fans, the strokes
+/// of a spray, what only loosens or settles, and what the next line does as well.
+bool harmless_to_drop(const std::string& line) {
+    if (line[0] == ';') return line.rfind(";@expose", 0) != 0;
+    for (const char* start : {"M400", "M107", "M106 P0", "M84", "G4 "}) {
+        if (line.rfind(start, 0) == 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("mutation: drop any one line, and the oracle notices or the part is the same") {
+    const std::vector<std::string> lines = lines_of(Print().gcode);
+    int dropped = 0, seen = 0;
+    std::vector<std::string> unseen;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (harmless_to_drop(lines[i])) continue;
+        std::vector<std::string> fewer = lines;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+        ++dropped;
+        if (noticed(joined(fewer)))
+            ++seen;
+        else
+            unseen.push_back(fmt::format("{}: {}", i + 1, lines[i]));
+    }
+    // What is left are moves that the next absolute move makes too (strokes, lifts, shears, stops on the way down) and
+    // the spray after the last layer.
+    for (const std::string& line : unseen) {
+        INFO(line);
+        const bool stroke = line.find("G1 ") != std::string::npos;
+        const bool last_spray = line.find("M106 P1") != std::string::npos;
+        CHECK((stroke || last_spray || line.find("G90") != std::string::npos));
+    }
+    CHECK(dropped > 100);
+    CHECK(seen > 90);
+    MESSAGE(seen << " of " << dropped << " dropped lines noticed");
+}
+
+TEST_CASE("mutation: every exposure that is dropped, doubled, halved, swapped or moved in height is noticed") {
+    const std::vector<std::string> lines = lines_of(Print().gcode);
+    int mutated = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (lines[i].rfind(";@expose", 0) != 0) continue;
+        const auto with = [&](std::vector<std::string> instead) {
+            std::vector<std::string> other = lines;
+            other.erase(other.begin() + static_cast<std::ptrdiff_t>(i));
+            other.insert(other.begin() + static_cast<std::ptrdiff_t>(i), instead.begin(), instead.end());
+            INFO(lines[i]);
+            CHECK(noticed(joined(other)));
+            ++mutated;
+        };
+        with({});
+        with({lines[i], lines[i]});
+        with({"G1 Z60.000 F240", "M400", lines[i]});
+        std::string shorter = lines[i];
+        shorter.replace(shorter.find("seconds="), shorter.find(" image") - shorter.find("seconds="), "seconds=1.000");
+        with({shorter});
+        std::string other_material = lines[i];
+        char& material = other_material[other_material.find("material=") + 9];
+        material = material == '0' ? '1' : '0';
+        with({other_material});
+    }
+    CHECK(mutated == 50);
+}
+
+TEST_CASE("mutation: any one image that is shown with one pixel changed is noticed, and the layer is named") {
+    const Print p;
+    for (int layer = 0; layer < layers; ++layer) {
+        for (int material = 0; material < 2; ++material) {
+            app::TwinBench bench(p.printer);
+            Progress silent;
+            host::PrintRecord record;
+            const auto shown = [&](int l, int m) {
+                auto image = halves(l, m);
+                if (l == layer && m == material) image->pixels[9] ^= 0x40;
+                return image;
+            };
+            REQUIRE(host::print_job(p.gcode, shown, bench.devices(), silent, record));
+            const twin::Report report = twin::inspect(bench.twin(), p.job, twin::ImageSource(halves)).value();
+            CHECK_FALSE(report.passed);
+            CHECK(report.wrong_pixels >= 1);
+            CHECK(holds(report.first_deviation, fmt::format("layer {}", layer)));
+        }
+    }
+}
+
+TEST_CASE("what breaks behind the wire shows in the part, by layer and step") {
+    const auto broken = [](Fault fault) {
+        Print p;
+        p.run({.faults = {fault}});
+        CHECK_FALSE(p.report.passed);
+        const bool told = fault.kind == Fault::Kind::empty_vat || !p.report.log.mishaps.empty();
+        CHECK(told);
+        return p.report;
+    };
+    const twin::Report dark = broken({Fault::Kind::dark_projector, 4, 0});
+    CHECK(holds(dark.first_deviation, "layer 1, material \"soft\""));
+    CHECK(holds(dark.first_deviation, "exposure"));
+    const twin::Report stuck = broken({Fault::Kind::stuck_hook, 1, 0});
+    CHECK(holds(stuck.first_deviation, "another resin"));
+    CHECK(stuck.materials[1].foreign_mm3 > 0);
+    const twin::Report empty = broken({Fault::Kind::empty_vat, 2, 0});
+    CHECK(holds(empty.first_deviation, "layer 0, material \"rigid\""));
+    INFO(empty.first_deviation);
+    const twin::Report pump = broken({Fault::Kind::dead_pump, 1, 0});
+    CHECK(pump.log.short_cleanings == 5);
+    CHECK(pump.worst_residue == 1);
+    // Moves 1 to 4 load the first vat; the next ones lower the platform into it.
+    const twin::Report missed = broken({Fault::Kind::missed_steps, 6, 0.02});
+    INFO(missed.first_deviation << " " << missed.log.mishaps[0]);
+    CHECK(holds(missed.first_deviation, "platform"));
+}
+
+TEST_CASE("a stalled controller, a resend loop and lost bytes do not harm the part") {
+    for (const Fault fault : {Fault{Fault::Kind::stall, 60, 5}, Fault{Fault::Kind::resend_loop, 40, 4},
+                              Fault{Fault::Kind::lose_byte, 900, 0}, Fault{Fault::Kind::flip_byte, 1200, 0}}) {
+        Print p;
+        p.run({.faults = {fault}});
+        p.must_pass();
+    }
+}
+
+TEST_CASE("contamination: what spray leaves goes from vat to vat, and is mapped") {
+    Print p;
+    p.printer.cleaning.film_um = 100;
+    p.run();
+    p.must_pass();
+    CHECK(p.report.contamination.size() == 10);
+    CHECK(p.report.worst_residue == doctest::Approx(0.0525).epsilon(0.01));
+    CHECK(p.report.worst_foreign > 0);
+    CHECK(p.report.worst_foreign < 1e-6);
+    p.printer.cleaning.most_contamination = 1e-9;
+    p.run();
+    CHECK_FALSE(p.report.passed);
+    CHECK(holds(p.report.first_deviation, "foreign resin in the vat of slot"));
 }

@@ -27,6 +27,9 @@ constexpr Unit volume_units[] = {{"ml", 1e-6}, {"mm^3", 1e-9},         {"cm^3", 
                                  {"l", 1e-3},  {"in^3", 16.387064e-6}, {"m^3", 1}};
 constexpr Unit angle_units[] = {{"deg", std::numbers::pi / 180}, {"rad", 1}};
 constexpr Unit irradiance_units[] = {{"mW/cm^2", 10}, {"W/m^2", 1}};
+constexpr Unit angular_speed_units[] = {{"deg/s", std::numbers::pi / 180}, {"rad/s", 1}};
+constexpr Unit angular_acceleration_units[] = {{"deg/s^2", std::numbers::pi / 180}, {"rad/s^2", 1}};
+constexpr Unit dose_units[] = {{"mJ/cm^2", 10}, {"J/m^2", 1}};
 
 struct DimensionInfo {
     std::string_view text;
@@ -57,6 +60,12 @@ DimensionInfo info(Dimension dimension) {
             return {"an angle such as \"90 deg\"", angle_units};
         case Dimension::irradiance:
             return {"an irradiance such as \"5 mW/cm^2\"", irradiance_units};
+        case Dimension::angular_speed:
+            return {"an angular speed such as \"36 deg/s\"", angular_speed_units};
+        case Dimension::angular_acceleration:
+            return {"an angular acceleration such as \"90 deg/s^2\"", angular_acceleration_units};
+        case Dimension::dose:
+            return {"a dose of light such as \"8 mJ/cm^2\"", dose_units};
     }
     return {"", {}};
 }

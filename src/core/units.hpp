@@ -7,7 +7,22 @@
 
 namespace pliant {
 
-enum class Dimension { length, time, mass, force, pressure, density, speed, acceleration, volume, angle, irradiance };
+enum class Dimension {
+    length,
+    time,
+    mass,
+    force,
+    pressure,
+    density,
+    speed,
+    acceleration,
+    volume,
+    angle,
+    irradiance,
+    angular_speed,
+    angular_acceleration,
+    dose
+};
 
 /// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.
 [[nodiscard]] std::string_view describe(Dimension dimension);

@@ -82,11 +82,11 @@ Result<Command> parse_command(std::string_view line) {
         return input_error("\"{}\" is not a command such as G1 or M400", head);
     }
     command.letter = head[0];
-    const bool message = command.is('M', 118);
+    const bool message = command.is('M', 118) || command.is('M', 117);
     while (!trim(rest).empty()) {
         std::string_view ahead = rest;
         const std::string_view token = take_token(ahead);
-        if (message && !is_message_parameter(token)) {
+        if (message && (command.number == 117 || !is_message_parameter(token))) {
             command.text = trim(rest);
             break;
         }
@@ -115,7 +115,55 @@ std::string write_move(const Printer& printer, const Position& from, const Posit
 }
 
 std::string write_home(const Printer& printer, Axis axis) {
-    return fmt::format("G28 {}", printer.axis(axis).letter);
+    const AxisSpec& spec = printer.axis(axis);
+    if (spec.homes_by_hand) return fmt::format("G92 {}{:.3f}", spec.letter, spec.home_um() / 1000.0);
+    return fmt::format("G28 {}", spec.letter);
+}
+
+std::vector<std::string> preamble(const Printer& printer) {
+    std::vector<std::string> lines = {"G90"};
+    const bool extruder =
+        std::any_of(printer.axes.begin(), printer.axes.end(), [](auto& a) { return a.letter == 'E'; });
+    // The extruder keeps a mode of its own and refuses to move cold.
+    if (extruder) lines.insert(lines.end(), {"M82", "M302 P1"});
+    lines.emplace_back("M84 S0");
+    return lines;
+}
+
+std::vector<Axis> homing_order(const Printer& printer) {
+    std::vector<Axis> order;
+    for (const Axis axis : {Axis::platform, Axis::carriage, Axis::tower, Axis::table}) {
+        if (printer.axis(axis).present()) order.push_back(axis);
+    }
+    return order;
+}
+
+namespace {
+
+/// Fan outputs by M106 and M107, any pin by M42.
+struct Pin {
+    bool fan = false;
+    int number = 0;
+    bool on = false;
+    static std::optional<Pin> of(const Command& command) {
+        const int number = static_cast<int>(command.value('P').value_or(0));
+        const double value = command.value('S').value_or(255);
+        if (command.is('M', 106)) return Pin{true, number, value > 0};
+        if (command.is('M', 107)) return Pin{true, number, false};
+        if (command.is('M', 42)) return Pin{false, number, value > 0};
+        return std::nullopt;
+    }
+};
+
+}  // namespace
+
+std::optional<bool> switched(const Switch& device, const Command& command) {
+    const auto pin = Pin::of(command);
+    if (!pin || device.on.empty()) return std::nullopt;
+    const auto parsed = parse_command(device.on);
+    const auto own = parsed ? Pin::of(*parsed) : std::nullopt;
+    if (!own || own->fan != pin->fan || own->number != pin->number) return std::nullopt;
+    return pin->on == own->on;
 }
 
 std::string write_dwell(double seconds) {

@@ -29,7 +29,7 @@ struct Command {
     char letter = '?';  ///< 'G' or 'M'
     int number = 0;
     std::vector<Word> words;
-    std::string text;  ///< M118 only: the message behind its parameters
+    std::string text;  ///< M117 and M118 only: the message behind its parameters
 
     [[nodiscard]] bool is(char l, int n) const { return letter == l && number == n; }
     [[nodiscard]] bool has(char l) const;
@@ -46,7 +46,17 @@ struct Command {
 /// `G1` to `to`, naming only the axes that differ from `from`; "" if none does. `feed_mm_s` is along the path.
 [[nodiscard]] std::string write_move(const Printer& printer, const Position& from, const Position& to,
                                      double feed_mm_s);
+/// `G28`; `G92` for an axis that a person has stood at its home.
 [[nodiscard]] std::string write_home(const Printer& printer, Axis axis);
+/// What the dialect needs before anything else: absolute coordinates, and motors that never let go by themselves (idle
+/// ones would let platform and tower sink).
+[[nodiscard]] std::vector<std::string> preamble(const Printer& printer);
+/// The order in which the axes may be homed: nothing moves under a platform that is not up, no tower beside a carriage
+/// that may stand in it.
+[[nodiscard]] std::vector<Axis> homing_order(const Printer& printer);
+/// Whether `command` switches the device of that pin, and to what. Any way of saying so counts: M107 P1 and M106 P1 S0
+/// are the same.
+[[nodiscard]] std::optional<bool> switched(const Switch& device, const Command& command);
 [[nodiscard]] std::string write_dwell(double seconds);
 
 /// The target of a G0 or G1, axes that it does not name as in `from`. Fails for letters that are no axis.

@@ -12,7 +12,7 @@ double mm(int um) {
 }  // namespace
 
 Interlock::Interlock(const Printer& printer, const Position& start)
-    : printer_(&printer), position_(start), slots_(static_cast<std::size_t>(printer.tower.slots)) {
+    : printer_(&printer), position_(start), slots_(static_cast<std::size_t>(printer.slot_count())) {
     for (std::size_t i = 0; i < printer.vats.size(); ++i) {
         slots_[static_cast<std::size_t>(printer.vats[i].slot - 1)] = static_cast<int>(i);
     }
@@ -23,33 +23,69 @@ bool Interlock::in_print_window(int carriage_um) const {
     return carriage_um >= c.print_um && carriage_um <= c.print_um + c.shear_um;
 }
 
-/// The slot whose level is at most one hook stroke above `tower_um`.
-std::optional<int> Interlock::slot_in_hook_stroke(int tower_um) const {
-    for (int slot = 1; slot <= printer_->tower.slots; ++slot) {
-        const int below = printer_->level_um(slot) - tower_um;
-        if (below >= 0 && below <= printer_->hooks.travel_um) return slot;
+/// The slot of the tower before the carriage whose level is at most one hook stroke above the tower.
+std::optional<int> Interlock::slot_in_hook_stroke(const Position& at) const {
+    const int slots = printer_->tower.slots;
+    for (int first = 1; first <= printer_->slot_count(); first += slots) {
+        if (!printer_->table_at(at[Axis::table], printer_->station_um(first))) continue;
+        for (int slot = first; slot < first + slots; ++slot) {
+            const int below = printer_->level_um(slot) - at[Axis::tower];
+            if (below >= 0 && below <= printer_->hooks.travel_um) return slot;
+        }
     }
     return std::nullopt;
 }
 
-std::optional<int> Interlock::level_slot(int tower_um) const {
-    const auto slot = slot_in_hook_stroke(tower_um);
-    return slot && printer_->level_um(*slot) == tower_um ? slot : std::nullopt;
+std::optional<int> Interlock::level_slot(const Position& at) const {
+    const auto slot = slot_in_hook_stroke(at);
+    return slot && printer_->level_um(*slot) == at[Axis::tower] ? slot : std::nullopt;
 }
 
-bool Interlock::hooks_clear(int tower_um) const {
-    const auto slot = slot_in_hook_stroke(tower_um);
-    return slot && printer_->level_um(*slot) - printer_->hooks.travel_um == tower_um;
+bool Interlock::hooks_clear(const Position& at) const {
+    const auto slot = slot_in_hook_stroke(at);
+    return slot && printer_->level_um(*slot) - printer_->hooks.travel_um == at[Axis::tower];
+}
+
+std::optional<int> Interlock::vat_at_station(int table_um) const {
+    for (int slot = 1; slot <= printer_->slot_count(); ++slot) {
+        if (printer_->table_at(table_um, printer_->station_um(slot))) return vat_in_slot(slot);
+    }
+    return std::nullopt;
+}
+
+std::optional<int> Interlock::hooked_vat() const {
+    if (printer_->store() == Store::tower) return hooked_vat_;
+    return vat_at_station(position_[Axis::table]);
+}
+
+bool Interlock::vat_under_platform() const {
+    if (!hooked_vat()) return false;
+    return printer_->store() != Store::tower || position_[Axis::carriage] == printer_->carriage.print_um;
+}
+
+bool Interlock::over_drain(const Position& at) const {
+    switch (printer_->store()) {
+        case Store::tower:
+            return at[Axis::carriage] >= printer_->drain_begin_um() &&
+                   at[Axis::carriage] <= printer_->carriage.tower_um;
+        case Store::table:
+            return printer_->table_at(at[Axis::table], printer_->table.cleaning_um);
+        case Store::none:
+            break;
+    }
+    return false;
 }
 
 Status Interlock::home(Axis axis) {
     if (light_) return failure("homing while the light is on");
+    if (pump_) return failure("homing while the pump runs");
     const bool platform_up = homed(Axis::platform) && position_[Axis::platform] >= printer_->clear_um(part_height_um_);
     if (axis != Axis::platform && !platform_up) {
         return failure("homing the {} before the platform is homed and clear of the vat", axis_name(axis));
     }
-    if (axis == Axis::tower && (!homed(Axis::carriage) || hooked_vat_)) {
-        return failure("homing the tower before the carriage stands back without a vat");
+    const bool stores = axis == Axis::tower || (axis == Axis::table && printer_->store() == Store::tower);
+    if (stores && (!homed(Axis::carriage) || !tower_free(position_))) {
+        return failure("homing the {} before the carriage stands back without a vat", axis_name(axis));
     }
     if (axis == Axis::carriage && hooked_vat_ && !in_print_window(position_[Axis::carriage])) {
         return failure("homing the carriage with a vat in the tower");
@@ -65,26 +101,22 @@ Status Interlock::check_travel(const Position& to) const {
         const AxisSpec& spec = printer_->axis(axis);
         if (!homed(axis)) return failure("the {} moves before it is homed", axis_name(axis));
         if (to[axis] < spec.min_um || to[axis] > spec.max_um) {
-            return failure("the {} would go to {:.3f} mm, outside its travel of {:.3f} to {:.3f} mm", axis_name(axis),
-                           mm(to[axis]), mm(spec.min_um), mm(spec.max_um));
+            return failure("the {} would go to {:.3f} {}, outside its travel of {:.3f} to {:.3f}", axis_name(axis),
+                           mm(to[axis]), spec.rotary ? "deg" : "mm", mm(spec.min_um), mm(spec.max_um));
         }
     }
     return {};
 }
 
-/// Platform and part hang in the vat below the clear height: then the carriage may only shear.
+/// Whether the platform, clear or not homed, and everything beside it may move past each other.
 Status Interlock::check_platform(const Position& to) const {
-    const int lowest = std::min(to[Axis::platform], position_[Axis::platform]);
+    const bool beside = to[Axis::carriage] != position_[Axis::carriage] || to[Axis::table] != position_[Axis::table];
     if (!homed(Axis::platform)) {
-        return to[Axis::carriage] == position_[Axis::carriage]
-                   ? Status{}
-                   : failure("the carriage moves before the platform is homed");
+        return beside ? Status(failure("the carriage moves before the platform is homed")) : Status{};
     }
+    const int lowest = std::min(to[Axis::platform], position_[Axis::platform]);
     if (lowest >= printer_->clear_um(part_height_um_)) return {};
-    if (!in_print_window(to[Axis::carriage]) || !in_print_window(position_[Axis::carriage])) {
-        return failure("the platform is down at {:.3f} mm (clear from {:.3f} mm) while the carriage is not at print",
-                       mm(lowest), mm(printer_->clear_um(part_height_um_)));
-    }
+    if (Status status = check_carriage_in_vat(to); !status) return status;
     if (to[Axis::platform] < part_height_um_) {
         return failure("the platform at {:.3f} mm would press a part of {:.3f} mm on the vat's floor",
                        mm(to[Axis::platform]), mm(part_height_um_));
@@ -92,18 +124,45 @@ Status Interlock::check_platform(const Position& to) const {
     return {};
 }
 
-Status Interlock::check_tower(const Position& to) const {
-    const int from_um = position_[Axis::tower];
-    const int to_um = to[Axis::tower];
-    if (from_um == to_um) return {};
+/// Platform and part hang in the vat below the clear height: then the carriage may only shear, the table not move.
+Status Interlock::check_carriage_in_vat(const Position& to) const {
+    const double lowest = mm(std::min(to[Axis::platform], position_[Axis::platform]));
+    const double clear = mm(printer_->clear_um(part_height_um_));
+    if (printer_->store() == Store::tower) {
+        if (in_print_window(to[Axis::carriage]) && in_print_window(position_[Axis::carriage])) return {};
+        return failure("the platform is down at {:.3f} mm (clear from {:.3f} mm) while the carriage is not at print",
+                       lowest, clear);
+    }
+    if (to[Axis::table] != position_[Axis::table]) {
+        return failure("the platform is down at {:.3f} mm (clear from {:.3f} mm) while the table moves", lowest, clear);
+    }
+    if (vat_under_platform() || over_drain(position_)) return {};
+    return failure("the platform would go down to {:.3f} mm (clear from {:.3f} mm) with the table between two stations",
+                   lowest, clear);
+}
+
+/// No vat is hooked and the carriage stands back, now and at the end of the move.
+bool Interlock::tower_free(const Position& to) const {
     const int nearest = std::max(to[Axis::carriage], position_[Axis::carriage]);
-    if (!hooked_vat_ && nearest <= printer_->carriage.tower_um - printer_->carriage.back_off_um) return {};
-    const bool at_tower =
-        to[Axis::carriage] == printer_->carriage.tower_um && position_[Axis::carriage] == printer_->carriage.tower_um;
-    const auto slot = slot_in_hook_stroke(from_um);
-    if (at_tower && slot && slot == slot_in_hook_stroke(to_um)) return {};
+    return !hooked_vat_ && nearest <= printer_->carriage.tower_um - printer_->carriage.back_off_um;
+}
+
+Status Interlock::check_tower(const Position& to) const {
+    if (position_[Axis::tower] == to[Axis::tower]) return {};
+    if (tower_free(to)) return {};
+    const bool at_tower = to[Axis::carriage] == printer_->carriage.tower_um &&
+                          position_[Axis::carriage] == printer_->carriage.tower_um &&
+                          to[Axis::table] == position_[Axis::table];
+    const auto slot = slot_in_hook_stroke(position_);
+    if (at_tower && slot && slot == slot_in_hook_stroke(to)) return {};
     return failure("the tower moves while {}",
                    hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands at it");
+}
+
+Status Interlock::check_table(const Position& to) const {
+    if (position_[Axis::table] == to[Axis::table] || printer_->store() != Store::tower || tower_free(to)) return {};
+    return failure("the table moves while {}",
+                   hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands at a tower");
 }
 
 Status Interlock::check_carriage(const Position& to) const {
@@ -114,25 +173,35 @@ Status Interlock::check_carriage(const Position& to) const {
     if (!touches_tower) return {};
     if (!homed(Axis::tower)) return failure("the carriage goes to the tower before that is homed");
     if (!hooked_vat_) {
-        return hooks_clear(position_[Axis::tower]) ? Status{}
-                                                   : failure("the carriage meets the tower with the hooks not clear");
+        return hooks_clear(position_) ? Status{} : failure("the carriage meets the tower with the hooks not clear");
     }
-    const auto slot = level_slot(position_[Axis::tower]);
+    const auto slot = level_slot(position_);
     if (!slot) return failure("the carriage moves a vat while no slot is level with it");
     if (vat_in_slot(*slot)) return failure("slot {} is taken already", *slot);
     return {};
 }
 
+Status Interlock::check_pump(const Position& to) const {
+    if (!pump_ || over_drain(to)) return {};
+    return failure("a move away from the drain while the pump runs");
+}
+
+Status Interlock::pump(bool on) {
+    if (on && !over_drain(position_)) return failure("the pump starts while the part is not over the drain");
+    pump_ = on;
+    return {};
+}
+
 /// At the tower, a level slot gives its vat to the hooks; a lowered one keeps it.
 void Interlock::take_or_leave_vat() {
-    if (position_[Axis::carriage] != printer_->carriage.tower_um) return;
-    const auto slot = slot_in_hook_stroke(position_[Axis::tower]);
+    if (printer_->store() != Store::tower || position_[Axis::carriage] != printer_->carriage.tower_um) return;
+    const auto slot = slot_in_hook_stroke(position_);
     if (!slot) return;
     auto& place = slots_[static_cast<std::size_t>(*slot - 1)];
-    if (!hooked_vat_ && level_slot(position_[Axis::tower])) {
+    if (!hooked_vat_ && level_slot(position_)) {
         hooked_vat_ = place;
         place.reset();
-    } else if (hooked_vat_ && hooks_clear(position_[Axis::tower])) {
+    } else if (hooked_vat_ && hooks_clear(position_)) {
         place = hooked_vat_;
         hooked_vat_.reset();
     }
@@ -140,8 +209,8 @@ void Interlock::take_or_leave_vat() {
 
 Status Interlock::move(const Position& to) {
     if (light_) return failure("a move while the light is on");
-    for (const auto check :
-         {&Interlock::check_travel, &Interlock::check_platform, &Interlock::check_tower, &Interlock::check_carriage}) {
+    for (const auto check : {&Interlock::check_travel, &Interlock::check_platform, &Interlock::check_tower,
+                             &Interlock::check_table, &Interlock::check_carriage, &Interlock::check_pump}) {
         if (Status status = (this->*check)(to); !status) return status;
     }
     position_ = to;
@@ -151,10 +220,10 @@ Status Interlock::move(const Position& to) {
 
 Status Interlock::light_on(bool moving) {
     if (moving) return failure("light while the machine moves");
-    if (!homed(Axis::platform) || !homed(Axis::carriage)) return failure("light before the machine is homed");
-    if (!hooked_vat_ || position_[Axis::carriage] != printer_->carriage.print_um) {
-        return failure("light with no vat under the platform");
+    for (const Axis axis : {Axis::platform, Axis::carriage, Axis::table}) {
+        if (printer_->axis(axis).present() && !homed(axis)) return failure("light before the machine is homed");
     }
+    if (!vat_under_platform()) return failure("light with no vat under the platform");
     light_ = true;
     part_height_um_ = std::max(part_height_um_, position_[Axis::platform]);
     return {};
@@ -163,6 +232,7 @@ Status Interlock::light_on(bool moving) {
 void Interlock::stopped_at(const Position& position) {
     position_ = position;
     homed_.fill(false);
+    pump_ = false;
 }
 
 }  // namespace pliant::machine

@@ -7,7 +7,10 @@
 //   - move the tower while a vat is hooked or half in (but for the stroke of the hooks, carriage at the tower)
 //   - enter or leave the tower unless a slot stands level (with a vat) or the hooks are clear (without)
 //   - push a vat into a slot that is taken
+//   - turn or shift the table unless the platform is clear of everything on it, and no vat is hooked or half in a tower
+//   - lower the platform with the table between two stations
 //   - light with no vat under the platform, while something moves, or move while the light is on
+//   - run the pump anywhere but over the drain of the cleaning vat, or move away from there while it runs
 #pragma once
 
 #include <array>
@@ -29,6 +32,7 @@ public:
     [[nodiscard]] Status home(Axis axis);
     [[nodiscard]] Status move(const Position& to);
     [[nodiscard]] Status light_on(bool moving);
+    [[nodiscard]] Status pump(bool on);
     void light_off() { light_ = false; }
 
     /// The motors were stopped on the way: the axes are here, and must be homed again.
@@ -36,8 +40,12 @@ public:
 
     [[nodiscard]] const Position& position() const { return position_; }
     [[nodiscard]] bool homed(Axis axis) const { return homed_[static_cast<std::size_t>(axis)]; }
-    /// Index into Printer::vats of the vat on the hooks.
-    [[nodiscard]] std::optional<int> hooked_vat() const { return hooked_vat_; }
+    /// Index into Printer::vats of the vat on the hooks; without a tower, of the vat that stands under the platform.
+    [[nodiscard]] std::optional<int> hooked_vat() const;
+    /// Whether what the vat in use would be lit through, or the drain for what is sprayed, is under the platform.
+    [[nodiscard]] bool vat_under_platform() const;
+    [[nodiscard]] bool over_drain(const Position& at) const;
+    [[nodiscard]] bool pump_runs() const { return pump_; }
     /// Vat that has been pushed into a slot and let go, by index; nullopt for an empty slot (from 1).
     [[nodiscard]] std::optional<int> vat_in_slot(int slot) const { return slots_[static_cast<std::size_t>(slot - 1)]; }
     [[nodiscard]] int part_height_um() const { return part_height_um_; }
@@ -48,9 +56,14 @@ private:
     [[nodiscard]] Status check_tower(const Position& to) const;
     [[nodiscard]] Status check_carriage(const Position& to) const;
     [[nodiscard]] bool in_print_window(int carriage_um) const;
-    [[nodiscard]] std::optional<int> slot_in_hook_stroke(int tower_um) const;
-    [[nodiscard]] std::optional<int> level_slot(int tower_um) const;
-    [[nodiscard]] bool hooks_clear(int tower_um) const;
+    [[nodiscard]] Status check_carriage_in_vat(const Position& to) const;
+    [[nodiscard]] Status check_table(const Position& to) const;
+    [[nodiscard]] Status check_pump(const Position& to) const;
+    [[nodiscard]] bool tower_free(const Position& to) const;
+    [[nodiscard]] std::optional<int> vat_at_station(int table_um) const;
+    [[nodiscard]] std::optional<int> slot_in_hook_stroke(const Position& at) const;
+    [[nodiscard]] std::optional<int> level_slot(const Position& at) const;
+    [[nodiscard]] bool hooks_clear(const Position& at) const;
     void take_or_leave_vat();
 
     const Printer* printer_;
@@ -60,6 +73,7 @@ private:
     std::optional<int> hooked_vat_;
     int part_height_um_ = 0;
     bool light_ = false;
+    bool pump_ = false;
 };
 
 }  // namespace pliant::machine

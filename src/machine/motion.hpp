@@ -1,4 +1,5 @@
-// How long a move takes: trapezoidal speed profiles, every move from rest to rest.
+// How long a move takes: trapezoidal speed profiles, every move from rest to rest; with jerk,
+// from the speed that the axes may take and lose at once.
 //
 // The axes of a move start and end together, on a straight line. Speed and acceleration along that line are the highest
 // that keep every axis within its own limits; the feed rate bounds the speed further. Between moves the machine is
@@ -14,6 +15,7 @@ struct Profile {
     double length_mm = 0;
     double speed_mm_s = 0;  ///< reached only if the line is long enough
     double acceleration_mm_s2 = 0;
+    double jerk_mm_s = 0;  ///< speed at which it starts and ends
 
     [[nodiscard]] double seconds() const;
     /// Share of the way done after `t_s` seconds, 0 to 1.

@@ -1,10 +1,15 @@
 // The printer file: everything that Pliant knows about a machine, as one plain value. docs/reference/printer.md
-// describes the file; examples/printers/tower.toml is the prototype of the thesis (chapter 4, appendix B).
+// describes the file; examples/printers holds the machines of the thesis (chapter 4, appendix B) and its peers.
 //
-// The machine has three axes. The carriage carries the cleaning vat and drags the resin vat that is hooked to it: at
-// `print_um` that vat lies under the platform, at `tower_um` it is inside the tower and the cleaning vat under the
-// platform. The platform goes up and down over the vat. The tower lifts and lowers all its slots; slot n is level with
-// the carriage at `level_um(n)`. Positions are integer micrometres, times seconds.
+// A platform goes up and down over a vat. Where the other vats are is the store, of one of three kinds:
+//   tower  A carriage carries the cleaning vat and drags the resin vat that is hooked to it: at `print_um` that vat
+//   lies
+//          under the platform, at `tower_um` it is inside the tower and the cleaning vat under the platform. The tower
+//          lifts and lowers all its slots; slot n is level with the carriage at `level_um(n)`. Several towers stand on
+//          a table that brings one of them before the carriage, along a line or (a carousel) in a circle.
+//   table  The vats and a cleaning station stand on a table, one of them under the platform: a turntable or a conveyor.
+//   none   One vat, fixed under the platform.
+// Positions are integer micrometres, those of a rotary axis thousandths of a degree; times seconds.
 #pragma once
 
 #include <array>
@@ -18,14 +23,14 @@
 
 namespace pliant::machine {
 
-enum class Axis { carriage, platform, tower };
-inline constexpr std::size_t axis_count = 3;
-inline constexpr std::array<Axis, axis_count> all_axes = {Axis::carriage, Axis::platform, Axis::tower};
+enum class Axis { carriage, platform, tower, table };
+inline constexpr std::size_t axis_count = 4;
+inline constexpr std::array<Axis, axis_count> all_axes = {Axis::carriage, Axis::platform, Axis::tower, Axis::table};
 
-/// "carriage", "platform", "tower": the table names of the printer file.
+/// "carriage", "platform", "tower", "table": the table names of the printer file.
 [[nodiscard]] std::string_view axis_name(Axis axis);
 
-/// Where every axis is, in micrometres.
+/// Where every axis is, in micrometres (rotary: 1/1000 degree).
 struct Position {
     std::array<int, axis_count> um{};
 
@@ -35,17 +40,26 @@ struct Position {
 };
 
 struct AxisSpec {
-    char letter = '?';  ///< in G-code
+    char letter = '?';  ///< in G-code; '?': the machine has no such axis
     int min_um = 0, max_um = 0;
     double speed_mm_s = 0, acceleration_mm_s2 = 0;
     bool homes_to_max = false;  ///< where its limit switch is
     double homing_speed_mm_s = 0;
+    double jerk_mm_s = 0;        ///< speed from which it may stop at once, and to which it may start
+    bool rotary = false;         ///< degrees for mm everywhere; positions repeat every full turn
+    bool homes_by_hand = false;  ///< no limit switch (E of a classic build): stood there by a person, set with G92
 
+    [[nodiscard]] bool present() const { return letter != '?'; }
     [[nodiscard]] int home_um() const { return homes_to_max ? max_um : min_um; }
 };
 
+enum class Dialect {
+    marlin,   ///< 2.1 and later: extra axes A B C U V W
+    classic,  ///< 1.x on RAMPS: four axes, so the tower is Y or E
+};
+
 struct Controller {
-    std::string dialect = "marlin";
+    Dialect dialect = Dialect::marlin;
     int baud_rate = 115200;
     int window_lines = 4;    ///< lines that may wait for their `ok`: at most the firmware's BUFSIZE
     int window_bytes = 120;  ///< and their bytes: less than its receive buffer
@@ -62,7 +76,7 @@ struct Carriage {
 struct Platform {
     int width_um = 0, depth_um = 0;
     int build_height_um = 0;  ///< tallest part
-    int clearance_um = 0;     ///< between the part's lowest point and the vat's rim while the carriage moves
+    int clearance_um = 0;     ///< between the part's lowest point and the vat's rim while the vats move
     int lift_um = 0;          ///< lift that peels a layer and lets resin flow back
     double lift_speed_mm_s = 0;
     int approach_um = 0;  ///< the last stretch down into the resin
@@ -71,10 +85,16 @@ struct Platform {
 };
 
 struct Tower {
-    int slots = 0;
+    int slots = 0;          ///< of one tower; 0: the machine has none
     int first_slot_um = 0;  ///< tower position at which slot 1 is level with the carriage
     int pitch_um = 0;       ///< from slot to slot
     int clearance_um = 0;   ///< free height between two vats
+};
+
+struct Table {
+    std::vector<int> stations_um;  ///< where each vat, or each tower, is in place; empty: no table
+    int cleaning_um = 0;           ///< of the cleaning station; tables without towers only
+    int bath_gap_um = 0;           ///< between the part and the floor of the cleaning station
 };
 
 struct Hooks {
@@ -86,6 +106,7 @@ struct VatShape {
     int wall_um = 0;            ///< height of the walls above the floor
     double volume_ml = 0;       ///< inside
     double free_volume_ml = 0;  ///< what the vat takes with the platform in it
+    double least_ml = 0;        ///< what must stay in it to cover the floor
 };
 
 struct Vat {
@@ -101,6 +122,8 @@ struct Resin {
     int bottom_layers = 0;
     int cure_depth_um = 0;      ///< thickest layer that still holds on to the one before
     double critical_share = 0;  ///< share of `exposure_s` below which a pixel stays liquid
+    double penetration_um = 0;  ///< Dp of the working curve (Jacobs); 0: from cure_depth and critical_share
+    double critical_J_m2 = 0;   ///< Ec of the working curve
 };
 
 struct Projector {
@@ -115,18 +138,43 @@ struct Projector {
     double delay_s = 0;  ///< from the command to the changed image
 };
 
+enum class CleaningMethod { spray, ultrasound, bath };
+
+/// "spray", "ultrasound", "bath".
+[[nodiscard]] std::string_view method_name(CleaningMethod method);
+
+/// What changes when a vat of resin `from` is followed by one of resin `to`.
+struct CleaningPair {
+    std::string from, to;
+    double spray_s = 0;    ///< instead of Cleaning::spray_s
+    double penalty_s = 0;  ///< what avoiding this pair is worth to the planner
+};
+
 struct Cleaning {
-    double spray_s = 0;
+    CleaningMethod method = CleaningMethod::spray;
+    double spray_s = 0;                    ///< duration, whatever the method
     int stroke_x_um = 0, stroke_z_um = 0;  ///< oscillation of the carriage and of the platform
-    double speed_mm_s = 0;                 ///< of the carriage while it oscillates
+    double speed_mm_s = 0;                 ///< of the carriage (with a table: of the platform) while it oscillates
     double dry_s = 0;                      ///< fans after the new vat is in; 0: only while it is pulled in
     bool brush = false;                    ///< wipes the part while the vat is pushed away
+    int film_um = 0;                       ///< thickness of the resin that clings to the part's cross-section
+    double solvent_ml_s = 0;               ///< solution that a second of cleaning takes
+    double most_contamination = 0;         ///< share of foreign resin in a vat above which a print does not pass
+    std::vector<CleaningPair> pairs;
 };
 
 /// The commands of something that hangs on an auxiliary pin; "" if the machine has none.
 struct Switch {
     std::string on, off;
 };
+
+/// What no program may ask for, whatever the job says.
+struct Limits {
+    double exposure_s = 3600;  ///< longest light
+    double cleaning_s = 3600;  ///< longest time that the pump runs at a stretch
+};
+
+enum class Store { none, table, tower };
 
 /// A validated machine. Indices into `vats` are what the planner calls a vat.
 struct Printer {
@@ -138,22 +186,45 @@ struct Printer {
     Platform platform;
     Tower tower;
     Hooks hooks;
+    Table table;
     VatShape vat_shape;
     std::vector<Vat> vats;
     std::vector<Resin> resins;
     Projector projector;
     Cleaning cleaning;
     Switch pump, fans;
+    Limits limits;
 
     [[nodiscard]] const AxisSpec& axis(Axis a) const { return axes[static_cast<std::size_t>(a)]; }
+    [[nodiscard]] Store store() const {
+        if (tower.slots > 0) return Store::tower;
+        return table.stations_um.empty() ? Store::none : Store::table;
+    }
+    /// Places for vats: slots of all towers, or stations, or one.
+    [[nodiscard]] int slot_count() const;
     /// Tower position at which `slot` (from 1) is level with the carriage.
-    [[nodiscard]] int level_um(int slot) const { return tower.first_slot_um + (slot - 1) * tower.pitch_um; }
+    [[nodiscard]] int level_um(int slot) const {
+        return tower.first_slot_um + (slot - 1) % tower.slots * tower.pitch_um;
+    }
+    /// Table position at which `slot` (its vat, or its tower) is in place; of a rotary table that within one turn.
+    [[nodiscard]] int station_um(int slot) const;
+    /// The table position equal to `target_um` (a full turn more or less on a rotary table) that is nearest to
+    /// `from_um`, within the axis' travel.
+    [[nodiscard]] int nearest_um(int target_um, int from_um) const;
+    /// Whether the table stands at `target_um`, or a full turn from it.
+    [[nodiscard]] bool table_at(int table_um, int target_um) const;
     /// Lowest platform position at which a part of `part_height_um` hangs free of the vat.
     [[nodiscard]] int clear_um(int part_height_um) const {
         return part_height_um + vat_shape.wall_um + platform.clearance_um;
     }
+    /// Where the carriage must be for the part to hang over the cleaning vat's drain, from `drain_begin_um` to
+    /// `tower_um`.
+    [[nodiscard]] int drain_begin_um() const { return carriage.tower_um - carriage.back_off_um - cleaning.stroke_x_um; }
     [[nodiscard]] const Resin* find_resin(std::string_view resin) const;  ///< nullptr if unknown
     [[nodiscard]] const Vat* vat_of_slot(int slot) const;                 ///< nullptr if none is fitted
+    /// How long the part is cleaned between two vats (indices), and what avoiding the pair is worth.
+    [[nodiscard]] double cleaning_s(int from_vat, int to_vat) const;
+    [[nodiscard]] double penalty_s(int from_vat, int to_vat) const;
 };
 
 /// Reads and validates a printer file: units, ranges, and that every station lies within the travel of its axis.

@@ -1,7 +1,9 @@
 // From TOML to a Printer: one function per table, then the checks that join tables.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/config.hpp"
 #include "machine/gcode.hpp"
@@ -52,32 +54,66 @@ double speed(Reader& r, std::string_view key) {
     return positive(r, key, Dimension::speed, 1e3);
 }
 
-AxisSpec read_axis(Reader r) {
-    AxisSpec axis;
+constexpr double degrees = 180 / std::numbers::pi;
+
+/// A position of the table: a length, or an angle as thousandths of a degree.
+int place_um(Reader& r, std::string_view key, double value, bool rotary) {
+    return checked_um(r, key, rotary ? value * degrees * 1e-3 : value);
+}
+
+Dimension place_dimension(bool rotary) {
+    return rotary ? Dimension::angle : Dimension::length;
+}
+
+char read_letter(Reader& r, Dialect dialect) {
+    const std::string_view known = dialect == Dialect::marlin ? "XYZABCUVW" : "XYZE";
     const std::string letter = r.text("letter");
-    if (r.has("letter") &&
-        !(letter.size() == 1 && std::string_view("XYZABCUVWE").find(letter[0]) != std::string::npos)) {
-        r.problem("letter", "must be one of X Y Z A B C U V W E");
-    } else if (!letter.empty()) {
-        axis.letter = letter[0];
+    if (letter.size() == 1 && known.find(letter[0]) != std::string::npos) return letter[0];
+    if (r.has("letter") && dialect == Dialect::marlin) {
+        r.problem("letter", "must be one of X Y Z A B C U V W (E only with dialect = \"marlin-classic\")");
+    } else if (r.has("letter")) {
+        r.problem("letter", "must be one of X Y Z E, which is all that a classic build has");
     }
-    const auto travel = r.quantities("travel", Dimension::length, 2);
+    return '?';
+}
+
+/// How fast, how hard, and where it homes.
+void read_motion(Reader& r, AxisSpec& axis) {
+    const Dimension speeds = axis.rotary ? Dimension::angular_speed : Dimension::speed;
+    const double factor = axis.rotary ? degrees : 1e3;
+    axis.speed_mm_s = positive(r, "speed", speeds, factor);
+    axis.acceleration_mm_s2 =
+        positive(r, "acceleration", axis.rotary ? Dimension::angular_acceleration : Dimension::acceleration, factor);
+    axis.jerk_mm_s = not_negative(r, "jerk", speeds, factor);
+    const std::string home = r.choice("home", {"min", "max", "hand"});
+    axis.homes_to_max = home == "max";
+    axis.homes_by_hand = home == "hand";
+    if (axis.letter == 'E' && r.has("home") && !axis.homes_by_hand) {
+        r.problem("home", "must be \"hand\" for the letter E: a classic build cannot home its extruder");
+    }
+    if (!axis.homes_by_hand || r.has("homing_speed"))
+        axis.homing_speed_mm_s = positive(r, "homing_speed", speeds, factor);
+}
+
+AxisSpec read_axis(Reader r, Dialect dialect, bool may_rotate) {
+    AxisSpec axis;
+    axis.letter = read_letter(r, dialect);
+    axis.rotary = may_rotate && r.boolean("rotary", false);
+    const auto travel = r.quantities("travel", place_dimension(axis.rotary), 2);
     if (travel.size() == 2) {
-        axis.min_um = checked_um(r, "travel", travel[0]);
-        axis.max_um = checked_um(r, "travel", travel[1]);
+        axis.min_um = place_um(r, "travel", travel[0], axis.rotary);
+        axis.max_um = place_um(r, "travel", travel[1], axis.rotary);
         if (axis.min_um >= axis.max_um) r.problem("travel", "must be [lowest, highest]");
     }
-    axis.speed_mm_s = speed(r, "speed");
-    axis.acceleration_mm_s2 = positive(r, "acceleration", Dimension::acceleration, 1e3);
-    axis.homes_to_max = r.choice("home", {"min", "max"}) == "max";
-    axis.homing_speed_mm_s = speed(r, "homing_speed");
+    read_motion(r, axis);
     r.finish();
     return axis;
 }
 
 Controller read_controller(Reader r) {
     Controller c;
-    c.dialect = r.choice("dialect", {"marlin"}, "marlin");
+    c.dialect =
+        r.choice("dialect", {"marlin", "marlin-classic"}, "marlin") == "marlin" ? Dialect::marlin : Dialect::classic;
     c.baud_rate = whole(r, "baud_rate", 9600, 1000000);
     c.window_lines = static_cast<int>(r.integer("window_lines", c.window_lines));
     c.window_bytes = static_cast<int>(r.integer("window_bytes", c.window_bytes));
@@ -128,19 +164,48 @@ Tower read_tower(Reader r) {
     return t;
 }
 
+/// Stations are a list of any length; the reader wants to know how long.
+std::vector<int> read_stations(Reader& r, bool rotary) {
+    std::vector<int> stations;
+    const config::Value* raw = r.raw("stations");
+    const auto* list = raw != nullptr ? std::get_if<config::Array>(&raw->data) : nullptr;
+    constexpr std::size_t most = 1000;
+    if (list == nullptr || list->empty() || list->size() > most) {
+        r.problem("stations", "must be a list of 1 to 1000 positions such as [\"0 mm\", \"180 mm\"]");
+        return stations;
+    }
+    for (const double place : r.quantities("stations", place_dimension(rotary), list->size())) {
+        stations.push_back(place_um(r, "stations", place, rotary));
+    }
+    return stations;
+}
+
+Table read_table(Reader r, bool rotary, bool has_tower) {
+    Table t;
+    t.stations_um = read_stations(r, rotary);
+    if (!has_tower) {
+        t.cleaning_um = place_um(r, "cleaning", r.quantity("cleaning", place_dimension(rotary)), rotary);
+        t.bath_gap_um = length_um(r, "bath_gap", 1);
+    }
+    r.finish();
+    return t;
+}
+
 VatShape read_vat_shape(Reader r) {
     VatShape v;
     v.wall_um = length_um(r, "wall", 1);
     v.volume_ml = positive(r, "volume", Dimension::volume, 1e6);
     v.free_volume_ml = positive(r, "free_volume", Dimension::volume, 1e6);
     if (v.free_volume_ml > v.volume_ml) r.problem("free_volume", "is more than the vat's volume");
+    v.least_ml = not_negative(r, "least", Dimension::volume, 1e6);
+    if (v.least_ml >= v.free_volume_ml && r.has("free_volume")) r.problem("least", "must be less than free_volume");
     r.finish();
     return v;
 }
 
 Vat read_vat(Reader& r, const Printer& printer) {
     Vat v;
-    v.slot = whole(r, "slot", 1, printer.tower.slots);
+    v.slot = whole(r, "slot", 1, printer.slot_count());
     v.resin = r.text("resin", "");
     v.fill_ml = not_negative(r, "fill", Dimension::volume, 1e6);
     if (v.fill_ml > printer.vat_shape.free_volume_ml) {
@@ -166,6 +231,12 @@ Resin read_resin(const std::string& name, Reader r) {
     resin.critical_share = r.number("critical_share", 0.8);
     if (!(resin.critical_share > 0 && resin.critical_share <= 1))
         r.problem("critical_share", "must be above 0, at most 1");
+    if (r.has("penetration_depth") != r.has("critical_dose")) {
+        r.problem("penetration_depth", "and critical_dose go together: they are the working curve");
+    } else if (r.has("penetration_depth")) {
+        resin.penetration_um = positive(r, "penetration_depth", Dimension::length, 1e6);
+        resin.critical_J_m2 = positive(r, "critical_dose", Dimension::dose, 1);
+    }
     r.finish();
     return resin;
 }
@@ -208,16 +279,54 @@ Projector read_projector(Reader r) {
     return p;
 }
 
-Cleaning read_cleaning(Reader r) {
+CleaningMethod read_method(Reader& r) {
+    const std::string method = r.choice("method", {"spray", "ultrasound", "bath"}, "spray");
+    if (method == "bath") return CleaningMethod::bath;
+    return method == "spray" ? CleaningMethod::spray : CleaningMethod::ultrasound;
+}
+
+CleaningPair read_pair(Reader& r, double spray_s) {
+    CleaningPair pair{r.text("from"), r.text("to"), r.quantity("duration", Dimension::time, spray_s),
+                      not_negative(r, "penalty", Dimension::time)};
+    if (pair.spray_s < 0) r.problem("duration", "must not be negative");
+    r.finish();
+    return pair;
+}
+
+/// `spray` is the older name of `duration`.
+Cleaning read_cleaning(Reader r, Store store) {
     Cleaning c;
-    c.spray_s = not_negative(r, "spray", Dimension::time);
-    c.stroke_x_um = length_um(r, "stroke_x", 1);
+    if (store == Store::none) {
+        r.finish();
+        return c;
+    }
+    c.method = read_method(r);
+    c.spray_s = not_negative(r, r.has("duration") ? "duration" : "spray", Dimension::time);
+    if (store == Store::tower) c.stroke_x_um = length_um(r, "stroke_x", 1);
     c.stroke_z_um = length_um(r, "stroke_z");
     c.speed_mm_s = speed(r, "speed");
     c.dry_s = not_negative(r, "dry", Dimension::time);
     c.brush = r.boolean("brush", false);
+    if (r.has("film")) c.film_um = length_um(r, "film");
+    c.solvent_ml_s = not_negative(r, "solvent", Dimension::volume, 1e6) / std::max(1e-9, c.spray_s > 0 ? c.spray_s : 1);
+    c.most_contamination = r.number("most_contamination", 0.05);
+    if (!(c.most_contamination > 0 && c.most_contamination <= 1)) {
+        r.problem("most_contamination", "must be a share above 0, at most 1");
+    }
+    for (Reader& pair : r.tables("pair")) c.pairs.push_back(read_pair(pair, c.spray_s));
     r.finish();
     return c;
+}
+
+Limits read_limits(Reader r) {
+    Limits limits;
+    limits.exposure_s = r.quantity("exposure", Dimension::time, limits.exposure_s);
+    limits.cleaning_s = r.quantity("cleaning", Dimension::time, limits.cleaning_s);
+    for (const auto& [key, value] : {std::pair{"exposure", limits.exposure_s}, {"cleaning", limits.cleaning_s}}) {
+        if (!(value > 0 && value <= 3600)) r.problem(key, "must be above 0, at most an hour");
+    }
+    r.finish();
+    return limits;
 }
 
 /// A switch may only switch: a motion hidden in the printer file would pass every interlock of the planner.
@@ -235,10 +344,18 @@ Switch read_switch(Reader r) {
     return s;
 }
 
-void read_axes(Reader r, Printer& printer) {
+/// Which axes there are follows from where the vats are kept.
+void read_axes(Reader r, Printer& printer, bool has_tower, bool has_table) {
     for (const Axis axis : all_axes) {
+        const bool wanted = axis == Axis::platform || (axis == Axis::table ? has_table : has_tower);
+        if (!wanted) {
+            if (r.has(axis_name(axis))) {
+                r.problem(axis_name(axis), fmt::format("needs a [{}] table", axis == Axis::table ? "table" : "tower"));
+            }
+            continue;
+        }
         auto& spec = printer.axes[static_cast<std::size_t>(axis)];
-        spec = read_axis(r.table(axis_name(axis)));
+        spec = read_axis(r.table(axis_name(axis)), printer.controller.dialect, axis == Axis::table);
         for (const Axis other : all_axes) {
             if (other < axis && printer.axis(other).letter == spec.letter && spec.letter != '?') {
                 r.problem(axis_name(axis), fmt::format("has the letter of the {} axis", axis_name(other)));
@@ -262,17 +379,20 @@ void check_stations(Reader& root, const Printer& p) {
         root.problem(fmt::format("axis.{}.travel", axis_name(axis)),
                      fmt::format("{} at {:.3f} mm is outside", what, um / 1000.0));
     };
-    within(Axis::carriage, p.carriage.print_um, "the print position");
-    within(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, "the shear stroke");
-    within(Axis::carriage, p.carriage.tower_um, "the tower position");
+    for (const int station_um : p.table.stations_um) within(Axis::table, station_um, "a station");
+    if (p.store() == Store::table) within(Axis::table, p.table.cleaning_um, "the cleaning station");
     within(Axis::platform, 0, "the floor of the vat");
     within(Axis::platform, p.clear_um(p.platform.build_height_um) + p.cleaning.stroke_z_um,
            "the tallest part, lifted clear of the vat for cleaning,");
+    if (p.store() != Store::tower) return;
+    within(Axis::carriage, p.carriage.print_um, "the print position");
+    within(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, "the shear stroke");
+    within(Axis::carriage, p.carriage.tower_um, "the tower position");
     within(Axis::tower, p.level_um(1) - p.hooks.travel_um, "slot 1, lowered,");
     within(Axis::tower, p.level_um(p.tower.slots), "the last slot");
 }
 
-void check_geometry(Reader& root, const Printer& p) {
+void check_tower_geometry(Reader& root, const Printer& p) {
     const Carriage& c = p.carriage;
     if (c.print_um + c.shear_um + p.cleaning.stroke_x_um + c.back_off_um >= c.tower_um) {
         root.problem("carriage.tower_position", "leaves no room for shear, back_off and the cleaning stroke");
@@ -283,9 +403,47 @@ void check_geometry(Reader& root, const Printer& p) {
     if (p.axis(Axis::carriage).home_um() > c.tower_um - c.back_off_um) {
         root.problem("axis.carriage.home", "ends at the tower, which then could not be homed");
     }
+}
+
+void check_geometry(Reader& root, const Printer& p) {
+    if (p.store() == Store::tower) check_tower_geometry(root, p);
     if (p.axis(Axis::platform).home_um() < p.clear_um(0)) {
         root.problem("axis.platform.home", "must end clear of the vat (home = \"max\")");
     }
+    const auto& stations = p.table.stations_um;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        const bool on_cleaning = p.store() == Store::table && p.table_at(stations[i], p.table.cleaning_um);
+        if (on_cleaning) root.problem("table.stations", fmt::format("station {} is the cleaning station", i + 1));
+        for (std::size_t k = 0; k < i; ++k) {
+            if (p.table_at(stations[i], stations[k])) {
+                root.problem("table.stations", fmt::format("stations {} and {} are the same place", k + 1, i + 1));
+            }
+        }
+    }
+}
+
+/// Resins that a cleaning pair names must be known, or a slip would go unnoticed.
+void check_pairs(Reader& root, const Printer& p) {
+    for (const CleaningPair& pair : p.cleaning.pairs) {
+        for (const std::string& resin : {pair.from, pair.to}) {
+            if (p.find_resin(resin) != nullptr) continue;
+            root.problem("cleaning.pair",
+                         fmt::format("names resin \"{}\", which has no [resin.{}] table", resin, resin));
+        }
+    }
+}
+
+/// The store: a tower with its carriage and hooks, a table, both, or nothing.
+void read_store(Reader& root, Printer& p, bool has_tower, bool has_table) {
+    if (has_tower) {
+        p.carriage = read_carriage(root.table("carriage"));
+        p.tower = read_tower(root.table("tower"));
+        Reader hooks = root.table("hooks");
+        p.hooks = {length_um(hooks, "travel", 1), speed(hooks, "speed")};
+        hooks.finish();
+    }
+    if (has_table) p.table = read_table(root.table("table"), p.axis(Axis::table).rotary, has_tower);
+    if (p.slot_count() > 1000) root.problem("tower.slots", "makes more than 1000 places for vats");
 }
 
 Printer read_printer(Reader& root) {
@@ -293,20 +451,19 @@ Printer read_printer(Reader& root) {
     p.name = root.text("name");
     if (root.has("layer_height")) p.layer_um = length_um(root, "layer_height", 1);
     p.controller = read_controller(root.table("controller"));
-    read_axes(root.table("axis"), p);
-    p.carriage = read_carriage(root.table("carriage"));
+    const bool has_tower = root.has("tower") || root.has("carriage") || root.has("hooks");
+    const bool has_table = root.has("table");
+    read_axes(root.table("axis"), p, has_tower, has_table);
     p.platform = read_platform(root.table("platform"));
-    p.tower = read_tower(root.table("tower"));
-    Reader hooks = root.table("hooks");
-    p.hooks = {length_um(hooks, "travel", 1), speed(hooks, "speed")};
-    hooks.finish();
+    read_store(root, p, has_tower, has_table);
     p.vat_shape = read_vat_shape(root.table("vat_shape"));
     for (auto& [name, r] : root.named_tables("resin")) p.resins.push_back(read_resin(name, r));
     read_vats(root, p);
     p.projector = read_projector(root.table("projector"));
-    p.cleaning = read_cleaning(root.table("cleaning"));
+    p.cleaning = read_cleaning(root.table("cleaning", p.store() != Store::none), p.store());
     p.pump = read_switch(root.table("pump", false));
     p.fans = read_switch(root.table("fans", false));
+    p.limits = read_limits(root.table("limits", false));
     root.finish();
     return p;
 }
@@ -318,6 +475,7 @@ Result<Printer> from_document(const config::Document& document) {
     if (problems.empty()) {
         check_stations(root, printer);
         check_geometry(root, printer);
+        check_pairs(root, printer);
     }
     if (auto status = problems.status(); !status) return tl::unexpected(status.error());
     return printer;

@@ -1,4 +1,4 @@
-// Which vat holds which resin of a job.
+// Which vat holds which resin of a job, and from which layer on where one vat does not hold enough.
 #pragma once
 
 #include <string>
@@ -12,12 +12,14 @@
 namespace pliant::plan {
 
 struct Assignment {
-    std::vector<VatUse> vats;          ///< without resin_ml
-    std::vector<int> vat_of_material;  ///< -1 for a material without images
+    std::vector<VatUse> vats;
+    std::vector<int> vat_of_material;            ///< the first one; -1 for a material without images
+    std::vector<std::vector<int>> vat_of_image;  ///< for each layer, in the order of its images
     std::vector<std::string> warnings;
 };
 
-/// See make_plan. Materials of the same resin share a vat.
+/// See make_plan. Materials of the same resin share a vat; where the printer holds a resin in several vats, the next
+/// one takes over on the layer that the one before cannot fill.
 [[nodiscard]] Result<Assignment> assign_vats(const job::Manifest& job, const machine::Printer& printer);
 
 }  // namespace pliant::plan

@@ -51,3 +51,22 @@ TEST_CASE("what is not the dialect is refused") {
     CHECK(holds(error_of(";@expose nonsense\n"), "line 1"));
     CHECK(holds(error_of(start + "G1 E5\n"), "E is not an axis"));
 }
+
+TEST_CASE(
+    "foreign programs: numbers, checksums, units, messages and reports pass; what they move is checked all the same") {
+    CHECK(error_of("G21\nM117 hello\nN1 G90*3\nN2 G28 Z*7\nM114\nM105\n") == "");
+    CHECK(holds(error_of("G21\nG90\nN3 G1 X5*12\n"), "G-code line 3: the carriage moves before it is homed"));
+    CHECK(holds(error_of("G91\n"), "relative"));
+    CHECK(holds(error_of(start + "M84\nG1 X5\n"), "line 6: the carriage moves before"));
+    CHECK(holds(error_of("G92 X0\n"), "G92 moves the origin of X"));
+}
+
+TEST_CASE("the pump runs over the drain only, behind a fence, and not for ever") {
+    const std::string push = start + load + "G1 X355.6\n";
+    CHECK(error_of(push + "M400\nM106 P1 S255\nG1 Y0.5\nG1 X335\nM400\nM107 P1\nG1 X0\n") == "");
+    CHECK(holds(error_of(push + "M106 P1 S255\n"), "M400 before it is missing"));
+    CHECK(holds(error_of(start + load + "M400\nM106 P1\n"), "the pump starts while the part is not over the drain"));
+    CHECK(holds(error_of(push + "M400\nM106 P1\nG1 X0\n"), "line 12: a move away from the drain"));
+    CHECK(holds(error_of(push + "M400\nM106 P1\nG4 S100\nG4 S100\n"), "line 13: the pump runs for over 120 s"));
+    CHECK(holds(error_of(start + load + "M400\n;@expose layer=0 material=0 seconds=61 image=a\n"), "61 s of light"));
+}

@@ -106,7 +106,13 @@ std::vector<VatList> cheapest_order(std::span<const VatList> layers) {
 
 }  // namespace
 
+std::string_view rule_name(OrderRule rule) {
+    constexpr std::string_view names[] = {"naive", "thesis", "fewest-swaps", "least-cost"};
+    return names[static_cast<std::size_t>(rule)];
+}
+
 std::vector<VatList> order_vats(std::span<const VatList> layers, OrderRule rule) {
+    if (rule == OrderRule::naive) return {layers.begin(), layers.end()};
     return rule == OrderRule::thesis ? thesis_order(layers) : cheapest_order(layers);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace pliant::plan {
@@ -13,11 +14,16 @@ namespace pliant::plan {
 using VatList = std::vector<int>;
 
 enum class OrderRule {
+    naive,         ///< as listed, on every layer
     thesis,        ///< the vat used last on a layer, if the next one needs it, goes first there; the rest as listed
     fewest_swaps,  ///< an order that reaches the least number of swaps there is
+    least_cost,    ///< the changes of vat take least time; needs their costs, see least_cost.hpp
 };
 
-/// The vats of every layer in the order of printing.
+/// "naive", "thesis", "fewest-swaps", "least-cost".
+[[nodiscard]] std::string_view rule_name(OrderRule rule);
+
+/// The vats of every layer in the order of printing; by any rule but least_cost.
 [[nodiscard]] std::vector<VatList> order_vats(std::span<const VatList> layers, OrderRule rule = OrderRule::thesis);
 
 /// Changes of vat in that order.

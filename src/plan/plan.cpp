@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "plan/assign.hpp"
+#include "plan/least_cost.hpp"
 #include "plan/print_sequence.hpp"
+#include "plan/swap.hpp"
 
 namespace pliant::plan {
 namespace {
@@ -70,12 +72,11 @@ Status check_job(const job::Manifest& job, const Printer& printer) {
 }
 
 /// The distinct vats of each layer, in the order of its materials.
-std::vector<VatList> vats_by_layer(const job::Manifest& job, const std::vector<int>& vat_of_material) {
+std::vector<VatList> vats_by_layer(const std::vector<std::vector<int>>& vat_of_image) {
     std::vector<VatList> layers;
-    for (const job::Layer& layer : job.layers) {
+    for (const std::vector<int>& images : vat_of_image) {
         VatList vats;
-        for (const job::LayerImage& image : layer.images) {
-            const int vat = vat_of_material[static_cast<std::size_t>(image.material)];
+        for (const int vat : images) {
             if (std::find(vats.begin(), vats.end(), vat) == vats.end()) vats.push_back(vat);
         }
         layers.push_back(std::move(vats));
@@ -83,24 +84,72 @@ std::vector<VatList> vats_by_layer(const job::Manifest& job, const std::vector<i
     return layers;
 }
 
-void add_resin(const job::Manifest& job, Plan& plan) {
-    for (const job::Layer& layer : job.layers) {
-        for (const job::LayerImage& image : layer.images) {
-            const int vat = plan.vat_of_material[static_cast<std::size_t>(image.material)];
-            const auto use =
-                std::find_if(plan.vats.begin(), plan.vats.end(), [vat](const VatUse& v) { return v.vat == vat; });
-            use->resin_ml += image.area_mm2 * layer.thickness_um / 1e6;
+/// Seconds of every change between vats that the job uses, with what avoiding a pair is worth.
+ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
+    ChangeCosts costs(static_cast<int>(printer.vats.size()));
+    for (const VatUse& from : plan.vats) {
+        Sequence s = standing_at(printer, from.slot);
+        store_vat(s, from.slot);
+        costs.store[static_cast<std::size_t>(from.vat)] = s.seconds().total;
+        costs.load[static_cast<std::size_t>(from.vat)] = load_seconds(printer, from.slot).total;
+        for (const VatUse& to : plan.vats) {
+            if (to.vat == from.vat) continue;
+            costs.swap[costs.at(from.vat, to.vat)] =
+                swap_seconds(printer, from.slot, to.slot).total + printer.penalty_s(from.vat, to.vat);
         }
     }
+    return costs;
 }
 
-void warn_of_fill(const Printer& printer, Plan& plan) {
-    for (const VatUse& use : plan.vats) {
-        const double fill = printer.vats[static_cast<std::size_t>(use.vat)].fill_ml;
-        if (use.resin_ml <= fill) continue;
-        plan.warnings.push_back(fmt::format("the vat of slot {} holds {:.1f} ml, the job cures {:.1f} ml from it",
-                                            use.slot, fill, use.resin_ml));
+/// The printer with the resins that the plan fills in: cleaning goes by pairs of them.
+Printer with_resins(const Plan& plan, Printer printer) {
+    for (const VatUse& use : plan.vats) printer.vats[static_cast<std::size_t>(use.vat)].resin = use.resin;
+    return printer;
+}
+
+void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer& printer, OrderRule rule) {
+    const ChangeCosts costs = change_costs(plan, printer);
+    const LeastCost least = least_cost_order(layers, costs);
+    if (!least.exact)
+        plan.warnings.emplace_back("layers of more than 12 vats: their order is near the best, not proved");
+    for (const OrderRule each : {OrderRule::naive, OrderRule::thesis, OrderRule::least_cost}) {
+        std::vector<VatList> order = each == OrderRule::least_cost ? least.order : order_vats(layers, each);
+        plan.compared.push_back({each, count_swaps(order), change_cost(order, costs)});
+        if (each == rule) plan.order = std::move(order);
     }
+    if (rule == OrderRule::fewest_swaps) plan.order = order_vats(layers, rule);
+    plan.rule = rule;
+    plan.least_change_s = least.cost;
+    plan.swaps = count_swaps(plan.order);
+    plan.swap_lower_bound = fewest_swaps(layers);
+}
+
+/// What resin clings to when the part leaves a vat: its cross-section.
+double section_mm2(const job::Layer& layer) {
+    double area = 0;
+    for (const job::LayerImage& image : layer.images) area += image.area_mm2;
+    return area;
+}
+
+/// What every cleaning washes off, and takes of solution.
+void add_waste(Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const auto clean = [&](int vat, std::size_t layer, double seconds) {
+        const auto use = std::find_if(plan.vats.begin(), plan.vats.end(), [vat](auto& u) { return u.vat == vat; });
+        const double ml = section_mm2(job.layers[layer]) * printer.cleaning.film_um / 1e6;
+        use->waste_ml += ml;
+        plan.waste_ml += ml;
+        plan.solvent_ml += printer.cleaning.solvent_ml_s * seconds;
+    };
+    int loaded = -1;
+    std::size_t last_layer = 0;
+    for (std::size_t i = 0; i < plan.order.size(); ++i) {
+        for (const int vat : plan.order[i]) {
+            if (loaded >= 0 && loaded != vat) clean(loaded, last_layer, printer.cleaning_s(loaded, vat));
+            loaded = vat;
+            last_layer = i;
+        }
+    }
+    if (loaded >= 0 && printer.store() != machine::Store::none) clean(loaded, last_layer, printer.cleaning.spray_s);
 }
 
 /// A blank layer below a printed one leaves a gap that the light must bridge.
@@ -134,28 +183,34 @@ Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRu
     plan.vats = std::move(assignment->vats);
     plan.vat_of_material = std::move(assignment->vat_of_material);
     plan.warnings = std::move(assignment->warnings);
-    const std::vector<VatList> layers = vats_by_layer(job, plan.vat_of_material);
-    plan.order = order_vats(layers, rule);
-    plan.swaps = count_swaps(plan.order);
-    plan.swap_lower_bound = fewest_swaps(layers);
-    add_resin(job, plan);
-    warn_of_fill(printer, plan);
+    plan.vat_of_image = std::move(assignment->vat_of_image);
+    choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
+    add_waste(plan, job, with_resins(plan, printer));
     warn_of_gaps(job, printer, plan);
-    plan.seconds = print_sequence(plan, job, printer).seconds();
+    PrintTimes times = print_times(plan, job, with_resins(plan, printer));
+    plan.seconds = times.all;
+    plan.layer_seconds = std::move(times.layers);
     return plan;
 }
 
 std::string write_gcode(const Plan& plan, const job::Manifest& job, const Printer& printer) {
-    return print_sequence(plan, job, printer).text();
+    const Printer filled = with_resins(plan, printer);
+    return print_sequence(plan, job, filled).text();
+}
+
+Seconds program_seconds(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const Printer filled = with_resins(plan, printer);
+    return print_sequence(plan, job, filled).seconds();
 }
 
 machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, Printer printer) {
+    printer = with_resins(plan, std::move(printer));
     for (const VatUse& use : plan.vats) {
-        printer.vats[static_cast<std::size_t>(use.vat)].resin = use.resin;
         if (printer.find_resin(use.resin) != nullptr) continue;
         const job::Material& m = job.materials[static_cast<std::size_t>(use.materials.front())];
         const int cure_depth_um = 2 * printer.layer_um;
-        printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job.bottom_layers, cure_depth_um, 0.8});
+        printer.resins.push_back(
+            {use.resin, m.exposure_s, m.bottom_exposure_s, job.bottom_layers, cure_depth_um, 0.8, 0, 0});
     }
     return printer;
 }

@@ -21,6 +21,15 @@ struct VatUse {
     std::vector<int> materials;  ///< that are printed from it; indices into Manifest::materials
     double resin_ml = 0;
     bool refill = false;  ///< the printer file names another resin, or none, for it
+    int first_layer = 0, last_layer = 0;
+    double waste_ml = 0;  ///< resin that clings to the part when this vat leaves it, and is washed off
+};
+
+/// One way to order the vats, for comparison: all changes of vat, the first loading and the last storing included.
+struct OrderCost {
+    OrderRule rule = OrderRule::naive;
+    int swaps = 0;
+    double change_s = 0;
 };
 
 struct Plan {
@@ -31,8 +40,15 @@ struct Plan {
     int swap_lower_bound = 0;          ///< the least number that any order of the vats would need
     Seconds seconds;                   ///< total = swap + clean + expose + move
     std::vector<VatUse> vats;          ///< in the order of the printer's vats
-    std::vector<int> vat_of_material;  ///< index into Printer::vats; -1 for a material that prints nothing
-    std::vector<VatList> order;        ///< for each layer the vats (indices into Printer::vats) in order
+    std::vector<int> vat_of_material;  ///< index into Printer::vats of the first vat; -1 for one that prints nothing
+    std::vector<std::vector<int>> vat_of_image;  ///< for each layer the vat of each of its images
+    std::vector<VatList> order;                  ///< for each layer the vats (indices into Printer::vats) in order
+    OrderRule rule = OrderRule::least_cost;      ///< by which `order` was made
+    std::vector<OrderCost> compared;             ///< naive, thesis, least cost: what each would take
+    double least_change_s = 0;                   ///< no order's changes of vat take less
+    std::vector<Seconds> layer_seconds;          ///< of each layer, with the changes of vat before and within it
+    double waste_ml = 0;                         ///< resin washed off
+    double solvent_ml = 0;                       ///< cleaning solution used
     std::vector<std::string> warnings;
 };
 
@@ -41,19 +57,22 @@ struct Plan {
 /// made for another projector, is taller than the machine builds, has more resins than there are vats, or whose layers
 /// are not in order.
 [[nodiscard]] Result<Plan> make_plan(const job::Manifest& job, const machine::Printer& printer,
-                                     OrderRule rule = OrderRule::thesis);
+                                     OrderRule rule = OrderRule::least_cost);
 
 /// The G-code of the plan; a pure function of its arguments, which must be those of make_plan. The axes are homed
 /// first; every coordinate is absolute; no command is over 94 characters. The tower must hold every vat at the start,
 /// and does again at the end.
 [[nodiscard]] std::string write_gcode(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
 
+/// What the commands of write_gcode() take: Plan::seconds, reckoned the long way.
+[[nodiscard]] Seconds program_seconds(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
+
 /// The printer as it stands once its vats are filled as the plan asks; resins that its file does not know get the
 /// exposures of the job.
 [[nodiscard]] machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, machine::Printer printer);
 
-/// For programs: an object with at least layers, swaps, swap_lower_bound, seconds {total, swap, clean, expose, move},
-/// resin_ml (ml by slot), order (slots by layer), warnings.
+/// For programs: an object with at least layers, swaps, swap_lower_bound, orders, seconds {total, swap, clean, expose,
+/// move}, layer_seconds, resin_ml (ml by slot), solvent_ml, waste_ml, order (slots by layer), warnings.
 [[nodiscard]] std::string plan_json(const Plan& plan);
 /// For people: a table.
 [[nodiscard]] std::string plan_text(const Plan& plan);

@@ -105,11 +105,12 @@ TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, n
 
 TEST_CASE("blank layers and resin that runs out are noticed") {
     machine::Printer printer = test::tower();
-    printer.vats[0].fill_ml = 0.01;
+    printer.vats[0].fill_ml = 60.01;  // of which 60 must stay
     const Plan plan = planned(test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
     REQUIRE(plan.warnings.size() == 3);
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
-    CHECK(holds(plan.warnings[1], "holds 0.0 ml"));
+    CHECK(
+        holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
     CHECK(holds(plan.warnings[2], "1 layers lie higher"));
 }
 
@@ -161,4 +162,22 @@ TEST_CASE("the plan as text shows times as h:mm:ss") {
     const std::string text = plan_text(planned(test::make_job(repeated({0, 1}, 2), two), test::tower()));
     CHECK(holds(text, "no order needs fewer than 2"));
     CHECK(holds(text, "slot 2"));
+}
+
+TEST_CASE("the models of known swap counts: naive and best, as their table gives them") {
+    const machine::Printer printer = machine::load_printer("examples/printers/tower8.toml").value();
+    std::vector<std::string> resins;
+    for (const machine::Vat& vat : printer.vats) resins.push_back(vat.resin);
+    const auto counts = [&](const std::vector<std::vector<int>>& layers) {
+        const Plan plan = planned(test::make_job(layers, resins), printer);
+        CHECK(plan.swap_lower_bound == plan.compared.back().swaps);
+        return std::pair(plan.compared.front().swaps, plan.swaps);
+    };
+    std::vector<std::vector<int>> stack, bands;
+    for (int m = 0; m < 4; ++m) stack.insert(stack.end(), 40, {m});
+    for (int band = 0; band < 10; ++band) bands.insert(bands.end(), 20, {band % 2});
+    CHECK(counts(repeated({0, 1}, 200)) == std::pair(399, 200));                       // two_halves
+    CHECK(counts(stack) == std::pair(3, 3));                                           // stack4
+    CHECK(counts(bands) == std::pair(9, 9));                                           // alternating_bands
+    CHECK(counts(repeated({0, 1, 2, 3, 4, 5, 6, 7}, 200)) == std::pair(1599, 1400));  // checker8
 }

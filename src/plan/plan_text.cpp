@@ -40,6 +40,51 @@ Json order_json(const Plan& plan) {
     return order;
 }
 
+Json orders_json(const Plan& plan) {
+    Json orders = Json::object();
+    for (const OrderCost& c : plan.compared) {
+        orders[std::string(rule_name(c.rule))] = {{"swaps", c.swaps}, {"change_s", rounded(c.change_s)}};
+    }
+    return orders;
+}
+
+Json layers_json(const Plan& plan) {
+    Json total = Json::array(), swap = Json::array(), clean = Json::array(), expose = Json::array(),
+         move = Json::array();
+    for (const Seconds& s : plan.layer_seconds) {
+        total.push_back(rounded(s.total));
+        swap.push_back(rounded(s.swap));
+        clean.push_back(rounded(s.clean));
+        expose.push_back(rounded(s.expose));
+        move.push_back(rounded(s.move));
+    }
+    return {{"total", std::move(total)},
+            {"swap", std::move(swap)},
+            {"clean", std::move(clean)},
+            {"expose", std::move(expose)},
+            {"move", std::move(move)}};
+}
+
+Json vat_json(const VatUse& use) {
+    return {{"slot", use.slot},
+            {"resin", use.resin},
+            {"materials", use.materials},
+            {"refill", use.refill},
+            {"first_layer", use.first_layer},
+            {"last_layer", use.last_layer},
+            {"waste_ml", rounded(use.waste_ml)}};
+}
+
+std::string orders_text(const Plan& plan) {
+    std::string text;
+    for (const OrderCost& c : plan.compared) {
+        const bool chosen = c.rule == plan.rule;
+        text += fmt::format("  {:<14}{:>6} swaps{:>12} of changing vats{}\n", rule_name(c.rule), c.swaps,
+                            clock_text(c.change_s), chosen ? "   (planned)" : "");
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string plan_json(const Plan& plan) {
@@ -47,16 +92,20 @@ std::string plan_json(const Plan& plan) {
     Json vats = Json::array();
     for (const VatUse& use : plan.vats) {
         resin[std::to_string(use.slot)] = rounded(use.resin_ml);
-        vats.push_back(
-            {{"slot", use.slot}, {"resin", use.resin}, {"materials", use.materials}, {"refill", use.refill}});
+        vats.push_back(vat_json(use));
     }
     const Json json = {{"job", plan.job},
                        {"printer", plan.printer},
                        {"layers", plan.layers},
                        {"swaps", plan.swaps},
                        {"swap_lower_bound", plan.swap_lower_bound},
+                       {"order_rule", std::string(rule_name(plan.rule))},
+                       {"orders", orders_json(plan)},
                        {"seconds", seconds_json(plan.seconds)},
+                       {"layer_seconds", layers_json(plan)},
                        {"resin_ml", std::move(resin)},
+                       {"waste_ml", rounded(plan.waste_ml)},
+                       {"solvent_ml", rounded(plan.solvent_ml)},
                        {"vats", std::move(vats)},
                        {"order", order_json(plan)},
                        {"warnings", plan.warnings}};
@@ -72,6 +121,7 @@ std::string plan_text(const Plan& plan) {
     std::string text = fmt::format("{} on {}\n", plan.job, plan.printer);
     text += fmt::format("  {:<10}{:>10}\n", "layers", plan.layers);
     text += fmt::format("  {:<10}{:>10}   no order needs fewer than {}\n", "swaps", plan.swaps, plan.swap_lower_bound);
+    text += orders_text(plan);
     const Seconds& s = plan.seconds;
     for (const auto& [name, value] :
          {std::pair{"time", s.total}, std::pair{" swap", s.swap}, std::pair{" clean", s.clean},
@@ -79,8 +129,10 @@ std::string plan_text(const Plan& plan) {
         text += fmt::format("  {:<10}{:>10}\n", name, clock_text(value));
     }
     for (const VatUse& use : plan.vats) {
-        text += fmt::format("  {:<10}{:>7.1f} ml   {}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin);
+        text += fmt::format("  {:<10}{:>7.1f} ml   {}{}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin,
+                            use.waste_ml > 0 ? fmt::format(", and {:.1f} ml washed off", use.waste_ml) : "");
     }
+    if (plan.solvent_ml > 0) text += fmt::format("  {:<10}{:>7.0f} ml\n", "solution", plan.solvent_ml);
     for (const std::string& warning : plan.warnings) text += fmt::format("  warning: {}\n", warning);
     return text;
 }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "plan/swap.hpp"
 
@@ -21,11 +24,10 @@ void begin(Sequence& s, const Plan& plan) {
     for (const machine::Switch& device : {p.pump, p.fans}) {
         if (!device.off.empty()) s.command(machine::write_stop(device.off));
     }
-    s.command("G90");
-    s.command("M84 S0");  // idle motors would let platform and tower sink
+    for (const std::string& line : machine::preamble(p)) s.command(line);
     s.command(p.pump.off);
     s.command(p.fans.off);
-    for (const Axis axis : {Axis::platform, Axis::carriage, Axis::tower}) s.home(axis);
+    for (const Axis axis : machine::homing_order(p)) s.home(axis);
     s.fence();
 }
 
@@ -41,8 +43,10 @@ void approach(Sequence& s, int z_um) {
 void loosen(Sequence& s, int z_um) {
     const Printer& p = s.printer();
     s.dwell(p.projector.delay_s);
-    s.move(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, p.carriage.shear_speed_mm_s);
-    s.move(Axis::carriage, p.carriage.print_um, p.carriage.shear_speed_mm_s);
+    if (p.store() == machine::Store::tower) {
+        s.move(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, p.carriage.shear_speed_mm_s);
+        s.move(Axis::carriage, p.carriage.print_um, p.carriage.shear_speed_mm_s);
+    }
     s.move(Axis::platform, z_um + p.platform.lift_um, p.platform.lift_speed_mm_s);
 }
 
@@ -51,53 +55,185 @@ double exposure_s(const job::Manifest& job, int layer, int material) {
     return layer < job.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
 }
 
-/// Everything that one vat prints on one layer.
-void print_from_vat(Sequence& s, const Plan& plan, const job::Manifest& job, int index, int vat) {
-    const job::Layer& layer = job.layers[static_cast<std::size_t>(index)];
-    approach(s, layer.z_um);
-    for (const job::LayerImage& image : layer.images) {
-        if (plan.vat_of_material[static_cast<std::size_t>(image.material)] != vat) continue;
-        s.expose({index, image.material, exposure_s(job, index, image.material), image.file});
-    }
-    loosen(s, layer.z_um);
-}
-
-void print_layers(Sequence& s, const Plan& plan, const job::Manifest& job) {
-    const Printer& p = s.printer();
+/// What a print is made of, in order. `Steps` does it, or reckons what it takes.
+template <class Steps>
+void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
     const auto slot = [&](int vat) { return p.vats[static_cast<std::size_t>(vat)].slot; };
     std::optional<int> loaded;
     int part_um = 0;
     for (int i = 0; i < plan.layers; ++i) {
+        const int z_um = job.layers[static_cast<std::size_t>(i)].z_um;
         for (const int vat : plan.order[static_cast<std::size_t>(i)]) {
-            if (!loaded) {
-                s.comment(fmt::format("load slot {}", slot(vat)));
-                load_vat(s, slot(vat));
-            } else if (*loaded != vat) {
-                s.comment(fmt::format("swap slot {} for {}", slot(*loaded), slot(vat)));
-                s.move(Axis::platform, p.clear_um(part_um));
-                swap_vat(s, slot(*loaded), slot(vat));
-            }
+            if (!loaded)
+                steps.load(slot(vat));
+            else if (*loaded != vat)
+                steps.swap(slot(*loaded), slot(vat), part_um);
             loaded = vat;
-            part_um = job.layers[static_cast<std::size_t>(i)].z_um;
-            s.comment(fmt::format("layer {} slot {}", i, slot(vat)));
-            print_from_vat(s, plan, job, i, vat);
+            part_um = z_um;
+            steps.print(i, vat);
+        }
+        steps.layer_done();
+    }
+    if (loaded) steps.store(slot(*loaded), part_um);
+}
+
+/// Whether image k of a layer is printed from `vat`, and how long it is lit.
+double light_s(const Plan& plan, const job::Manifest& job, int layer, std::size_t k, int vat) {
+    const auto index = static_cast<std::size_t>(layer);
+    if (plan.vat_of_image[index][k] != vat) return 0;
+    return exposure_s(job, layer, job.layers[index].images[k].material);
+}
+
+/// Writes the commands.
+struct Writing {
+    Sequence& s;
+    const Plan& plan;
+    const job::Manifest& job;
+
+    void load(int slot) const {
+        s.comment(fmt::format("load slot {}", slot));
+        load_vat(s, slot);
+    }
+    void swap(int from, int to, int part_um) const {
+        s.comment(fmt::format("swap slot {} for {}", from, to));
+        s.move(Axis::platform, s.printer().clear_um(part_um));
+        swap_vat(s, from, to);
+    }
+    void print(int index, int vat) const {
+        const job::Layer& layer = job.layers[static_cast<std::size_t>(index)];
+        s.comment(fmt::format("layer {} slot {}", index, s.printer().vats[static_cast<std::size_t>(vat)].slot));
+        approach(s, layer.z_um);
+        for (std::size_t k = 0; k < layer.images.size(); ++k) {
+            const double seconds = light_s(plan, job, index, k, vat);
+            if (seconds > 0) s.expose({index, layer.images[k].material, seconds, layer.images[k].file});
+        }
+        loosen(s, layer.z_um);
+    }
+    void layer_done() const {}
+    void store(int slot, int part_um) const {
+        s.comment(fmt::format("store slot {}", slot));
+        s.move(Axis::platform, s.printer().clear_um(part_um));
+        store_vat(s, slot);
+    }
+};
+
+/// Reckons the time, and remembers what it has reckoned.
+class Reckoning {
+public:
+    Reckoning(const Sequence& homed, const Plan& plan, const job::Manifest& job)
+        : p_(homed.printer()), plan_(plan), job_(job), at_(homed.position()), layer_start_(homed.seconds()) {
+        times_.all = homed.seconds();
+    }
+
+    void load(int slot) {
+        take([&](Sequence& s) { load_vat(s, slot); });
+    }
+    void swap(int from, int to, int part_um) {
+        rise_over(part_um);
+        Known& known = swaps_[{from, to, at_[Axis::table]}];
+        if (!known.valid) {
+            Sequence s = muted();
+            swap_vat(s, from, to);
+            known = {true, s.seconds(), s.position()};
+        }
+        times_.all += known.seconds;
+        const int platform_um = at_[Axis::platform];
+        at_ = known.end;
+        at_[Axis::platform] = platform_um;
+    }
+    void print(int index, int vat) {
+        const job::Layer& layer = job_.layers[static_cast<std::size_t>(index)];
+        Known& known = prints_[at_[Axis::platform] - layer.z_um];
+        if (!known.valid) {
+            Sequence s = muted();
+            approach(s, layer.z_um);
+            loosen(s, layer.z_um);
+            known = {true, s.seconds(), s.position()};
+        }
+        times_.all += known.seconds;
+        at_[Axis::platform] = layer.z_um + p_.platform.lift_um;
+        for (std::size_t k = 0; k < layer.images.size(); ++k) {
+            const double seconds = light_s(plan_, job_, index, k, vat);
+            times_.all.expose += seconds;
+            times_.all.total += seconds;
         }
     }
-    if (!loaded) return;
-    s.comment(fmt::format("store slot {}", slot(*loaded)));
-    s.move(Axis::platform, p.clear_um(part_um));
-    store_vat(s, slot(*loaded));
-}
+    void layer_done() {
+        times_.layers.push_back(times_.all - layer_start_);
+        layer_start_ = times_.all;
+    }
+    void store(int slot, int part_um) {
+        rise_over(part_um);
+        take([&](Sequence& s) { store_vat(s, slot); });
+    }
+    PrintTimes finish() {
+        take([&](Sequence& s) { s.move(Axis::platform, p_.axis(Axis::platform).home_um()); });
+        return std::move(times_);
+    }
+
+private:
+    struct Known {
+        bool valid = false;
+        Seconds seconds;
+        machine::Position end;
+    };
+
+    Sequence muted() const {
+        Sequence s(p_);
+        s.mute();
+        s.stand_at(at_);
+        return s;
+    }
+    template <class Work>
+    void take(Work work) {
+        Sequence s = muted();
+        work(s);
+        times_.all += s.seconds();
+        at_ = s.position();
+    }
+    void rise_over(int part_um) {
+        const int clear_um = p_.clear_um(part_um);
+        Known& known = rises_[clear_um - at_[Axis::platform]];
+        if (!known.valid) {
+            Sequence s = muted();
+            s.move(Axis::platform, clear_um);
+            known = {true, s.seconds(), s.position()};
+        }
+        times_.all += known.seconds;
+        at_[Axis::platform] = clear_um;
+    }
+
+    const Printer& p_;
+    const Plan& plan_;
+    const job::Manifest& job_;
+    machine::Position at_;
+    Seconds layer_start_;
+    PrintTimes times_;
+    std::map<std::tuple<int, int, int>, Known> swaps_;  ///< by slots and the table's position
+    std::map<int, Known> prints_;                       ///< by the platform's height above the layer
+    std::map<int, Known> rises_;                        ///< by the way
+};
 
 }  // namespace
 
 Sequence print_sequence(const Plan& plan, const job::Manifest& job, const Printer& printer) {
     Sequence s(printer);
     begin(s, plan);
-    print_layers(s, plan, job);
+    Writing writing{s, plan, job};
+    walk(plan, job, printer, writing);
+    s.comment("the end: platform up, everything off");
     s.move(Axis::platform, printer.axis(Axis::platform).home_um());
     s.fence();
     return s;
+}
+
+PrintTimes print_times(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    Sequence s(printer);
+    s.mute();
+    begin(s, plan);
+    Reckoning reckoning(s, plan, job);
+    walk(plan, job, printer, reckoning);
+    return reckoning.finish();
 }
 
 }  // namespace pliant::plan

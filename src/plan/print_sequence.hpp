@@ -1,4 +1,5 @@
-// The whole print as a sequence of commands: homing, the first vat, every layer, the last vat put away.
+// The whole print as a sequence of commands: homing, the first vat, every layer, the last vat put away; and the time of
+// it, without writing a single command.
 #pragma once
 
 #include "job/job.hpp"
@@ -8,7 +9,16 @@
 
 namespace pliant::plan {
 
-/// Needs `order`, `vats` and `vat_of_material` of the plan. The printer must outlive the result.
+/// Needs `order`, `vats` and `vat_of_image` of the plan. The printer must outlive the result.
 [[nodiscard]] Sequence print_sequence(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
+
+struct PrintTimes {
+    Seconds all;                  ///< with homing and the way up at the end
+    std::vector<Seconds> layers;  ///< what each layer takes, the changes of vat before and within it included
+};
+
+/// The seconds of print_sequence() up to rounding. What repeats (the swaps of a pair, the strokes of a layer) is
+/// reckoned once: some 100 ns for every vat of every layer.
+[[nodiscard]] PrintTimes print_times(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
 
 }  // namespace pliant::plan

@@ -10,6 +10,19 @@ namespace pliant::plan {
 using machine::Axis;
 using machine::Position;
 
+Seconds& Seconds::operator+=(const Seconds& other) {
+    total += other.total;
+    swap += other.swap;
+    clean += other.clean;
+    expose += other.expose;
+    move += other.move;
+    return *this;
+}
+
+Seconds Seconds::operator-(const Seconds& other) const {
+    return {total - other.total, swap - other.swap, clean - other.clean, expose - other.expose, move - other.move};
+}
+
 void Sequence::spend(double seconds) {
     seconds_.total += seconds;
     switch (activity_) {
@@ -52,13 +65,14 @@ void Sequence::note_switch(std::string_view line) {
 }
 
 void Sequence::comment(std::string_view text) {
+    if (muted_) return;
     text_ += "; ";
     text_ += text.substr(0, machine::max_line_chars - 2);
     text_ += '\n';
 }
 
 void Sequence::command(std::string_view line) {
-    if (line.empty()) return;
+    if (line.empty() || muted_) return;
     text_ += line;
     text_ += '\n';
 }
@@ -67,7 +81,7 @@ void Sequence::home(Axis axis) {
     const machine::AxisSpec& spec = printer_->axis(axis);
     spend(machine::home_seconds(*printer_, axis, spec.homes_to_max ? spec.min_um : spec.max_um));
     position_[axis] = spec.home_um();
-    command(machine::write_home(*printer_, axis));
+    if (!muted_) command(machine::write_home(*printer_, axis));
 }
 
 void Sequence::move(Axis axis, int um, double feed_mm_s) {
@@ -83,10 +97,11 @@ void Sequence::move_to(const Position& to, double feed_mm_s) {
     spend(profile.seconds());
     for (const auto& [axis, device] : {std::pair{Axis::platform, Device::platform},
                                        {Axis::carriage, Device::carriage},
-                                       {Axis::tower, Device::tower}}) {
+                                       {Axis::tower, Device::tower},
+                                       {Axis::table, Device::table}}) {
         if (to[axis] != position_[axis]) note(device, begin_s);
     }
-    command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
+    if (!muted_) command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
     position_ = to;
 }
 
@@ -94,7 +109,7 @@ void Sequence::dwell(double seconds) {
     const double whole_ms = std::round(seconds * 1000) / 1000;
     if (whole_ms <= 0) return;
     spend(whole_ms);
-    command(machine::write_dwell(whole_ms));
+    if (!muted_) command(machine::write_dwell(whole_ms));
 }
 
 void Sequence::fence() {
@@ -111,7 +126,7 @@ void Sequence::switch_to(std::string_view line) {
 void Sequence::expose(const machine::Expose& expose) {
     const Activity before = activity_;
     fence();
-    command(machine::write_expose(expose));
+    if (!muted_) command(machine::write_expose(expose));
     activity(Activity::expose);
     const double begin_s = seconds_.total;
     spend(expose.seconds);

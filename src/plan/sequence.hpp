@@ -17,12 +17,20 @@ enum class Activity { swap, clean, expose, move };
 
 struct Seconds {
     double total = 0, swap = 0, clean = 0, expose = 0, move = 0;
+
+    Seconds& operator+=(const Seconds& other);
+    [[nodiscard]] Seconds operator-(const Seconds& other) const;
 };
 
 /// The printer must outlive it.
 class Sequence {
 public:
     explicit Sequence(const machine::Printer& printer) : printer_(&printer) {}
+
+    /// Writes no text: for times alone.
+    void mute() { muted_ = true; }
+    /// As if something had brought the axes here that took no time.
+    void stand_at(const machine::Position& position) { position_ = position; }
 
     /// From here on every stretch of work of a device is appended to `stretches`, which must outlive the recording;
     /// nullptr: no more.
@@ -52,6 +60,7 @@ private:
     void note_switch(std::string_view command);
 
     const machine::Printer* printer_;
+    bool muted_ = false;
     machine::Position position_;
     Activity activity_ = Activity::move;
     Seconds seconds_;

@@ -11,8 +11,13 @@ namespace {
 using machine::Axis;
 using machine::Position;
 using machine::Printer;
+using machine::Store;
 
 constexpr int most_strokes = 1000;
+
+int vat_of(const Printer& p, int slot) {
+    return static_cast<int>(p.vat_of_slot(slot) - p.vats.data());
+}
 
 int lowered_um(const Printer& p, int slot) {
     return p.level_um(slot) - p.hooks.travel_um;
@@ -30,10 +35,11 @@ Position stroke_end(const Printer& p, const Position& start, int tower_um, int i
     return end;
 }
 
-/// Feed along the path at which the carriage runs at cleaning speed.
+/// Feed along the path at which the carriage runs at cleaning speed; without one, the platform.
 double stroke_feed(const Printer& p, const Position& from, const Position& to) {
-    const double way_mm = std::abs(to[Axis::carriage] - from[Axis::carriage]) / 1000.0;
-    return p.cleaning.speed_mm_s * machine::profile(p, from, to, 0).length_mm / way_mm;
+    const Axis lead = p.store() == Store::tower ? Axis::carriage : Axis::platform;
+    const double way_mm = std::abs(to[lead] - from[lead]) / 1000.0;
+    return way_mm > 0 ? p.cleaning.speed_mm_s * machine::profile(p, from, to, 0).length_mm / way_mm : 0;
 }
 
 double stroke_seconds(const Printer& p, const Position& start, int tower_um, int n) {
@@ -54,7 +60,7 @@ int stroke_count(const Printer& p, const Position& start, int tower_um, double s
     return n;
 }
 
-/// Step 3 between backing off and advancing: at least `seconds` long.
+/// Back and forth, at least `seconds` long, and the tower to `tower_um` meanwhile.
 void oscillate(Sequence& s, int tower_um, double seconds) {
     const Printer& p = s.printer();
     const Position start = s.position();
@@ -66,30 +72,48 @@ void oscillate(Sequence& s, int tower_um, double seconds) {
     s.dwell(seconds - stroke_seconds(p, start, tower_um, n));
 }
 
+void pump_off(Sequence& s) {
+    s.switch_to(s.printer().pump.off);
+    s.activity(Activity::swap);
+}
+
+/// The table brings a station, by the shorter way round.
+void table_to(Sequence& s, int station_um) {
+    s.move(Axis::table, s.printer().nearest_um(station_um, s.position()[Axis::table]));
+}
+
+/// Fans and whatever `bring` moves, then a rest under the fans.
+template <class Bring>
+void dry_while(Sequence& s, Bring bring) {
+    const Printer& p = s.printer();
+    s.switch_to(p.fans.on);
+    bring();
+    s.dwell(p.cleaning.dry_s);
+    s.switch_to(p.fans.off);
+    s.activity(Activity::move);
+}
+
+// --- towers --------------------------------------------------------------------------------------------------------
+
 /// Steps 1 and 2, up to the carriage standing back with the pump running.
 void push_away(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.activity(Activity::swap);
+    s.comment(p.cleaning.brush ? "1 push the vat away, the brush wipes the part" : "1 push the vat away");
     s.move(Axis::carriage, p.carriage.tower_um);
+    s.comment("2 spray, lower the vat off the hooks");
     s.switch_to(p.pump.on);
     s.activity(Activity::clean);
     s.move(Axis::tower, lowered_um(p, slot), p.hooks.speed_mm_s);
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
 }
 
-void pump_off(Sequence& s) {
-    s.switch_to(s.printer().pump.off);
-    s.activity(Activity::swap);
-}
-
-/// Step 5.
-void pull_in(Sequence& s) {
+/// Step 3 for `spray_s` less what has passed of it since `sprayed_since_s` and what step 4 will take.
+void spray(Sequence& s, int to_slot, double since_s, double spray_s, double rest_s) {
     const Printer& p = s.printer();
-    s.switch_to(p.fans.on);
-    s.move(Axis::carriage, p.carriage.print_um);
-    s.dwell(p.cleaning.dry_s);
-    s.switch_to(p.fans.off);
-    s.activity(Activity::move);
+    s.comment("3 oscillate over the drain while the store brings the next slot");
+    if (!p.table.stations_um.empty()) table_to(s, p.station_um(to_slot));
+    oscillate(s, lowered_um(p, to_slot), spray_s - (s.seconds().total - since_s) - rest_s);
 }
 
 double hook_seconds(const Printer& p) {
@@ -100,34 +124,119 @@ double back_off_seconds(const Printer& p) {
     return machine::move_seconds(p, {}, {{p.carriage.back_off_um, 0, 0}}, 0);
 }
 
+void load_from_tower(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    if (!p.table.stations_um.empty()) table_to(s, p.station_um(slot));
+    s.move(Axis::tower, lowered_um(p, slot));
+    s.move(Axis::carriage, p.carriage.tower_um);
+    s.move(Axis::tower, p.level_um(slot), p.hooks.speed_mm_s);
+    s.move(Axis::carriage, p.carriage.print_um);
+}
+
+void swap_by_tower(Sequence& s, int from_slot, int to_slot, double spray_s) {
+    const Printer& p = s.printer();
+    push_away(s, from_slot);
+    const double since_s = s.seconds().total - hook_seconds(p) - back_off_seconds(p);
+    spray(s, to_slot, since_s, spray_s, hook_seconds(p) + back_off_seconds(p));
+    s.comment("4 advance, raise the next vat onto the hooks");
+    s.move(Axis::carriage, p.carriage.tower_um);
+    s.move(Axis::tower, p.level_um(to_slot), p.hooks.speed_mm_s);
+    pump_off(s);
+    s.comment("5 pull it in, dry the part");
+    dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
+}
+
+void store_in_tower(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    push_away(s, slot);
+    const double since_s = s.seconds().total - hook_seconds(p) - back_off_seconds(p);
+    spray(s, slot, since_s, p.cleaning.spray_s, 0);
+    pump_off(s);
+    dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
+}
+
+// --- tables --------------------------------------------------------------------------------------------------------
+
+/// To the cleaning station, down into it, and out again after `seconds` of bath, ultrasound or spray.
+void clean_on_table(Sequence& s, double seconds) {
+    const Printer& p = s.printer();
+    const int clear_um = s.position()[Axis::platform];
+    // The part ends where the platform stands clear of the vats.
+    const int part_um = clear_um - p.clear_um(0);
+    s.activity(Activity::swap);
+    s.comment("to the cleaning station, down into it");
+    table_to(s, p.table.cleaning_um);
+    s.move(Axis::platform, part_um + p.table.bath_gap_um);
+    s.switch_to(p.pump.on);
+    s.activity(Activity::clean);
+    if (p.cleaning.stroke_z_um > 0)
+        oscillate(s, s.position()[Axis::tower], seconds);
+    else
+        s.dwell(seconds);
+    pump_off(s);
+    s.move(Axis::platform, clear_um);
+}
+
+void swap_on_table(Sequence& s, int to_slot, double seconds) {
+    const Printer& p = s.printer();
+    clean_on_table(s, seconds);
+    s.comment("bring the next vat, dry the part");
+    dry_while(s, [&] { table_to(s, p.station_um(to_slot)); });
+}
+
 }  // namespace
 
 void load_vat(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.activity(Activity::swap);
-    s.move(Axis::tower, lowered_um(p, slot));
-    s.move(Axis::carriage, p.carriage.tower_um);
-    s.move(Axis::tower, p.level_um(slot), p.hooks.speed_mm_s);
-    s.move(Axis::carriage, p.carriage.print_um);
+    if (p.store() == Store::tower) load_from_tower(s, slot);
+    if (p.store() == Store::table) table_to(s, p.station_um(slot));
     s.activity(Activity::move);
 }
 
 void swap_vat(Sequence& s, int from_slot, int to_slot) {
     const Printer& p = s.printer();
-    push_away(s, from_slot);
-    oscillate(s, lowered_um(p, to_slot), p.cleaning.spray_s - 2 * hook_seconds(p) - 2 * back_off_seconds(p));
-    s.move(Axis::carriage, p.carriage.tower_um);
-    s.move(Axis::tower, p.level_um(to_slot), p.hooks.speed_mm_s);
-    pump_off(s);
-    pull_in(s);
+    const double spray_s = p.cleaning_s(vat_of(p, from_slot), vat_of(p, to_slot));
+    if (p.store() == Store::tower) swap_by_tower(s, from_slot, to_slot, spray_s);
+    if (p.store() == Store::table) swap_on_table(s, to_slot, spray_s);
 }
 
 void store_vat(Sequence& s, int slot) {
     const Printer& p = s.printer();
-    push_away(s, slot);
-    oscillate(s, lowered_um(p, slot), p.cleaning.spray_s - hook_seconds(p) - back_off_seconds(p));
-    pump_off(s);
-    pull_in(s);
+    if (p.store() == Store::tower) store_in_tower(s, slot);
+    if (p.store() == Store::table) {
+        clean_on_table(s, p.cleaning.spray_s);
+        dry_while(s, [&] { table_to(s, p.station_um(slot)); });
+    }
+}
+
+Sequence standing_at(const machine::Printer& printer, int slot) {
+    Sequence s(printer);
+    s.mute();
+    Position at;
+    at[Axis::platform] = printer.clear_um(0);
+    if (printer.store() == Store::tower) {
+        at[Axis::carriage] = printer.carriage.print_um;
+        at[Axis::tower] = printer.level_um(slot);
+    }
+    at[Axis::table] = printer.station_um(slot);
+    s.stand_at(at);
+    return s;
+}
+
+Seconds load_seconds(const Printer& printer, int slot) {
+    Sequence s(printer);
+    s.mute();
+    for (const Axis axis : machine::homing_order(printer)) s.home(axis);
+    const double homed_s = s.seconds().total;
+    load_vat(s, slot);
+    return {s.seconds().total - homed_s, s.seconds().swap, 0, 0, 0};
+}
+
+Seconds swap_seconds(const machine::Printer& printer, int from_slot, int to_slot) {
+    Sequence s = standing_at(printer, from_slot);
+    swap_vat(s, from_slot, to_slot);
+    return s.seconds();
 }
 
 }  // namespace pliant::plan

@@ -1,13 +1,19 @@
-// Bringing vats from the tower and back: the swap of the thesis (chapter 4), step by step.
+// Bringing vats and putting them away, whatever the store of the machine.
+//
+// A tower: the swap of the thesis (chapter 4), step by step.
 //
 //   1  the carriage pushes the vat into the tower; the brush wipes the part on the way
 //   2  the pump starts; the tower lowers, the hooks come free
-//   3  the cleaning vat backs off and oscillates in X, the platform in Z, while the tower brings the next slot
+//   3  the cleaning vat backs off and oscillates in X, the platform in Z, while the tower brings the next slot (of
+//      several towers, the table first brings the right one)
 //   4  the carriage advances, the tower rises, the hooks engage; the pump stops
 //   5  the vat is pulled in while the fans dry the part
 //
 // The spray lasts from step 2 to step 4: only so do the reported parts (24 + 3 + 15 + 24 s) give the reported 62 to
-// 63 s. All of it needs the platform clear of the vat before.
+// 63 s. A table: it turns or shifts to the cleaning station, the platform lowers the part into it and oscillates, rises
+// again, and the table brings the next vat. A single vat: nothing ever moves.
+//
+// All of it needs the platform clear of the vat before.
 #pragma once
 
 #include "plan/sequence.hpp"
@@ -22,5 +28,14 @@ void swap_vat(Sequence& sequence, int from_slot, int to_slot);
 
 /// Puts the vat of `slot` away, cleans and dries the part; the carriage comes back empty.
 void store_vat(Sequence& sequence, int slot);
+
+/// A muted sequence that stands with the vat of `slot` under a platform that is clear of it.
+[[nodiscard]] Sequence standing_at(const machine::Printer& printer, int slot);
+
+/// What loading the first vat takes, from homed axes.
+[[nodiscard]] Seconds load_seconds(const machine::Printer& printer, int slot);
+
+/// What one swap takes, from standing_at(from_slot).
+[[nodiscard]] Seconds swap_seconds(const machine::Printer& printer, int from_slot, int to_slot);
 
 }  // namespace pliant::plan

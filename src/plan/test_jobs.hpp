@@ -35,6 +35,25 @@ inline job::Manifest make_job(const std::vector<std::vector<int>>& layers, const
     return job;
 }
 
+/// For the projector of that machine.
+inline job::Manifest make_job_for(const machine::Printer& printer, const std::vector<std::vector<int>>& layers,
+                                  const std::vector<std::string>& resins) {
+    job::Manifest job = make_job(layers, resins);
+    job.width_px = printer.projector.width_px;
+    job.height_px = printer.projector.height_px;
+    job.pixel_um = printer.projector.pixel_um;
+    return job;
+}
+
+/// Every machine that is shipped.
+inline std::vector<machine::Printer> machines() {
+    std::vector<machine::Printer> all;
+    for (const char* name : {"tower", "tower8", "two_towers", "carousel", "rotary", "linear", "single"}) {
+        all.push_back(machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value());
+    }
+    return all;
+}
+
 inline machine::Printer tower() {
     return machine::load_printer("examples/printers/tower.toml").value();
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <map>
 
 #include "plan/plan.hpp"
 #include "plan/swap.hpp"
@@ -23,36 +23,51 @@ std::vector<std::pair<int, int>> changes(const Plan& plan) {
     return all;
 }
 
+std::vector<Device> devices_of(const machine::Printer& printer) {
+    std::vector<Device> devices;
+    for (const auto& [axis, device] : {std::pair{machine::Axis::platform, Device::platform},
+                                       {machine::Axis::carriage, Device::carriage},
+                                       {machine::Axis::tower, Device::tower},
+                                       {machine::Axis::table, Device::table}}) {
+        if (printer.axis(axis).present()) devices.push_back(device);
+    }
+    if (!printer.pump.on.empty()) devices.push_back(Device::pump);
+    if (!printer.fans.on.empty()) devices.push_back(Device::fans);
+    return devices;
+}
+
 }  // namespace
 
 std::string_view device_name(Device device) {
-    constexpr std::array<std::string_view, device_count> names = {"platform", "cleaning vat", "tower",
+    constexpr std::array<std::string_view, device_count> names = {"platform", "cleaning vat", "tower", "table",
                                                                   "spray",    "fans",         "light"};
     return names[static_cast<std::size_t>(device)];
 }
 
 SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer) {
     const auto slot = [&](int vat) { return printer.vats[static_cast<std::size_t>(vat)].slot; };
-    const auto way = [&](const std::pair<int, int>& c) {
-        return std::abs(printer.level_um(slot(c.first)) - printer.level_um(slot(c.second)));
-    };
     const auto all = changes(plan);
-    const auto found = std::max_element(all.begin(), all.end(), [&](auto& a, auto& b) { return way(a) < way(b); });
-    SwapTimeline timeline;
-    if (found == all.end()) return timeline;
-    timeline.from_slot = slot(found->first);
-    timeline.to_slot = slot(found->second);
-    Sequence s(printer);
-    s.move(machine::Axis::platform, printer.clear_um(0));
-    load_vat(s, timeline.from_slot);
-    const double begin_s = s.seconds().total;
-    s.record(&timeline.stretches);
-    swap_vat(s, timeline.from_slot, timeline.to_slot);
-    timeline.seconds = s.seconds().total - begin_s;
-    for (Stretch& stretch : timeline.stretches) {
-        stretch.begin_s -= begin_s;
-        stretch.end_s -= begin_s;
+    std::map<std::pair<int, int>, double> seconds;
+    for (const auto& change : all) {
+        double& took = seconds[change];
+        if (took == 0) took = swap_seconds(printer, slot(change.first), slot(change.second)).total;
     }
+    constexpr double same = 1e-9;  // of seconds that were added up differently
+    const auto found =
+        std::max_element(all.begin(), all.end(), [&](auto& a, auto& b) { return seconds[a] + same < seconds[b]; });
+    if (found == all.end()) return {};
+    return swap_timeline(printer, slot(found->first), slot(found->second));
+}
+
+SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int to_slot) {
+    SwapTimeline timeline;
+    timeline.from_slot = from_slot;
+    timeline.to_slot = to_slot;
+    timeline.devices = devices_of(printer);
+    Sequence s = standing_at(printer, from_slot);
+    s.record(&timeline.stretches);
+    swap_vat(s, from_slot, to_slot);
+    timeline.seconds = s.seconds().total;
     return timeline;
 }
 

@@ -10,8 +10,8 @@ namespace pliant::plan {
 
 struct Plan;
 
-enum class Device { platform, carriage, tower, pump, fans, light };
-inline constexpr int device_count = 6;
+enum class Device { platform, carriage, tower, table, pump, fans, light };
+inline constexpr int device_count = 7;
 
 /// What a person calls it.
 [[nodiscard]] std::string_view device_name(Device device);
@@ -28,11 +28,15 @@ struct SwapTimeline {
     int from_slot = 0;
     int to_slot = 0;
     double seconds = 0;
+    std::vector<Device> devices;     ///< that this machine has, but for the light
     std::vector<Stretch> stretches;  ///< in the order of their ends; moves without a pause between them are one
 };
 
-/// The first of those changes of vats in which the tower goes farthest; without any swap `stretches` is empty.
+/// The first of the changes of vats that take longest; without any swap `stretches` is empty.
 /// `printer` must be that of make_plan().
 [[nodiscard]] SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer);
+
+/// One change of vats, from slot to slot.
+[[nodiscard]] SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int to_slot);
 
 }  // namespace pliant::plan

@@ -81,14 +81,16 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
     draw_title(canvas, 262,
                fmt::format("One swap, from slot {} to slot {}: {:.1f} s", swap.from_slot, swap.to_slot, swap.seconds));
     constexpr double top = 282;
-    constexpr int rows = plan::device_count - 1;  // no light during a swap
+    const int rows = static_cast<int>(swap.devices.size());
     draw_axis(canvas, top, top + rows * row_height, swap.seconds, 1, "s");
     for (int d = 0; d < rows; ++d) {
-        canvas.text({left - 16, top + d * row_height + 29}, plan::device_name(static_cast<plan::Device>(d)), label);
+        canvas.text({left - 16, top + d * row_height + 29},
+                    plan::device_name(swap.devices[static_cast<std::size_t>(d)]), label);
     }
     for (const plan::Stretch& s : swap.stretches) {
-        const int d = static_cast<int>(s.device);
-        if (d >= rows) continue;
+        const auto found = std::find(swap.devices.begin(), swap.devices.end(), s.device);
+        if (found == swap.devices.end()) continue;
+        const int d = static_cast<int>(found - swap.devices.begin());
         const double scale = (right - left) / swap.seconds;
         canvas.box({left + s.begin_s * scale, top + d * row_height + 7}, (s.end_s - s.begin_s) * scale, row_height - 14,
                    palette(d), 4);
@@ -96,11 +98,11 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
 }
 
 void draw_layers(Canvas& canvas, const plan::Plan& plan) {
-    constexpr double top = 602;
-    draw_title(canvas, 582, "Layers that each vat prints");
+    constexpr double top = 642;
+    draw_title(canvas, 622, "Layers that each vat prints");
     if (plan.layers == 0) return;
     const double rows = static_cast<double>(plan.vats.size());
-    const double height = std::min(row_height, 340 / std::max(1.0, rows));
+    const double height = std::min(row_height, 300 / std::max(1.0, rows));
     draw_axis(canvas, top, top + rows * height, plan.layers, 1, "layers");
     const double scale = (right - left) / plan.layers;
     for (std::size_t v = 0; v < plan.vats.size(); ++v) {

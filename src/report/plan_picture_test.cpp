@@ -16,13 +16,17 @@ plan::Plan small_plan() {
     plan.printer = "tower";
     plan.layers = 10;
     plan.seconds = {100, 50, 25, 15, 10};
-    plan.vats = {{0, 1, "soft", {0}, 1, false}, {3, 4, "firm", {1}, 1, false}};
+    plan.vats = {{0, 1, "soft", {0}, 1, false, 0, 9, 0}, {3, 4, "firm", {1}, 1, false, 2, 9, 0}};
     plan.order = {{0}, {0}, {0, 3}, {3, 0}, {0}, {}, {}, {}, {3}, {3}};
     return plan;
 }
 
 plan::SwapTimeline small_swap() {
-    return {1, 4, 40, {{plan::Device::carriage, 0, 10}, {plan::Device::pump, 10, 30}, {plan::Device::fans, 30, 40}}};
+    return {1,
+            4,
+            40,
+            {plan::Device::carriage, plan::Device::pump, plan::Device::fans},
+            {{plan::Device::carriage, 0, 10}, {plan::Device::pump, 10, 30}, {plan::Device::fans, 30, 40}}};
 }
 
 /// Pixels of a PNG file, 4 bytes each: blue, green, red, unused.
@@ -78,14 +82,14 @@ TEST_CASE("bars stand where their times and layers are") {
     CHECK(p.colour(870, 150) != p.colour(890, 150));
     CHECK(p.colour(890, 150) == p.colour(1200, 150));
     CHECK(p.colour(1200, 150) != p.colour(1220, 150));
-    // Swap of 40 s, 33 pixels a second: rows of 44 pixels from y 282; the cleaning vat is the second, spray the fourth.
-    const int carriage = 282 + 44 + 22, spray = 282 + 3 * 44 + 22;
+    // Swap of 40 s, 33 pixels a second: rows of 44 pixels from y 282; the cleaning vat is the first, spray the second.
+    const int carriage = 282 + 22, spray = 282 + 44 + 22;
     CHECK_FALSE(p.white(220 + 5 * 33 + 8, carriage));
     CHECK(p.white(220 + 12 * 33 + 8, carriage));
     CHECK(p.white(220 + 8 * 33 + 8, spray));
     CHECK_FALSE(p.white(220 + 20 * 33 + 8, spray));
-    // Ten layers of 132 pixels, rows of 44 from y 602: the second vat prints layers 2, 3, 8 and 9.
-    const int second = 602 + 44 + 22;
+    // Ten layers of 132 pixels, rows of 44 from y 642: the second vat prints layers 2, 3, 8 and 9.
+    const int second = 642 + 44 + 22;
     for (int layer = 0; layer < 10; ++layer) {
         const bool printed = layer == 2 || layer == 3 || layer >= 8;
         CHECK(p.white(220 + 132 * layer + 66, second) == !printed);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 
 #include "twin/twin.hpp"
 
@@ -14,7 +17,7 @@ using machine::Command;
 
 /// Commands that are accepted and change nothing that the twin models.
 bool is_quiet(const Command& c) {
-    constexpr std::array<int, 6> numbers = {18, 85, 108, 110, 113, 410};
+    constexpr std::array<int, 5> numbers = {82, 105, 108, 110, 302};
     return c.letter == 'M' && std::find(numbers.begin(), numbers.end(), c.number) != numbers.end();
 }
 
@@ -30,7 +33,7 @@ std::vector<Axis> Twin::axes_to_home(const Command& command) const {
     for (const machine::Word& word : command.words) {
         if (const auto axis = machine::axis_of_letter(printer_, word.letter)) axes.push_back(*axis);
     }
-    if (axes.empty()) axes = {Axis::platform, Axis::carriage, Axis::tower};
+    if (axes.empty()) axes = machine::homing_order(printer_);
     return axes;
 }
 
@@ -40,6 +43,12 @@ double Twin::blocks_until(const Command& c) {
     if (c.is('G', 0) || c.is('G', 1)) return motors_.room_at(now_s_);
     if (c.is('G', 4)) return still + dwell_seconds(c);
     if (c.is('M', 400)) return still;
+    if (c.is('M', 0) || c.is('M', 1)) {
+        for (const char* line : {"prompt_end", "prompt_begin M0 Stop", "prompt_button Continue", "prompt_show"}) {
+            say(fmt::format("//action:{}", line));
+        }
+        return std::numeric_limits<double>::infinity();
+    }
     if (!c.is('G', 28)) return now_s_;
     double seconds = 0;
     for (const Axis axis : axes_to_home(c)) seconds += motors_.home_seconds(axis);
@@ -49,7 +58,8 @@ double Twin::blocks_until(const Command& c) {
 void Twin::execute(const Command& c, const Queued& queued) {
     if (c.is('G', 0) || c.is('G', 1)) return execute_move(c);
     if (c.is('G', 28)) return execute_home(c);
-    if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c, queued.line);
+    if (c.is('G', 92)) return execute_set(c);
+    if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c);
     if (c.is('G', 4) || c.is('G', 90) || c.is('M', 400) || is_quiet(c)) {
         // M110 in an unnumbered line sets the number here; a numbered one did so when it was verified.
         if (c.is('M', 110) && !queued.number) reader_.set_last_number(static_cast<long>(c.value('N').value_or(0)));
@@ -58,66 +68,163 @@ void Twin::execute(const Command& c, const Queued& queued) {
     execute_other(c);
 }
 
+/// Soft endstops: an axis that is homed stops at the end of its travel, and the firmware says nothing.
+machine::Position Twin::clamped(machine::Position to) {
+    const machine::Position asked = to;
+    for (const Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = printer_.axis(axis);
+        if (spec.present() && interlock().homed(axis)) to[axis] = std::clamp(to[axis], spec.min_um, spec.max_um);
+    }
+    if (to == asked) return to;
+    ++log_.clamped_moves;
+    log_.violations.push_back(fmt::format("{:.3f} s: a move beyond an axis' travel, cut short", now_s_));
+    return to;
+}
+
 void Twin::execute_move(const Command& c) {
     // Motors that stood still for too long have been switched off, silently.
     if (idle_limit_s_ > 0 && now_s_ - motors_.done_at() > idle_limit_s_) motors_.release(now_s_);
     if (const auto feed = c.value('F'); feed && *feed > 0) feed_mm_s_ = *feed / 60;
-    const auto target = machine::move_target(printer_, c, interlock().position());
-    if (!target) return violation(target.error().message);
-    if (*target == interlock().position()) return;
-    if (Status status = motors_.move(now_s_, *target, feed_mm_s_); !status) return violation(status.error().message);
-    note_vat();
+    const auto asked = machine::move_target(printer_, c, interlock().position());
+    if (!asked) return violation(asked.error().message);
+    const machine::Position target = clamped(*asked);
+    const machine::Position from = interlock().position();
+    if (target == from) return;
+    const std::optional<int> vat = interlock().hooked_vat();
+    if (Status status = motors_.move(now_s_, target, feed_mm_s_); !status) return violation(status.error().message);
+    miss_steps(from, target);
+    note_vat(vat);
+}
+
+/// The motor of the first axis that moves falls short, and nobody notices.
+void Twin::miss_steps(const machine::Position& from, const machine::Position& to) {
+    const Fault* fault = fault_at(Fault::Kind::missed_steps, ++moves_);
+    if (fault == nullptr) return;
+    for (const Axis axis : machine::all_axes) {
+        if (from[axis] == to[axis]) continue;
+        const int um = static_cast<int>(std::lround((fault->amount > 0 ? fault->amount : 1) * 1000));
+        slip_um_[static_cast<std::size_t>(axis)] += to[axis] > from[axis] ? -um : um;
+        return mishap(fmt::format("the {} misses {:.3f} mm of its way", machine::axis_name(axis), um / 1000.0));
+    }
 }
 
 void Twin::execute_home(const Command& c) {
     for (const Axis axis : axes_to_home(c)) {
         ++log_.homings;
         if (Status status = motors_.home(now_s_, axis); !status) violation(status.error().message);
+        slip_um_[static_cast<std::size_t>(axis)] = 0;
     }
+}
+
+/// G92 stands for homing where a person has stood the axis at its home; anything else would move the origin.
+void Twin::execute_set(const Command& c) {
+    for (const machine::Word& word : c.words) {
+        const auto axis = machine::axis_of_letter(printer_, word.letter);
+        if (!axis || !printer_.axis(*axis).homes_by_hand) {
+            violation(fmt::format("G92 moves the origin of {}", word.letter));
+            continue;
+        }
+        if (Status status = motors_.home(now_s_, *axis); !status) violation(status.error().message);
+    }
+}
+
+/// A move has put a vat on the hooks, under the platform, or away.
+void Twin::note_vat(std::optional<int> before) {
+    const auto vat = interlock().hooked_vat();
+    if (vat == before) return;
+    if (before) {
+        if (part_vat_ == *before && cure_.section_mm2() > 0) {
+            cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2()));
+            residue_ = 1;
+        }
+        if (fault_hits(Fault::Kind::stuck_hook, ++unhooked_) && stuck_vat_ < 0) {
+            stuck_vat_ = *before;
+            mishap(fmt::format("the vat of slot {} stays on the hooks",
+                               printer_.vats[static_cast<std::size_t>(*before)].slot));
+        }
+    }
+    if (!vat) return;
+    constexpr int most_slip_um = 500;
+    const bool missed = std::abs(slip_um_[static_cast<std::size_t>(Axis::tower)]) > most_slip_um;
+    missed_vat_ = missed ? *vat : -1;
+    if (missed) mishap("the hooks do not catch the vat: the tower is off");
+    count_swap(*vat);
 }
 
 /// Counts swaps, and those with too little cleaning between the last light and the new vat.
-void Twin::note_vat() {
-    const auto vat = interlock().hooked_vat();
-    if (!vat || *vat == last_vat_) return;
+void Twin::count_swap(int vat) {
+    if (vat == last_vat_) return;
     if (last_vat_ >= 0) {
         ++log_.swaps;
         // The rise of the hooks, during which the pump still runs, is only queued here.
-        const double sprayed = sprayed_s_ + (pump_on_ ? std::max(now_s_, motors_.done_at()) - pump_since_s_ : 0);
-        if (!printer_.pump.on.empty() && sprayed < 0.99 * printer_.cleaning.spray_s) ++log_.short_cleanings;
+        const bool spraying = pump_on_ && pump_works_;
+        const double sprayed = sprayed_s_ + (spraying ? std::max(now_s_, motors_.done_at()) - pump_since_s_ : 0);
+        if (!printer_.pump.on.empty() && sprayed < 0.99 * printer_.cleaning_s(last_vat_, vat)) ++log_.short_cleanings;
     }
-    last_vat_ = *vat;
+    last_vat_ = vat;
 }
 
-void Twin::execute_switch(const Command&, std::string_view line) {
-    if (line == printer_.pump.on && !pump_on_) {
-        pump_on_ = true;
-        pump_since_s_ = now_s_;
-    } else if (line == printer_.pump.off && pump_on_) {
-        pump_on_ = false;
-        sprayed_s_ += now_s_ - pump_since_s_;
+/// A switch travels with the moves: it takes effect when those before it are done.
+void Twin::execute_switch(const Command& c) {
+    const bool fan = !c.is('M', 42);
+    if (fan && options_.report_fans) {
+        say(fmt::format("M106 P{:g} S{:g}", c.value('P').value_or(0), c.is('M', 107) ? 0 : c.value('S').value_or(255)));
+    }
+    const auto on = machine::switched(printer_.pump, c);
+    if (!on || *on == pump_on_) return;
+    if (Status status = motors_.interlock().pump(*on); !status) return violation(status.error().message);
+    const double at_s = std::max(now_s_, motors_.done_at());
+    pump_on_ = *on;
+    if (pump_on_) {
+        pump_since_s_ = at_s;
+        if (fault_hits(Fault::Kind::dead_pump, ++pump_starts_)) {
+            pump_works_ = false;
+            mishap("the pump moves nothing");
+        }
+    } else if (pump_works_) {
+        sprayed_s_ += at_s - pump_since_s_;
+        residue_ *= 1 - machine::cleaning_law(printer_.cleaning.method).removed(at_s - pump_since_s_);
+        fluids_.clean(at_s - pump_since_s_);
     }
 }
 
 void Twin::execute_other(const Command& c) {
-    if (c.is('M', 84)) {
+    if (c.is('M', 84) || c.is('M', 18) || c.is('M', 85)) {
         if (const auto limit = c.value('S'))
             idle_limit_s_ = *limit;
-        else
+        else if (!c.is('M', 85))
             motors_.release(now_s_);
-    } else if (c.is('M', 114)) {
+    } else if (c.is('M', 113)) {
+        if (const auto every = c.value('S')) busy_every_s_ = std::clamp(*every, 0.0, 60.0);
+    } else if (c.is('M', 112)) {
+        kill();
+    } else if (c.is('M', 410)) {
+        if (!options_.emergency_parser) motors_.stop(now_s_);
+    } else if (c.is('M', 999)) {
+        // Seen: a request that nobody provoked, and an ok for it besides the command's own.
+        if (c.value('S')) return;
+        say(fmt::format("Resend: {}", reader_.last_number() + 1));
+        say("ok");
+    } else {
+        execute_query(c);
+    }
+}
+
+void Twin::execute_query(const Command& c) {
+    if (c.is('M', 114)) {
         std::string line;
         for (const Axis axis : machine::all_axes) {
+            if (!printer_.axis(axis).present()) continue;
             line += fmt::format("{}:{:.3f} ", printer_.axis(axis).letter, interlock().position()[axis] / 1000.0);
         }
         say(line);
     } else if (c.is('M', 115)) {
         say("FIRMWARE_NAME:Pliant twin, Marlin dialect PROTOCOL_VERSION:1.0 MACHINE_TYPE:" + printer_.name);
-        say("Cap:EMERGENCY_PARSER:1");
+        say(fmt::format("Cap:EMERGENCY_PARSER:{}", options_.emergency_parser ? 1 : 0));
     } else if (c.is('M', 118)) {
         say(fmt::format("{}{}", c.value('E') == 1 ? "echo:" : (c.value('A') == 1 ? "//" : ""), c.text));
-    } else if (c.is('M', 112)) {
-        kill();
+    } else if (c.is('M', 0) || c.is('M', 1)) {
+        say("//action:prompt_end");
     } else {
         say(fmt::format("echo:Unknown command: \"{}{}\"", c.letter, c.number));
     }

@@ -3,97 +3,150 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pliant::twin {
 namespace {
 
 constexpr std::size_t most_faults = 1000;
+constexpr double rounding_um = 0.01;
 
-std::vector<Run> runs_of(const std::vector<std::uint16_t>& values, int width) {
-    std::vector<Run> runs;
-    const int height = static_cast<int>(values.size() / static_cast<std::size_t>(width));
-    for (int row = 0; row < height; ++row) {
-        const std::uint16_t* line = values.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
-        for (int begin = 0; begin < width;) {
-            int end = begin + 1;
-            while (end < width && line[end] == line[begin]) ++end;
-            if (line[begin] > 0) runs.push_back({row, begin, end, line[begin]});
-            begin = end;
-        }
-    }
-    return runs;
+/// Light of an irradiance that the printer file leaves open: all that matters is its share of the exposure.
+double irradiance(const machine::Printer& printer) {
+    return printer.projector.irradiance_W_m2 > 0 ? printer.projector.irradiance_W_m2 : 1;
 }
 
 }  // namespace
 
-Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
-    for (const machine::Vat& vat : printer.vats) left_ml_.push_back(vat.fill_ml);
+double WorkingCurve::depth_um(double dose_J_m2) const {
+    return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
 }
 
-/// Whether the exposure leaves something solid that holds on to the part; if not, why not is recorded.
-bool Cure::cures(int vat, double seconds, int z_um) {
+WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin) {
+    if (resin.penetration_um > 0) return {resin.penetration_um, resin.critical_J_m2};
+    const double dose = irradiance(printer) * resin.exposure_s;
+    const double depth = resin.cure_depth_um;
+    const double layer = std::min<double>(printer.layer_um, depth / 2);
+    const double share = resin.critical_share;
+    const double penetration = share < 1 ? (depth - layer) / std::log(1 / share) : depth;
+    return {penetration, dose * std::exp(-depth / penetration)};
+}
+
+Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
+    for (const machine::Vat& vat : printer.vats) {
+        left_ml_.push_back(vat.fill_ml);
+        const machine::Resin* resin = printer.find_resin(vat.resin);
+        curves_.push_back(resin != nullptr ? working_curve(printer, *resin) : WorkingCurve{});
+    }
+    overcure_mm3_.resize(printer.vats.size());
+}
+
+double Cure::pixel_mm2() const {
+    return printer_->projector.pixel_um * printer_->projector.pixel_um / 1e6;
+}
+
+void Cure::fault(std::string text) {
+    if (faults_.size() < most_faults) faults_.push_back(std::move(text));
+}
+
+/// The dose, if the exposure leaves something solid that holds on to the part; if not, why not is recorded.
+std::optional<double> Cure::cures(int vat, double seconds, int z_um, double area_mm2) {
     const machine::Vat& place = printer_->vats[static_cast<std::size_t>(vat)];
     const machine::Resin* resin = printer_->find_resin(place.resin);
-    std::string fault;
+    const double dose = irradiance(*printer_) * seconds;
+    const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(dose);
     if (resin == nullptr) {
-        fault = fmt::format("slot {} holds no resin", place.slot);
-    } else if (seconds < resin->critical_share * resin->exposure_s - 1e-6) {
-        fault = fmt::format("{:.3f} s of light are too short for {}", seconds, resin->name);
-    } else if (z_um - top_um_ > resin->cure_depth_um) {
-        fault = fmt::format("a gap of {} um at {} um is deeper than {} cures", z_um - top_um_, z_um, resin->name);
+        fault(fmt::format("slot {} holds no resin", place.slot));
     } else if (z_um <= top_um_) {
-        fault = fmt::format("no gap is left at {} um", z_um);
+        fault(fmt::format("no gap is left at {} um", z_um));
+    } else if (depth + rounding_um < z_um - top_um_) {
+        fault(fmt::format("{:.3f} s of light cure {:.0f} um of {}, the gap at {} um is {} um", seconds, depth,
+                          resin->name, z_um, z_um - top_um_));
+    } else if (left_ml_[static_cast<std::size_t>(vat)] < area_mm2 * (z_um - top_um_) / 1e6) {
+        fault(fmt::format("the vat of slot {} has run dry at {} um", place.slot, z_um));
+    } else {
+        return dose;
     }
-    if (fault.empty()) return true;
-    if (faults_.size() < most_faults) faults_.push_back(std::move(fault));
-    return false;
+    return std::nullopt;
 }
 
 void Cure::open(int z_um) {
     if (open_ && open_->top_um == z_um) return;
     finish();
     open_ = OpenLayer{z_um, z_um - top_um_, {}};
-    open_->values.resize(printer_->vats.size());
+    open_->lit.resize(printer_->vats.size());
+    section_mm2_ = 0;
 }
 
-void Cure::expose(const job::Image& image, int vat, double seconds, int z_um) {
+void Cure::expose(const Runs& light, int vat, double seconds, int z_um) {
     if (open_ && open_->top_um != z_um) finish();
-    if (!cures(vat, seconds, z_um)) return;
+    const double area_mm2 = static_cast<double>(light_of(light)) / 255 * pixel_mm2();
+    const auto dose = cures(vat, seconds, z_um, area_mm2);
+    if (!dose) return;
     open(z_um);
-    auto& values = open_->values[static_cast<std::size_t>(vat)];
-    values.resize(image.pixels.size());
-    long long light = 0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        constexpr int most = 65535;
-        values[i] = static_cast<std::uint16_t>(std::min(most, values[i] + image.pixels[i]));
-        light += image.pixels[i];
+    open_->lit[static_cast<std::size_t>(vat)].push_back(light);
+    section_mm2_ += area_mm2;
+    left_ml_[static_cast<std::size_t>(vat)] -= area_mm2 * open_->thickness_um / 1e6;
+    shine_through(light, vat, *dose);
+}
+
+/// How far below the ceiling of a column resin has cured.
+double Cure::overcure_um(const Column& column) const {
+    return std::min<double>(curves_[static_cast<std::size_t>(column.vat)].depth_um(column.dose_J_m2), column.free_um);
+}
+
+/// More light arrives at the ceiling of a column.
+void Cure::add_dose(Column& column, double dose_J_m2) {
+    const double before = overcure_um(column);
+    column.dose_J_m2 += static_cast<float>(dose_J_m2);
+    const double after = overcure_um(column);
+    overcure_mm3_[static_cast<std::size_t>(column.vat)] += (after - before) / 1000 * pixel_mm2();
+    deepest_overcure_um_ = std::max(deepest_overcure_um_, after);
+}
+
+/// Light passes the new layer and all that is solid above it, up to the ceiling of the column.
+void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
+    const machine::Projector& projector = printer_->projector;
+    const auto width = static_cast<std::size_t>(projector.width_px);
+    columns_.resize(width * static_cast<std::size_t>(projector.height_px));
+    const int top_um = open_->top_um;
+    const int bottom_um = top_um - open_->thickness_um;
+    const double penetration_um = curves_[static_cast<std::size_t>(vat)].penetration_um;
+    const double reach_um = 8 * penetration_um;
+    int known_way_um = -1;
+    double known_dose = 0;
+    for (const Run& run : light) {
+        Column* row = columns_.data() + static_cast<std::size_t>(run.row) * width;
+        for (Column* c = row + run.begin; c != row + run.end; ++c) {
+            if (c->top_um < bottom_um)  // nothing solid right above: a new ceiling
+                *c = {bottom_um, top_um, bottom_um - c->top_um, 0, static_cast<std::int16_t>(vat)};
+            c->top_um = top_um;
+            const int way_um = top_um - c->bottom_um;
+            if (c->free_um <= 0 || way_um > reach_um) continue;
+            if (way_um != known_way_um) {
+                known_way_um = way_um;
+                known_dose = dose_J_m2 * std::exp(-way_um / penetration_um);
+            }
+            add_dose(*c, known_dose);
+        }
     }
-    const double pixel_mm = printer_->projector.pixel_um / 1000;
-    const double cured_mm3 = static_cast<double>(light) / 255 * pixel_mm * pixel_mm * open_->thickness_um / 1000;
-    double& left = left_ml_[static_cast<std::size_t>(vat)];
-    if (left >= 0 && left < cured_mm3 / 1000) {
-        const int slot = printer_->vats[static_cast<std::size_t>(vat)].slot;
-        faults_.push_back(fmt::format("the vat of slot {} ran dry", slot));
-    }
-    left -= cured_mm3 / 1000;
 }
 
 void Cure::count_double(const OpenLayer& layer) {
-    const std::size_t pixels = static_cast<std::size_t>(printer_->projector.width_px) *
-                               static_cast<std::size_t>(printer_->projector.height_px);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        int sum = 0;
-        for (const auto& values : layer.values) sum += values.empty() ? 0 : values[i];
-        if (sum > 255) ++pixels_lit_twice_;
+    std::vector<Runs> all;
+    for (const std::vector<Runs>& of_vat : layer.lit) all.insert(all.end(), of_vat.begin(), of_vat.end());
+    if (all.size() < 2) return;
+    for (const Run& run : sum_of(all, printer_->projector.width_px)) {
+        if (run.value > 255) pixels_lit_twice_ += run.end - run.begin;
     }
 }
 
 void Cure::finish() {
     if (!open_) return;
     CuredLayer layer{open_->top_um, open_->thickness_um, {}};
-    for (std::size_t vat = 0; vat < open_->values.size(); ++vat) {
-        if (open_->values[vat].empty()) continue;
-        layer.vats.push_back({static_cast<int>(vat), runs_of(open_->values[vat], printer_->projector.width_px)});
+    for (std::size_t vat = 0; vat < open_->lit.size(); ++vat) {
+        if (open_->lit[vat].empty()) continue;
+        layer.vats.push_back({static_cast<int>(vat), sum_of(open_->lit[vat], printer_->projector.width_px)});
     }
     count_double(*open_);
     top_um_ = layer.top_um;

@@ -1,10 +1,14 @@
 // Light becomes matter: which resin cured where, layer by layer, and what is left in the vats.
 //
-// The rule. An exposure cures if the light was on for at least the resin's critical share of its exposure time; a
-// shorter one leaves nothing solid. A pixel's grey value v is how much of the pixel's area lies inside the body (that
-// is what anti-aliased edges mean), so a cured pixel counts as v/255 of its volume; it is not read as a weaker dose.
-// The cured layer is as thick as the gap between the platform's height and the top of the part, so a wrong height
-// shows; a gap deeper than the resin cures holds on to nothing and is lost.
+// The rule (Jacobs' working curve): a dose E of light cures to the depth Dp ln(E / Ec), Dp the resin's depth of
+// penetration, Ec its critical dose. A layer holds on to what is above it if the depth reaches across the gap between
+// the platform's height and the top of the part; else it is lost. What reaches further cures again what is solid, and
+// where it is not, under an overhang, resin that should have stayed liquid: overcure, summed up over all the layers
+// that send light through that ceiling.
+//
+// A pixel's grey value v is how much of the pixel's area lies inside the body (that is what anti-aliased edges mean),
+// so a cured pixel counts as v/255 of its volume; it is not read as a weaker dose. The cured layer is as thick as the
+// gap, so a wrong height shows.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +18,25 @@
 
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "twin/runs.hpp"
 
 namespace pliant::twin {
 
-/// Pixels [begin, end) of one row, all of one value.
-struct Run {
-    int row = 0;
-    int begin = 0, end = 0;
-    std::uint16_t value = 0;  ///< sum of the grey values that cured here; above 255 only if lit twice
+/// Depth over dose of one resin.
+struct WorkingCurve {
+    double penetration_um = 1;
+    double critical_J_m2 = 1;
+    [[nodiscard]] double depth_um(double dose_J_m2) const;
 };
+
+/// The resin's own curve, or one through the two points that the printer file gives: the exposure cures `cure_depth`,
+/// and its critical share just one layer.
+[[nodiscard]] WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin);
 
 /// What cured from one vat on one layer.
 struct VatLayer {
     int vat = 0;  ///< index into Printer::vats
-    std::vector<Run> runs;
+    Runs runs;    ///< values above 255 only if lit twice
 };
 
 struct CuredLayer {
@@ -40,14 +49,25 @@ class Cure {
 public:
     explicit Cure(const machine::Printer& printer);
 
-    /// One exposure with a vat and the platform at `z_um`. `image` has the projector's size.
-    void expose(const job::Image& image, int vat, double seconds, int z_um);
+    /// One exposure with a vat and the platform at `z_um`; light through an image of the projector's size.
+    void expose(const Runs& light, int vat, double seconds, int z_um);
+    void expose(const job::Image& image, int vat, double seconds, int z_um) {
+        expose(runs_of(image), vat, seconds, z_um);
+    }
     /// Closes the layer that is under way; called before the block is looked at.
     void finish();
+    /// Resin that leaves a vat (negative: comes into it) in another way than by curing.
+    void take_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] -= ml; }
+    void set_level_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] = ml; }
 
     [[nodiscard]] const std::vector<CuredLayer>& layers() const { return layers_; }
     [[nodiscard]] const std::vector<double>& left_ml() const { return left_ml_; }  ///< by vat
     [[nodiscard]] long pixels_lit_twice() const { return pixels_lit_twice_; }
+    /// Cured below ceilings though no image asks for it, and the deepest of it; by vat. Up to finish().
+    [[nodiscard]] const std::vector<double>& overcure_mm3() const { return overcure_mm3_; }
+    [[nodiscard]] double deepest_overcure_um() const { return deepest_overcure_um_; }
+    /// Cross-section of what was last lit in any vat at the part's lower end, in mm^2.
+    [[nodiscard]] double section_mm2() const { return section_mm2_; }
     /// What went wrong with the light, one line each.
     [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
 
@@ -55,17 +75,35 @@ private:
     struct OpenLayer {
         int top_um = 0;
         int thickness_um = 0;
-        std::vector<std::vector<std::uint16_t>> values;  ///< by vat, (height, width); empty: nothing from that vat
+        std::vector<std::vector<Runs>> lit;  ///< by vat, each exposure
     };
-    [[nodiscard]] bool cures(int vat, double seconds, int z_um);
+    /// The lowest solid stack of a column of pixels: a ceiling for what is free beyond it.
+    struct Column {
+        std::int32_t bottom_um = 0;  ///< the side that was printed first, away from the window
+        std::int32_t top_um = 0;     ///< the side that was printed last; 0: the platform itself
+        std::int32_t free_um = 0;    ///< resin between `bottom_um` and what is solid above it
+        float dose_J_m2 = 0;         ///< that has arrived at `bottom_um`
+        std::int16_t vat = 0;        ///< that lit the ceiling
+    };
+    [[nodiscard]] std::optional<double> cures(int vat, double seconds, int z_um, double area_mm2);
+    void fault(std::string text);
     void open(int z_um);
+    void shine_through(const Runs& light, int vat, double dose_J_m2);
+    void add_dose(Column& column, double dose_J_m2);
+    [[nodiscard]] double overcure_um(const Column& column) const;
     void count_double(const OpenLayer& layer);
+    [[nodiscard]] double pixel_mm2() const;
 
     const machine::Printer* printer_;
+    std::vector<WorkingCurve> curves_;  ///< by vat
     std::optional<OpenLayer> open_;
     int top_um_ = 0;  ///< of the part
     std::vector<CuredLayer> layers_;
+    std::vector<Column> columns_;  ///< (height, width); empty until something is lit
     std::vector<double> left_ml_;
+    std::vector<double> overcure_mm3_;
+    double deepest_overcure_um_ = 0;
+    double section_mm2_ = 0;
     long pixels_lit_twice_ = 0;
     std::vector<std::string> faults_;
 };

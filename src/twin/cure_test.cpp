@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -12,7 +14,7 @@ machine::Printer small() {
     machine::Printer p;
     p.tower.slots = 2;
     p.vats = {{1, "soft", 1}, {2, "rigid", 1}};
-    p.resins = {{"soft", 2, 2, 0, 120, 0.8}, {"rigid", 2, 2, 0, 120, 0.8}};
+    p.resins = {{"soft", 2, 2, 0, 120, 0.8, 0, 0}, {"rigid", 2, 2, 0, 120, 0.8, 0, 0}};
     p.projector.width_px = 4;
     p.projector.height_px = 2;
     p.projector.pixel_um = 100;
@@ -75,11 +77,50 @@ TEST_CASE("thickness is the gap; a gap that is too deep is lost with all that fo
     CHECK(cure.faults().size() == 1);
 }
 
-TEST_CASE("a vat runs dry once") {
+TEST_CASE("what a vat no longer holds does not cure") {
     auto printer = small();
-    printer.vats[0].fill_ml = 1e-6;
+    printer.vats[0].fill_ml = 2e-6;  // a layer of the left image takes 1.6e-6
     Cure cure(printer);
     cure.expose(left, 0, 2, 50);
+    CHECK(cure.faults().empty());
     cure.expose(left, 0, 2, 100);
     CHECK(cure.faults().size() == 1);
+    cure.finish();
+    CHECK(cure.layers().size() == 1);
+}
+
+TEST_CASE("working curve: the exposure cures the stated depth, its critical share one layer; or as given") {
+    auto printer = small();
+    const WorkingCurve derived = working_curve(printer, printer.resins[0]);
+    CHECK(derived.depth_um(2) == doctest::Approx(120));  // no irradiance in the file: 1 W/m^2
+    CHECK(derived.depth_um(1.6) == doctest::Approx(50));
+    CHECK(derived.depth_um(0) == 0);
+    printer.resins[0].penetration_um = 100;
+    printer.resins[0].critical_J_m2 = 50;
+    const WorkingCurve given = working_curve(printer, printer.resins[0]);
+    CHECK(given.depth_um(50) == 0);
+    CHECK(given.depth_um(50 * 2.718281828459045) == doctest::Approx(100));
+}
+
+TEST_CASE("light goes on through a ceiling and cures what should stay liquid below it, more with every layer") {
+    auto printer = small();
+    printer.projector.irradiance_W_m2 = 100;
+    printer.resins[0].penetration_um = 100;
+    printer.resins[0].critical_J_m2 = 100;
+    Cure cure(printer);
+    // Two layers on the left; then one all over: a ceiling of 4 pixels of 0.01 mm^2, 100 um above the platform.
+    const job::Image all{4, 2, {255, 255, 255, 255, 255, 255, 255, 255}};
+    cure.expose(left, 0, 2, 50);
+    cure.expose(left, 0, 2, 100);
+    CHECK(cure.overcure_mm3()[0] == 0);
+    cure.expose(all, 0, 2, 150);
+    // 200 J/m^2 less 50 um: e^-0.5; 100 ln(200 e^-0.5 / 100) = 19.3 um.
+    CHECK(cure.deepest_overcure_um() == doctest::Approx(100 * (std::log(2.0) - 0.5)));
+    // Four pixels of the left image are lit there: the four dark ones hang free.
+    CHECK(cure.overcure_mm3()[0] == doctest::Approx(4 * 0.01 * 0.1 * (std::log(2.0) - 0.5)));
+    cure.expose(all, 0, 2, 200);
+    CHECK(cure.deepest_overcure_um() == doctest::Approx(100 * (std::log(2 * (1 + std::exp(-0.5))) - 0.5)));
+    for (int z = 250; z <= 1000; z += 50) cure.expose(all, 0, 2, z);
+    CHECK(cure.deepest_overcure_um() <= 100);  // the platform is there
+    CHECK(cure.faults().empty());
 }

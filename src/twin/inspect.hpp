@@ -14,6 +14,9 @@ namespace pliant::twin {
 /// The image of a layer and a material (indices into the manifest); asked for listed images only.
 using ImageSource = std::function<Result<job::Image>(int layer, int material)>;
 
+/// The same as runs; for callers that have seen the images before.
+using RunSource = std::function<Result<Runs>(int layer, int material)>;
+
 struct MaterialReport {
     std::string name;
     std::string resin;
@@ -30,6 +33,8 @@ struct ResinReport {
     std::string name;
     double cured_mm3 = 0;
     double left_ml = 0;
+    double foreign_share = 0;  ///< of what is left, in the end
+    double overcure_mm3 = 0;   ///< cured below ceilings where no image asks for it
 };
 
 struct Report {
@@ -43,6 +48,12 @@ struct Report {
     int wrong_thickness = 0;          ///< layers thicker or thinner than the job's
     long wrong_pixels = 0;            ///< that cured more or less of a resin than the images ask for
     long pixels_lit_twice = 0;
+    std::string first_deviation;  ///< layer, material, what and by which step; "" if the print passed
+    int contaminated_layers = 0;
+    double worst_foreign = 0;  ///< share of foreign resin in a vat that printed
+    double worst_residue = 0;  ///< share of the film that a cleaning left
+    double deepest_overcure_um = 0;
+    std::vector<Contamination> contamination;  ///< layer by layer
     Log log;
     double clock_s = 0;
 };
@@ -51,6 +62,7 @@ struct Report {
 /// height and thickness, every pixel holds what its images say, the volume of every material agrees with the model's,
 /// and nothing happened on the way that must not. Fails (as an error) only if an image cannot be had.
 [[nodiscard]] Result<Report> inspect(Twin& twin, const job::Manifest& job, const ImageSource& images);
+[[nodiscard]] Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& images);
 
 [[nodiscard]] std::string report_json(const Report& report);
 [[nodiscard]] std::string report_text(const Report& report);

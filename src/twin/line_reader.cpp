@@ -31,7 +31,12 @@ int checksum(std::string_view text) {
 
 std::optional<ReceivedLine> LineReader::feed(char byte) {
     if (byte == '\n' || byte == '\r') return finish();
-    if (byte == ';') comment_ = true;
+    const bool escaped = std::exchange(escape_, false);
+    if (byte == '\\' && !escaped && !comment_) {
+        escape_ = true;
+        return std::nullopt;
+    }
+    if (byte == ';' && !escaped) comment_ = true;
     if (byte == '\b') {
         if (!line_.empty()) line_.pop_back();
     } else if (!comment_ && line_.size() < most_chars) {
@@ -43,6 +48,7 @@ std::optional<ReceivedLine> LineReader::feed(char byte) {
 std::optional<ReceivedLine> LineReader::finish() {
     const std::string line = std::exchange(line_, {});
     comment_ = false;
+    escape_ = false;
     if (line.empty()) return std::nullopt;
     return verify(trim(line));
 }

@@ -32,6 +32,7 @@ private:
 
     std::string line_;
     bool comment_ = false;
+    bool escape_ = false;  ///< a backslash: the next character loses its meaning
     long last_number_ = 0;
 };
 

@@ -26,6 +26,24 @@ Json material_json(const MaterialReport& m) {
             {"passed", m.passed}};
 }
 
+/// The map as columns: a row for each vat of each layer.
+Json contamination_json(const Report& r) {
+    Json top = Json::array(), vat = Json::array(), foreign = Json::array(), residue = Json::array();
+    for (const Contamination& c : r.contamination) {
+        top.push_back(c.top_um);
+        vat.push_back(c.vat);
+        foreign.push_back(rounded(c.foreign));
+        residue.push_back(rounded(c.residue));
+    }
+    return {{"worst_foreign", rounded(r.worst_foreign)},
+            {"worst_residue", rounded(r.worst_residue)},
+            {"layers_over_limit", r.contaminated_layers},
+            {"top_um", std::move(top)},
+            {"vat", std::move(vat)},
+            {"foreign", std::move(foreign)},
+            {"residue", std::move(residue)}};
+}
+
 }  // namespace
 
 std::string report_json(const Report& r) {
@@ -33,11 +51,15 @@ std::string report_json(const Report& r) {
     for (const MaterialReport& m : r.materials) materials.push_back(material_json(m));
     Json resins = Json::array();
     for (const ResinReport& resin : r.resins) {
-        resins.push_back(
-            {{"name", resin.name}, {"cured_mm3", rounded(resin.cured_mm3)}, {"left_ml", rounded(resin.left_ml)}});
+        resins.push_back({{"name", resin.name},
+                          {"cured_mm3", rounded(resin.cured_mm3)},
+                          {"left_ml", rounded(resin.left_ml)},
+                          {"foreign_share", rounded(resin.foreign_share)},
+                          {"overcure_mm3", rounded(resin.overcure_mm3)}});
     }
     const Json json = {{"passed", r.passed},
                        {"reasons", r.reasons},
+                       {"first_deviation", r.first_deviation},
                        {"materials", std::move(materials)},
                        {"resins", std::move(resins)},
                        {"layers", r.layers},
@@ -49,6 +71,9 @@ std::string report_json(const Report& r) {
                        {"swaps", r.log.swaps},
                        {"short_cleanings", r.log.short_cleanings},
                        {"exposures", r.log.exposures},
+                       {"contamination", contamination_json(r)},
+                       {"deepest_overcure_um", rounded(r.deepest_overcure_um)},
+                       {"mishaps", r.log.mishaps},
                        {"violations", r.log.violations},
                        {"bad_lines", r.log.bad_lines},
                        {"resets", r.log.resets},
@@ -65,8 +90,12 @@ std::string report_text(const Report& r) {
                             m.model_mm3, m.tolerance_mm3);
     }
     for (const ResinReport& resin : r.resins) {
-        if (resin.cured_mm3 > 0) text += fmt::format("  {:<16}{:>12.1f} ml left\n", resin.name, resin.left_ml);
+        if (resin.cured_mm3 <= 0) continue;
+        text += fmt::format("  {:<16}{:>12.1f} ml left, {:.4f} % foreign; {:.2f} mm^3 overcured below overhangs\n",
+                            resin.name, resin.left_ml, 100 * resin.foreign_share, resin.overcure_mm3);
     }
+    if (!r.first_deviation.empty()) text += fmt::format("  first: {}\n", r.first_deviation);
+    for (const std::string& mishap : r.log.mishaps) text += fmt::format("  fault: {}\n", mishap);
     for (const std::string& reason : r.reasons) text += fmt::format("  wrong: {}\n", reason);
     return text;
 }

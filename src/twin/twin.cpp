@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace pliant::twin {
@@ -11,6 +13,8 @@ namespace {
 constexpr std::size_t queue_lines = 4;     // Marlin's BUFSIZE
 constexpr std::size_t buffer_bytes = 127;  // RX_BUFFER_SIZE 128 holds one less
 constexpr std::size_t longest_raw_line = 4096;
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr int most_slip_um = 500;  // of a carriage, a table, a tower: beyond that nothing fits any more
 
 /// Somewhere in the middle of every travel: nobody knows until the axes are homed.
 machine::Position unknown_start(const machine::Printer& printer) {
@@ -19,6 +23,7 @@ machine::Position unknown_start(const machine::Printer& printer) {
         start[axis] = printer.axis(axis).min_um + (printer.axis(axis).max_um - printer.axis(axis).min_um) / 2;
     }
     start[machine::Axis::carriage] = printer.carriage.print_um;
+    start[machine::Axis::table] = printer.table.stations_um.empty() ? 0 : printer.station_um(1);
     return start;
 }
 
@@ -31,9 +36,31 @@ std::string_view without_blanks(std::string_view line) {
 }  // namespace
 
 Twin::Twin(const machine::Printer& printer, Options options)
-    : printer_(printer), options_(std::move(options)), motors_(printer_, unknown_start(printer_)), cure_(printer_) {
+    : printer_(printer),
+      options_(std::move(options)),
+      motors_(printer_, unknown_start(printer_)),
+      cure_(printer_),
+      fluids_(printer_),
+      busy_every_s_(options_.busy_every_s) {
+    for (const Fault& f : options_.faults) {
+        const machine::Vat* vat = f.kind == Fault::Kind::empty_vat ? printer_.vat_of_slot(f.n) : nullptr;
+        if (vat != nullptr) cure_.set_level_ml(static_cast<int>(vat - printer_.vats.data()), 0);
+    }
+    if (options_.boot_s > 0)
+        boots_at_s_ = options_.boot_s;
+    else
+        boot();
+}
+
+/// What the firmware says first; `echo:` and `//` lines are for people.
+void Twin::boot() {
+    boots_at_s_.reset();
     say("start");
-    say("echo:PowerUp");
+    say(log_.resets == 0 ? "PowerUp" : "External Reset");
+    say("Marlin dialect of the Pliant twin");
+    say("echo: Free Memory: 4096  PlannerBufferBytes: 1584");
+    say("//action:prompt_end");
+    next_wait_s_ = now_s_ + options_.wait_every_s;
 }
 
 void Twin::say(std::string_view line) {
@@ -45,16 +72,18 @@ std::string Twin::take_output() {
     return std::exchange(output_, {});
 }
 
-bool Twin::fault_hits(Fault::Kind kind, int n) const {
-    return std::any_of(options_.faults.begin(), options_.faults.end(),
-                       [&](const Fault& f) { return f.kind == kind && f.n == n; });
+const Fault* Twin::fault_at(Fault::Kind kind, int n) const {
+    const auto found = std::find_if(options_.faults.begin(), options_.faults.end(),
+                                    [&](const Fault& f) { return f.kind == kind && f.n == n; });
+    return found == options_.faults.end() ? nullptr : &*found;
 }
 
-void Twin::say_ok(const Queued& queued) {
+void Twin::say_ok(const Queued& queued, std::string_view data) {
     if (fault_hits(Fault::Kind::lose_ok, ++oks_)) return;
-    if (!options_.advanced_ok) return say("ok");
+    if (!options_.advanced_ok) return say(fmt::format("ok{}", data));
     const auto room = queue_lines - std::min(queue_lines, queue_.size());
-    say(queued.number ? fmt::format("ok N{} P15 B{}", *queued.number, room) : fmt::format("ok P15 B{}", room));
+    const std::string number = queued.number ? fmt::format(" N{}", *queued.number) : "";
+    say(fmt::format("ok{} P15 B{}{}", number, room, data));
 }
 
 void Twin::violation(const std::string& what) {
@@ -64,8 +93,15 @@ void Twin::violation(const std::string& what) {
 
 // --- the receiving end ---------------------------------------------------------------------------------------------
 
+void Twin::mishap(const std::string& what) {
+    log_.mishaps.push_back(fmt::format("{:.3f} s: {}", now_s_, what));
+}
+
 void Twin::receive(std::string_view bytes) {
-    for (const char byte : bytes) {
+    for (char byte : bytes) {
+        ++bytes_;
+        if (boots_at_s_ || fault_hits(Fault::Kind::lose_byte, bytes_)) continue;
+        if (fault_hits(Fault::Kind::flip_byte, bytes_)) byte = static_cast<char>(byte ^ 4);
         if (arriving_.size() < longest_raw_line) arriving_ += byte;
         if (byte == '\n') take_line(std::exchange(arriving_, {}));
     }
@@ -77,9 +113,16 @@ void Twin::take_line(std::string line) {
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;
     if (fault_hits(Fault::Kind::corrupt_byte, lines_) && line.size() > 2) line[line.size() / 2] ^= 4;
+    if (const Fault* f = fault_at(Fault::Kind::stall, lines_))
+        stalled_until_s_ = now_s_ + (f->amount > 0 ? f->amount : 30);
+    if (const Fault* f = fault_at(Fault::Kind::resend_loop, lines_))
+        refuse_more_ = f->amount > 0 ? static_cast<int>(f->amount) : 3;
     const std::string_view plain = without_blanks(std::string_view(line).substr(0, line.size() - 1));
-    if (plain == "M112") return kill();
-    if (plain == "M410") quick_stop();
+    if (options_.emergency_parser) {
+        if (plain == "M112") return kill();
+        if (plain == "M410") quick_stop();
+        if (plain == "M108") user_continues();
+    }
     buffer_ += line.substr(0, buffer_bytes - std::min(buffer_bytes, buffer_.size()));
     drain();
     advance_to(now_s_);
@@ -87,10 +130,16 @@ void Twin::take_line(std::string line) {
 
 /// Moves lines from the receive buffer into the command queue, as long as there is room.
 void Twin::drain() {
-    while (!buffer_.empty() && queue_.size() < queue_lines) {
-        const auto line = reader_.feed(buffer_.front());
+    while (!buffer_.empty() && queue_.size() < queue_lines && now_s_ >= stalled_until_s_) {
+        const long last = reader_.last_number();
+        auto line = reader_.feed(buffer_.front());
         buffer_.erase(0, 1);
         if (!line) continue;
+        if (line->error.empty() && line->number && refuse_more_ > 0) {
+            --refuse_more_;
+            reader_.set_last_number(last);
+            line->error = "checksum mismatch";
+        }
         if (line->error.empty()) {
             queue_.push_back({line->command, line->number});
         } else {
@@ -123,8 +172,14 @@ void Twin::quick_stop() {
     motors_.stop(now_s_);
     if (!running_) return;
     running_->done_at_s = now_s_;
-    // An interrupted homing has homed nothing.
+    // An interrupted homing has homed nothing, an interrupted pause is over.
     if (running_->command && running_->command->is('G', 28)) running_->command = machine::Command{'M', 400, {}, {}};
+}
+
+/// M108: a pause for the user is over.
+void Twin::user_continues() {
+    if (!running_ || !running_->command) return;
+    if (running_->command->is('M', 0) || running_->command->is('M', 1)) running_->done_at_s = now_s_;
 }
 
 void Twin::reset() {
@@ -137,36 +192,55 @@ void Twin::reset() {
     running_.reset();
     dead_ = false;
     idle_limit_s_ = 120;
+    busy_every_s_ = options_.busy_every_s;
     pump_on_ = false;
-    say("start");
-    say("echo: External Reset");
+    stalled_until_s_ = 0;
+    if (options_.boot_s > 0)
+        boots_at_s_ = now_s_ + options_.boot_s;
+    else
+        boot();
 }
 
 // --- the clock -----------------------------------------------------------------------------------------------------
 
+/// When an idle firmware says or does something by itself; infinite if never.
+double Twin::idle_event() const {
+    if (!queue_.empty() || !buffer_.empty()) return stalled_until_s_;
+    return options_.wait_every_s > 0 && !dead_ ? next_wait_s_ : never;
+}
+
 std::optional<double> Twin::next_event() const {
-    if (!running_) return std::nullopt;
-    return std::min(running_->done_at_s, running_->next_busy_s);
+    if (boots_at_s_) return boots_at_s_;
+    const double next = running_ ? std::min(running_->done_at_s, running_->next_busy_s) : idle_event();
+    if (next == never) return std::nullopt;
+    return std::max(next, stalled_until_s_);
 }
 
 void Twin::advance_to(double seconds) {
     for (;;) {
-        if (!running_ && !queue_.empty()) start_next();
+        if (now_s_ >= stalled_until_s_) drain();
+        if (!running_ && !queue_.empty() && now_s_ >= stalled_until_s_) start_next();
         const auto next = next_event();
         if (!next || *next > seconds) break;
         now_s_ = std::max(now_s_, *next);
-        if (running_->done_at_s <= now_s_) {
+        if (boots_at_s_) {
+            boot();
+        } else if (running_ && running_->done_at_s <= now_s_) {
             finish_running();
-        } else {
-            say("echo:busy: processing");
-            running_->next_busy_s += options_.busy_every_s;
+        } else if (running_) {
+            const bool pause = running_->command && running_->command->letter == 'M' && running_->command->number <= 1;
+            say(pause ? "echo:busy: paused for user" : "echo:busy: processing");
+            running_->next_busy_s = busy_every_s_ > 0 ? now_s_ + busy_every_s_ : never;
+        } else if (queue_.empty() && buffer_.empty()) {
+            say("wait");
+            next_wait_s_ = now_s_ + options_.wait_every_s;
         }
     }
     now_s_ = std::max(now_s_, seconds);
 }
 
 void Twin::start_next() {
-    Running running{queue_.front(), std::nullopt, now_s_, now_s_ + options_.busy_every_s};
+    Running running{queue_.front(), std::nullopt, now_s_, busy_every_s_ > 0 ? now_s_ + busy_every_s_ : never};
     queue_.pop_front();
     if (auto command = machine::parse_command(running.queued.line)) {
         running.done_at_s = blocks_until(*command);
@@ -179,12 +253,24 @@ void Twin::start_next() {
 void Twin::finish_running() {
     const Running done = std::move(*running_);
     running_.reset();
-    if (done.command) {
+    const bool z_move = options_.z_sync && done.command && (done.command->is('G', 0) || done.command->is('G', 1)) &&
+                        done.command->has(printer_.axis(machine::Axis::platform).letter);
+    if (z_move && done.synced) {
+        say("Z_move_comp");
+    } else if (done.command) {
         execute(*done.command, done.queued);
+        if (z_move && !dead_) {
+            running_ = done;
+            running_->synced = true;
+            running_->done_at_s = std::max(now_s_, motors_.done_at());
+            return;
+        }
     } else {
         say(fmt::format("echo:Unknown command: \"{}\"", done.queued.line));
     }
-    if (!dead_) say_ok(done.queued);
+    const bool temperature = done.command && done.command->is('M', 105);
+    if (!dead_) say_ok(done.queued, temperature ? " T:0.00 /0.00 @:0" : "");
+    next_wait_s_ = now_s_ + options_.wait_every_s;
     drain();
 }
 
@@ -200,16 +286,47 @@ void Twin::light_on(const job::Image& image) {
     if (Status status = motors_.interlock().light_on(motors_.moving(now_s_)); !status) {
         return violation(status.error().message);
     }
-    shown_ = image;
+    if (last_vat_ < 0) last_vat_ = interlock().hooked_vat().value_or(-1);
+    shown_ = runs_of(image);
     shown_since_s_ = now_s_;
-    shown_vat_ = interlock().hooked_vat().value_or(-1);
+    shown_vat_ = vat_under_light();
+    if (shown_vat_ >= 0) change_vat_part(shown_vat_);
+    if (fault_hits(Fault::Kind::dark_projector, log_.exposures)) {
+        mishap("the projector stays dark");
+        shown_vat_ = -1;
+    } else if (shown_vat_ < 0) {
+        mishap("light without a vat in its place");
+    }
     sprayed_s_ = 0;
+}
+
+/// The vat that really is under the platform, by index; -1: none is where it should be.
+int Twin::vat_under_light() const {
+    const int hooked = interlock().hooked_vat().value_or(-1);
+    const auto slip = [&](machine::Axis axis) { return std::abs(slip_um_[static_cast<std::size_t>(axis)]); };
+    if (slip(machine::Axis::carriage) > most_slip_um || slip(machine::Axis::table) > most_slip_um) return -1;
+    if (hooked >= 0 && hooked == missed_vat_) return -1;
+    return stuck_vat_ >= 0 ? stuck_vat_ : hooked;
+}
+
+/// The part comes into a vat with what cleaning has left on it of the one before.
+void Twin::change_vat_part(int vat) {
+    if (part_vat_ != vat) {
+        cure_.take_ml(vat, -fluids_.enter(vat, cure_.left_ml()[static_cast<std::size_t>(vat)]));
+        part_vat_ = vat;
+    }
+    const int top_um = interlock().position()[machine::Axis::platform];
+    const bool known =
+        !contamination_.empty() && contamination_.back().top_um == top_um && contamination_.back().vat == vat;
+    if (!known) contamination_.push_back({top_um, vat, fluids_.foreign_share(vat), residue_});
 }
 
 void Twin::light_off() {
     motors_.interlock().light_off();
     if (!shown_) return;
-    cure_.expose(*shown_, shown_vat_, now_s_ - shown_since_s_, interlock().position()[machine::Axis::platform]);
+    const int z_um =
+        interlock().position()[machine::Axis::platform] + slip_um_[static_cast<std::size_t>(machine::Axis::platform)];
+    if (shown_vat_ >= 0) cure_.expose(*shown_, shown_vat_, now_s_ - shown_since_s_, z_um);
     shown_.reset();
 }
 

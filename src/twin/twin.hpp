@@ -9,8 +9,8 @@
 // There is no wall time in it: whoever owns it moves its clock. docs/reference/printer.md says what it knows of Marlin.
 #pragma once
 
+#include <array>
 #include <deque>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,39 +20,44 @@
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
 #include "twin/cure.hpp"
+#include "twin/fault.hpp"
+#include "twin/fluids.hpp"
 #include "twin/line_reader.hpp"
 #include "twin/motors.hpp"
 
 namespace pliant::twin {
 
-/// Something that goes wrong on demand, once.
-struct Fault {
-    enum class Kind {
-        corrupt_byte,  ///< a bit of the n-th received line flips
-        lose_line,     ///< the n-th received line never arrives
-        lose_ok,       ///< the n-th `ok` is not heard
-        lose_resend,   ///< the n-th `Resend:` is not heard
-        reset,         ///< the controller restarts when the n-th line arrives
-    };
-    Kind kind = Kind::corrupt_byte;
-    int n = 1;
-};
-
+/// Which Marlin it is, and what goes wrong.
 struct Options {
     bool advanced_ok = false;  ///< `ok N12 P15 B3` instead of `ok`
-    double busy_every_s = 2;   ///< `echo:busy: processing` while a command blocks
+    double busy_every_s = 2;   ///< `echo:busy: processing` while a command blocks; 0: never. M113 changes it
     std::vector<Fault> faults;
+    bool emergency_parser = true;  ///< M112, M108 and M410 act as soon as they arrive
+    bool z_sync = false;           ///< NANODLP_Z_SYNC: moves of the platform block and end with `Z_move_comp`
+    bool report_fans = false;      ///< `M106 P0 S255` whenever a fan changes
+    double wait_every_s = 0;       ///< `wait` while idle (builds with NO_TIMEOUTS); 0: never
+    double boot_s = 0;             ///< silence after a reset, before `start`
 };
 
 /// What happened that must not, or should be known.
 struct Log {
     std::vector<std::string> violations;  ///< of the interlocks, with the time
+    std::vector<std::string> mishaps;     ///< what broke behind the wire, unknown to the controller
     int swaps = 0;                        ///< another vat was hooked than the one before
     int short_cleanings = 0;  ///< of those, with less spray since the last light than the machine should give
     int exposures = 0;
     int homings = 0;
     int bad_lines = 0;
     int resets = 0;
+    int clamped_moves = 0;  ///< that asked for more than an axis' travel, and were cut without a word
+};
+
+/// What a layer was printed in: shares from 0 to 1.
+struct Contamination {
+    int top_um = 0;
+    int vat = 0;
+    double foreign = 0;  ///< of the vat's content that is another resin
+    double residue = 0;  ///< of the film of the vat before that cleaning has left on the part
 };
 
 class Twin {
@@ -80,6 +85,9 @@ public:
     [[nodiscard]] const Log& log() const { return log_; }
     /// The cured block, closed up to now.
     [[nodiscard]] const Cure& cured();
+    [[nodiscard]] const Fluids& fluids() const { return fluids_; }
+    /// One entry for each vat of each layer, in the order of printing.
+    [[nodiscard]] const std::vector<Contamination>& contamination() const { return contamination_; }
 
     Twin(const Twin&) = delete;
     Twin& operator=(const Twin&) = delete;
@@ -94,10 +102,11 @@ private:
         std::optional<machine::Command> command;  ///< nullopt: unknown
         double done_at_s = 0;
         double next_busy_s = 0;
+        bool synced = false;  ///< a move that its end is waited for has been queued
     };
 
     void say(std::string_view line);
-    void say_ok(const Queued& queued);
+    void say_ok(const Queued& queued, std::string_view data = "");
     void violation(const std::string& what);
     void take_line(std::string line);
     void drain();
@@ -108,18 +117,33 @@ private:
     void execute(const machine::Command& command, const Queued& queued);
     void execute_move(const machine::Command& command);
     void execute_home(const machine::Command& command);
-    void execute_switch(const machine::Command& command, std::string_view line);
+    void execute_switch(const machine::Command& command);
+    void execute_set(const machine::Command& command);
     void execute_other(const machine::Command& command);
-    void note_vat();
+    void note_vat(std::optional<int> before);
+    void count_swap(int vat);
+    void miss_steps(const machine::Position& from, const machine::Position& to);
+    void change_vat_part(int vat);
+    void boot();
+    void user_continues();
+    void execute_query(const machine::Command& command);
+    void mishap(const std::string& what);
+    [[nodiscard]] int vat_under_light() const;
+    [[nodiscard]] double idle_event() const;
+    [[nodiscard]] machine::Position clamped(machine::Position to);
     void kill();
     void quick_stop();
-    [[nodiscard]] bool fault_hits(Fault::Kind kind, int n) const;
+    /// The fault of that kind for the n-th time something happens; nullptr: none.
+    [[nodiscard]] const Fault* fault_at(Fault::Kind kind, int n) const;
+    [[nodiscard]] bool fault_hits(Fault::Kind kind, int n) const { return fault_at(kind, n) != nullptr; }
     [[nodiscard]] std::vector<machine::Axis> axes_to_home(const machine::Command& command) const;
 
     const machine::Printer printer_;
     const Options options_;
     Motors motors_;
     Cure cure_;
+    Fluids fluids_;
+    std::vector<Contamination> contamination_;
     Log log_;
     double now_s_ = 0;
 
@@ -132,9 +156,20 @@ private:
     bool dead_ = false;
     double idle_limit_s_ = 120;
     double feed_mm_s_ = 0;
-    int lines_ = 0, oks_ = 0, resends_ = 0;
+    double busy_every_s_ = 2;
+    double next_wait_s_ = 0;
+    std::optional<double> boots_at_s_;  ///< silent until then
+    double stalled_until_s_ = 0;
+    int refuse_more_ = 0;  ///< good lines that a resend loop still refuses
+    int lines_ = 0, oks_ = 0, resends_ = 0, bytes_ = 0, moves_ = 0, unhooked_ = 0, pump_starts_ = 0;
 
-    std::optional<job::Image> shown_;
+    std::array<int, machine::axis_count> slip_um_{};  ///< how far each axis is from where the controller thinks
+    int stuck_vat_ = -1;                              ///< on hooks that do not let go
+    int missed_vat_ = -1;                             ///< on hooks that did not catch it
+    int part_vat_ = -1;                               ///< whose resin clings to the part
+    double residue_ = 0;
+    bool pump_works_ = true;
+    std::optional<Runs> shown_;
     double shown_since_s_ = 0;
     int shown_vat_ = -1;
     bool pump_on_ = false;

@@ -1,0 +1,55 @@
+// pliant compare-printers: what machines can do, beside each other; the comparison of the thesis reckoned anew.
+#include <fmt/core.h>
+
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "machine/printer.hpp"
+#include "report/printers_page.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::vector<std::string> files;
+    std::string page;
+    Output output;
+};
+
+Status compare(const Options& options) {
+    std::vector<machine::Printer> printers;
+    for (const std::string& file : options.files) {
+        Result<machine::Printer> printer = machine::load_printer(file);
+        if (!printer) return tl::unexpected(printer.error());
+        printers.push_back(std::move(*printer));
+    }
+    if (!options.page.empty()) {
+        const Result<std::string> page = report::printers_page(printers);
+        if (!page) return tl::unexpected(page.error());
+        if (Status status = write_file(options.page, *page); !status) return status;
+    }
+    if (options.output.json)
+        fmt::print("{}", report::printers_json(printers));
+    else if (!options.output.quiet)
+        fmt::print("{}", report::printers_text(printers));
+    return {};
+}
+
+}  // namespace
+
+void add_compare_printers(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("compare-printers", "printers beside each other: swaps, cleaning, packing");
+    command->add_option("printers", options->files, "printer files (TOML)")->required();
+    command->add_option("-o,--output", options->page, "file for the page (.html)");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant compare-printers examples/printers/*.toml -o printers.html");
+    command->callback([options, &status] {
+        const Status result = compare(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,149 @@
+// pliant twin: the virtual printer as a device that any host can open.
+#include <fmt/core.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "job/png.hpp"
+#include "machine/printer.hpp"
+#include "twin/serve.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string printer;
+    std::string link;
+    std::string projector;
+    double speed = 1;
+    double seconds = 0;
+    std::vector<std::string> faults;
+    bool advanced_ok = false, z_sync = false, report_fans = false, waits = false, no_emergency_parser = false;
+    bool trace = false;
+    Output output;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+Result<twin::Options> twin_options(const Options& options) {
+    twin::Options result;
+    result.advanced_ok = options.advanced_ok;
+    result.z_sync = options.z_sync;
+    result.report_fans = options.report_fans;
+    result.wait_every_s = options.waits ? 1 : 0;
+    result.emergency_parser = !options.no_emergency_parser;
+    result.boot_s = 1;
+    for (const std::string& text : options.faults) {
+        const Result<twin::Fault> fault = twin::parse_fault(text);
+        if (!fault) return tl::unexpected(fault.error());
+        result.faults.push_back(*fault);
+    }
+    return result;
+}
+
+/// The projector: light is what `shown.png` in a folder holds; without that file it is dark. A host writes the file
+/// aside and renames it.
+class FolderProjector {
+public:
+    explicit FolderProjector(std::filesystem::path file) : file_(std::move(file)) {}
+
+    Status look(twin::Twin& twin) {
+        std::error_code error;
+        const auto time = std::filesystem::last_write_time(file_, error);
+        if (error) {
+            if (lit_) twin.light_off();
+            lit_ = false;
+            return {};
+        }
+        if (lit_ && time == seen_) return {};
+        const Result<std::string> bytes = read_file(file_);
+        if (!bytes) return {};  // gone again
+        const machine::Projector& p = twin.printer().projector;
+        Result<job::Image> image = job::decode_png(*bytes, {p.width_px, p.height_px}, file_.string());
+        if (!image) return tl::unexpected(image.error());
+        twin.light_on(*image);
+        lit_ = true;
+        seen_ = time;
+        return {};
+    }
+
+private:
+    std::filesystem::path file_;
+    std::filesystem::file_time_type seen_;
+    bool lit_ = false;
+};
+
+void print_end(twin::Twin& twin) {
+    const twin::Log& log = twin.log();
+    fmt::print("{:.1f} s on the machine's clock, {} swaps, {} exposures, {} bad lines, {} resets, {} layers cured\n",
+               twin.now(), log.swaps, log.exposures, log.bad_lines, log.resets, twin.cured().layers().size());
+    for (const std::string& violation : log.violations) fmt::print("  interlock: {}\n", violation);
+    for (const std::string& mishap : log.mishaps) fmt::print("  fault: {}\n", mishap);
+    for (const std::string& fault : twin.cured().faults()) fmt::print("  light: {}\n", fault);
+}
+
+Status run_twin(const Options& options) {
+    if (!(options.speed > 0 && options.speed <= 1e6))
+        return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
+    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    if (!printer) return tl::unexpected(printer.error());
+    const Result<twin::Options> wanted = twin_options(options);
+    if (!wanted) return tl::unexpected(wanted.error());
+    Result<twin::Pty> pty = twin::Pty::open(options.link);
+    if (!pty) return tl::unexpected(pty.error());
+    twin::Twin twin(*printer, *wanted);
+    if (!options.output.quiet) {
+        fmt::print("{} on {}, {} baud; Ctrl-C ends it\n", printer->name,
+                   options.link.empty() ? pty->device() : options.link, printer->controller.baud_rate);
+        std::fflush(stdout);
+    }
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    twin::ServeOptions serve;
+    serve.speed = options.speed;
+    serve.stop = [&] { return interrupted != 0 || (options.seconds > 0 && twin.now() > options.seconds); };
+    FolderProjector projector(std::filesystem::path(options.projector) / "shown.png");
+    if (!options.projector.empty()) serve.lights = [&](twin::Twin& t) { return projector.look(t); };
+    if (options.trace) {
+        serve.log = [](std::string_view bytes, bool from_host) {
+            fmt::print(stderr, "{} {}\n", from_host ? ">" : "<", bytes);
+        };
+    }
+    if (Status status = twin::serve(twin, *pty, serve); !status) return status;
+    if (!options.output.quiet) print_end(twin);
+    return {};
+}
+
+}  // namespace
+
+void add_twin(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("twin", "the virtual printer as a serial device: speaks Marlin, real time or faster");
+    command->add_option("--printer", options->printer, "printer file (TOML)")->required();
+    command->add_option("--pty", options->link, "name of a link to the device, such as /tmp/printer");
+    command->add_option("--projector", options->projector, "folder whose shown.png is what the projector shows");
+    command->add_option("--speed", options->speed, "seconds of the machine in one of the wall; 1 is real time");
+    command->add_option("--seconds", options->seconds, "ends after so long on the machine's clock");
+    command->add_option("--fault", options->faults, "KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
+        ->allow_extra_args(false);
+    command->add_flag("--advanced-ok", options->advanced_ok, "answer ok N12 P15 B3");
+    command->add_flag("--z-sync", options->z_sync, "block on moves of the platform and say Z_move_comp");
+    command->add_flag("--report-fans", options->report_fans, "say M106 P0 S255 when a fan changes");
+    command->add_flag("--wait", options->waits, "say wait every second while idle");
+    command->add_flag("--no-emergency-parser", options->no_emergency_parser, "M112, M108 and M410 wait their turn");
+    command->add_flag("--trace", options->trace, "print what goes over the wire to standard error");
+    add_output_options(*command, options->output, false);
+    command->footer("Example: pliant twin --printer examples/printers/tower.toml --pty /tmp/printer --speed 100");
+    command->callback([options, &status] {
+        const Status result = run_twin(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,60 @@
+#include "plan/figures.hpp"
+
+#include <doctest/doctest.h>
+
+#include "plan/test_jobs.hpp"
+
+using namespace pliant;
+using namespace pliant::plan;
+
+namespace {
+
+machine::Printer machine_of(const char* name) {
+    return machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
+}
+
+}  // namespace
+
+TEST_CASE("the swap of the thesis: 24, 3, 15 and 24 s that make 62 to 63, because the hooks move within the spray") {
+    const SwapSteps s = figures(machine_of("tower")).swap;
+    CHECK(s.push_s == doctest::Approx(24).epsilon(0.02));
+    CHECK(s.hooks_s == doctest::Approx(3).epsilon(0.01));
+    CHECK(s.clean_s == doctest::Approx(15).epsilon(0.001));
+    CHECK(s.pull_s == doctest::Approx(24).epsilon(0.02));
+    CHECK(s.total_s > 62);
+    CHECK(s.total_s < 63);
+    CHECK(s.push_s + s.hooks_s + s.clean_s + s.pull_s > 65);
+}
+
+TEST_CASE("table 4.1 against Zhou: 72 against 6 square inches, 8 against 2 vats, 62 against 180 s, 15 against 120 s") {
+    const PrinterFigures tower = figures(machine_of("tower8"));
+    const PrinterFigures rotary = figures(machine_of("rotary"));
+    CHECK(tower.area_mm2 / square_inch_mm2 == doctest::Approx(72));
+    CHECK(rotary.area_mm2 / square_inch_mm2 == doctest::Approx(6).epsilon(0.001));
+    CHECK(tower.places == 8);
+    CHECK(rotary.places == 2);
+    CHECK(rotary.swap.total_s == doctest::Approx(180).epsilon(0.02));
+    CHECK(rotary.swap.clean_s == doctest::Approx(120).epsilon(0.01));
+    CHECK(tower.removed > 0.9);
+    CHECK(rotary.removed == doctest::Approx(0.59));
+}
+
+TEST_CASE("eight vats in 60 in; a packing density of about 0.6 for the prototype's four vats, 0.3 for two in a ring") {
+    const machine::Printer tower = machine_of("tower");
+    CHECK(tower_height_mm(tower, 8) == doctest::Approx(60 * 25.4));
+    CHECK(tower_height_mm(tower, 9) - tower_height_mm(tower, 8) == doctest::Approx(8 * 25.4));
+    CHECK(tower_packing(tower, 4) == doctest::Approx(4.0 / 7));
+    CHECK(tower_packing(tower, 8) == doctest::Approx(8.0 / 15));
+    CHECK(ring_packing(304.8, 152.4, 2) == doctest::Approx(0.3).epsilon(0.02));
+}
+
+TEST_CASE("a neighbour of the tower is always as near; rows and rings grow with their vats") {
+    const std::vector<int> vats = {2, 8, 32};
+    const auto tower = swap_over_vats(machine_of("tower"), vats);
+    const auto rotary = swap_over_vats(machine_of("rotary"), vats);
+    const auto linear = swap_over_vats(machine_of("linear"), vats);
+    CHECK(tower[0].next_s == doctest::Approx(tower[2].next_s));
+    CHECK(linear[2].mean_s - linear[1].mean_s > 3 * (linear[1].mean_s - linear[0].mean_s));
+    CHECK(linear[2].mean_s > linear[0].mean_s + 100);
+    CHECK(rotary[2].mean_s > rotary[0].mean_s + 10);
+}

@@ -1,0 +1,87 @@
+#include "plan/safe_stop.hpp"
+
+#include <algorithm>
+
+#include "plan/sequence.hpp"
+
+namespace pliant::plan {
+namespace {
+
+using machine::Axis;
+using machine::Interlock;
+using machine::Printer;
+
+bool all_homed(const Interlock& state, const Printer& p) {
+    return std::all_of(machine::all_axes.begin(), machine::all_axes.end(),
+                       [&](Axis axis) { return !p.axis(axis).present() || state.homed(axis); });
+}
+
+Sequence from(const Interlock& state, const Printer& p) {
+    Sequence s(p);
+    s.stand_at(state.position());
+    return s;
+}
+
+/// The slot that the tower stands level with, or a part of the hooks' stroke below it.
+int slot_before_carriage(const Interlock& state, const Printer& p) {
+    for (int slot = 1; slot <= p.slot_count(); ++slot) {
+        const int below = p.level_um(slot) - state.position()[Axis::tower];
+        const bool here = p.table_at(state.position()[Axis::table], p.station_um(slot));
+        if (here && below >= 0 && below <= p.hooks.travel_um) return slot;
+    }
+    return 0;
+}
+
+/// A vat on the hooks goes back into the slot that it came from: the tower has not moved since. An empty carriage only
+/// comes out.
+void empty_carriage(Sequence& s, const Interlock& state) {
+    const Printer& p = s.printer();
+    const int slot = slot_before_carriage(state, p);
+    if (state.hooked_vat()) s.move(Axis::carriage, p.carriage.tower_um);
+    const bool in_tower = s.position()[Axis::carriage] == p.carriage.tower_um;
+    if (in_tower && slot > 0) s.move(Axis::tower, p.level_um(slot) - p.hooks.travel_um, p.hooks.speed_mm_s);
+    s.move(Axis::carriage, p.carriage.print_um);
+}
+
+void switch_off(Sequence& s) {
+    s.switch_to(s.printer().pump.off);
+    s.switch_to(s.printer().fans.off);
+}
+
+}  // namespace
+
+std::string cancel_program(const Interlock& state, const Printer& printer) {
+    Sequence s = from(state, printer);
+    s.comment("cancelled: everything off, platform up, the vat back into its slot");
+    s.command("G90");
+    switch_off(s);
+    if (!state.homed(Axis::platform)) return s.text();
+    const int up_um = printer.axis(Axis::platform).home_um();
+    s.move(Axis::platform, up_um);
+    if (printer.store() == machine::Store::tower && all_homed(state, printer)) empty_carriage(s, state);
+    s.fence();
+    return s.text();
+}
+
+Pause pause_program(const Interlock& state, const Printer& printer) {
+    Sequence s = from(state, printer);
+    s.comment("paused: the platform waits clear of the vat");
+    s.command("G90");
+    switch_off(s);
+    const machine::Position before = state.position();
+    const int clear_um = printer.clear_um(state.part_height_um());
+    if (state.homed(Axis::platform)) s.move(Axis::platform, std::max(before[Axis::platform], clear_um));
+    s.fence();
+    Sequence back = from(state, printer);
+    back.stand_at(s.position());
+    back.comment("on: the platform goes back");
+    const machine::Platform& platform = printer.platform;
+    const int slow_from_um = before[Axis::platform] + platform.approach_um;
+    if (back.position()[Axis::platform] > slow_from_um) back.move(Axis::platform, slow_from_um);
+    back.move_to(before, platform.approach_speed_mm_s);
+    back.fence();
+    if (state.pump_runs()) back.switch_to(printer.pump.on);
+    return {s.text(), back.text()};
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,45 @@
+#include "report/printers_page.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+using namespace pliant;
+
+namespace {
+
+std::vector<machine::Printer> shipped() {
+    std::vector<machine::Printer> all;
+    for (const char* name : {"tower", "tower8", "two_towers", "carousel", "rotary", "linear", "single"}) {
+        all.push_back(machine::load_printer(std::string("examples/printers/") + name + ".toml").value());
+    }
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("the page holds every machine and needs nothing from anywhere") {
+    std::vector<machine::Printer> printers = shipped();
+    printers[0].name = "<b>tower</b>";
+    const auto page = report::printers_page(printers);
+    REQUIRE(page);
+    CHECK(page->find("<b>tower</b>") == std::string::npos);
+    CHECK(page->find("&lt;b&gt;tower") != std::string::npos);
+    CHECK(page->find("http://") == std::string::npos);
+    CHECK(page->find("data:image/png;base64,") != std::string::npos);
+    CHECK(page->find("62 or 63 s") != std::string::npos);
+    CHECK(page->find("23.7 + 15.0 + 23.7 = 62.4 s") != std::string::npos);
+}
+
+TEST_CASE("one machine alone, even with a single vat, is a page too") {
+    CHECK(report::printers_page({shipped().back()}));
+    CHECK(report::printers_page({}));
+}
+
+TEST_CASE("the figures for programs") {
+    const auto json = nlohmann::json::parse(report::printers_json(shipped()));
+    CHECK(json.size() == 7);
+    CHECK(json[0]["area_in2"].get<double>() == doctest::Approx(72));
+    CHECK(json[4]["swap_s"].get<double>() == doctest::Approx(180).epsilon(0.02));
+    CHECK(json[6]["swap_s"] == 0);
+}

@@ -1,0 +1,54 @@
+#include "twin/fluids.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pliant::twin {
+
+Fluids::Fluids(const machine::Printer& printer)
+    : printer_(&printer), law_(machine::cleaning_law(printer.cleaning.method)) {
+    for (const machine::Vat& vat : printer.vats) {
+        auto found = std::find(resins_.begin(), resins_.end(), vat.resin);
+        if (found == resins_.end()) found = resins_.insert(resins_.end(), vat.resin);
+        own_.push_back(static_cast<int>(found - resins_.begin()));
+    }
+    film_ml_.resize(resins_.size());
+    for (const int own : own_) {
+        mixture_.emplace_back(resins_.size());
+        mixture_.back()[static_cast<std::size_t>(own)] = 1;
+    }
+}
+
+double Fluids::leave(int vat, double section_mm2) {
+    const double ml = section_mm2 * printer_->cleaning.film_um / 1e6;
+    for (std::size_t r = 0; r < film_ml_.size(); ++r) film_ml_[r] = ml * mixture_[static_cast<std::size_t>(vat)][r];
+    return ml;
+}
+
+void Fluids::clean(double seconds) {
+    const double removed = law_.removed(seconds);
+    for (double& ml : film_ml_) {
+        washed_ml_ += ml * removed;
+        ml *= 1 - removed;
+    }
+}
+
+double Fluids::enter(int vat, double vat_ml) {
+    const double film = std::accumulate(film_ml_.begin(), film_ml_.end(), 0.0);
+    const double all = std::max(0.0, vat_ml) + film;
+    if (film <= 0 || all <= 0) return 0;
+    std::vector<double>& mixture = mixture_[static_cast<std::size_t>(vat)];
+    for (std::size_t r = 0; r < mixture.size(); ++r) mixture[r] = (mixture[r] * (all - film) + film_ml_[r]) / all;
+    std::fill(film_ml_.begin(), film_ml_.end(), 0);
+    return film;
+}
+
+double Fluids::share(int vat, int resin) const {
+    return mixture_[static_cast<std::size_t>(vat)][static_cast<std::size_t>(resin)];
+}
+
+double Fluids::foreign_share(int vat) const {
+    return std::max(0.0, 1 - share(vat, own_[static_cast<std::size_t>(vat)]));
+}
+
+}  // namespace pliant::twin

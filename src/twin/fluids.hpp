@@ -1,0 +1,42 @@
+// Resin on its way from vat to vat: what clings to the part, what cleaning leaves of it, what it makes of the next vat.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machine/cleaning_data.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::twin {
+
+/// Well mixed vats and one film on the part. Resins are numbered as resins() lists them.
+class Fluids {
+public:
+    explicit Fluids(const machine::Printer& printer);
+
+    /// The part leaves a vat with a film over `section_mm2` of it. What the vat loses, in ml.
+    double leave(int vat, double section_mm2);
+    /// The part is cleaned; by the law of the machine's method (thesis, table 4.2).
+    void clean(double seconds);
+    /// The part comes into a vat that holds `vat_ml`: what is left of the film mixes in. What the vat gains, in ml.
+    double enter(int vat, double vat_ml);
+
+    /// Share of what a vat holds that is another resin than its own.
+    [[nodiscard]] double foreign_share(int vat) const;
+    /// Share of one resin in a vat.
+    [[nodiscard]] double share(int vat, int resin) const;
+    [[nodiscard]] const std::vector<std::string>& resins() const { return resins_; }
+    /// Resin that cleaning has washed off, in ml.
+    [[nodiscard]] double washed_ml() const { return washed_ml_; }
+
+private:
+    const machine::Printer* printer_;
+    machine::CleaningLaw law_;
+    std::vector<std::string> resins_;
+    std::vector<int> own_;                      ///< resin of each vat
+    std::vector<std::vector<double>> mixture_;  ///< (vats, resins), shares
+    std::vector<double> film_ml_;               ///< by resin
+    double washed_ml_ = 0;
+};
+
+}  // namespace pliant::twin

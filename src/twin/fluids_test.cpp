@@ -1,0 +1,55 @@
+#include "twin/fluids.hpp"
+
+#include <doctest/doctest.h>
+
+#include "twin/fault.hpp"
+
+using namespace pliant;
+using namespace pliant::twin;
+
+namespace {
+
+machine::Printer printer_with_film() {
+    auto printer = machine::load_printer("examples/printers/tower.toml").value();
+    printer.cleaning.film_um = 100;
+    return printer;
+}
+
+}  // namespace
+
+TEST_CASE("what clings to the part and is not sprayed off mixes into the next vat") {
+    const auto printer = printer_with_film();
+    Fluids fluids(printer);
+    CHECK(fluids.leave(0, 1000) == doctest::Approx(0.1));  // 1000 mm^2 under 100 um: 100 ul
+    fluids.clean(15);
+    // Spray of 15 s leaves 5.25 % (mean of table 4.2).
+    CHECK(fluids.enter(1, 99.99475) == doctest::Approx(0.00525));
+    CHECK(fluids.foreign_share(1) == doctest::Approx(0.00525 / 100));
+    CHECK(fluids.share(1, 0) == doctest::Approx(0.00525 / 100));
+    CHECK(fluids.foreign_share(0) == 0);
+    CHECK(fluids.washed_ml() == doctest::Approx(0.09475));
+    CHECK(fluids.enter(2, 100) == 0);
+}
+
+TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat") {
+    const auto printer = printer_with_film();
+    Fluids fluids(printer);
+    fluids.leave(0, 1000);
+    fluids.enter(1, 0.9);
+    CHECK(fluids.foreign_share(1) == doctest::Approx(0.1));
+    fluids.leave(1, 1000);
+    fluids.enter(2, 0.9);
+    CHECK(fluids.share(2, 1) == doctest::Approx(0.09));
+    CHECK(fluids.share(2, 0) == doctest::Approx(0.01));
+}
+
+TEST_CASE("faults are named on the command line") {
+    CHECK(parse_fault("stall:40:90")->kind == Fault::Kind::stall);
+    CHECK(parse_fault("stall:40:90")->n == 40);
+    CHECK(parse_fault("stall:40:90")->amount == 90);
+    CHECK(parse_fault("dead-pump")->n == 1);
+    for (const char* bad : {"", "dead", "stall:0", "stall:x", "stall:1:-3", "stall:1:nan", "stall:1:2:3"}) {
+        CHECK_FALSE(parse_fault(bad));
+    }
+    CHECK(parse_fault("pump").error().message.find("dead-pump") != std::string::npos);
+}

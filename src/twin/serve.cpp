@@ -1,0 +1,42 @@
+#include "twin/serve.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace pliant::twin {
+namespace {
+
+constexpr double longest_wait_s = 0.02;
+
+double wall_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Status serve(Twin& twin, Pty& pty, const ServeOptions& options) {
+    const double wall_start_s = wall_s();
+    const double twin_start_s = twin.now();
+    const auto twin_now = [&] { return twin_start_s + (wall_s() - wall_start_s) * options.speed; };
+    while (!options.stop()) {
+        const auto next = twin.next_event();
+        const double until_s = next ? (*next - twin_now()) / options.speed : longest_wait_s;
+        const Result<std::string> bytes = pty.read(std::clamp(until_s, 0.001, longest_wait_s));
+        if (!bytes) return tl::unexpected(bytes.error());
+        twin.advance_to(std::max(twin.now(), twin_now()));
+        if (!bytes->empty()) {
+            if (options.log) options.log(*bytes, true);
+            twin.receive(*bytes);
+        }
+        if (options.lights) {
+            if (Status status = options.lights(twin); !status) return status;
+        }
+        const std::string said = twin.take_output();
+        if (said.empty()) continue;
+        if (options.log) options.log(said, false);
+        pty.write(said);
+    }
+    return {};
+}
+
+}  // namespace pliant::twin

@@ -1,0 +1,24 @@
+// The virtual printer as a device: its clock follows the wall's, as fast as asked, and its projector a folder.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/error.hpp"
+#include "twin/pty.hpp"
+#include "twin/twin.hpp"
+
+namespace pliant::twin {
+
+struct ServeOptions {
+    double speed = 1;                     ///< seconds of the machine's clock in one of the wall's; above 0
+    std::function<bool()> stop;           ///< asked many times a second
+    std::function<Status(Twin&)> lights;  ///< called as often: sees what the projector shows; may be empty
+    std::function<void(std::string_view bytes, bool from_host)> log;  ///< what goes over the wire; may be empty
+};
+
+/// Runs `twin` at the machine's end of `pty` until `stop` says so. Errors: the pseudo-terminal broke, or `lights` did.
+[[nodiscard]] Status serve(Twin& twin, Pty& pty, const ServeOptions& options);
+
+}  // namespace pliant::twin
