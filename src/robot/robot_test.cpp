@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "mesh/tet_writer.hpp"
-#include "robot/build.hpp"
+#include "robot/test_run.hpp"
 
 using namespace pliant;
 using namespace pliant::robot;
@@ -203,28 +203,14 @@ TEST_CASE("a load is spread over the outer surface in its box") {
 
 namespace {
 
-/// The robot of a text that must be read and built.
-struct Built {
-    Robot robot;
-    sim::Model model;
-};
+using testing::Built;
 
 Built build(const std::string& text, const std::vector<std::string>& assignments = {}) {
-    Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return {std::move(*robot), std::move(*model)};
+    return testing::build(parse_robot(text, "bar.toml", assignments));
 }
 
 sim::Step last_step(const Built& built) {
-    Progress silent;
-    sim::Trajectory result = sim::run(built.model, built.robot.program, silent);
-    REQUIRE_MESSAGE(result.converged, result.message);
-    return result.steps.back();
+    return testing::run_to_the_end(built).steps.back();
 }
 
 std::string chamber(const std::string& air, const std::string& target) {

@@ -11,9 +11,7 @@ namespace {
 class Newton final : public Curvature {
 public:
     explicit Newton(const Equilibrium& system)
-        : system_(&system),
-          pattern_(linalg::make_pattern(system.model().free_count(), 3, system.cliques())),
-          factor_(pattern_) {}
+        : system_(&system), layout_(system.lay_out_tangent()), factor_(layout_.pattern) {}
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
@@ -71,10 +69,8 @@ private:
             grown = true;
         }
         if (!grown) return;
-        auto cliques = system_->cliques();
-        cliques.insert(cliques.end(), touching_.begin(), touching_.end());
-        pattern_ = linalg::make_pattern(system_->model().free_count(), 3, cliques);
-        factor_ = linalg::Cholesky(pattern_);
+        layout_ = system_->lay_out_tangent(touching_);
+        factor_ = linalg::Cholesky(layout_.pattern);
         // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
         if (touching_.size() > most_remembered) touching_.clear();
     }
@@ -84,17 +80,15 @@ private:
         for (const int i : clique) {
             for (const int j : clique) {
                 if (j < 0 || i < j) continue;
-                const auto begin = pattern_.node_row.begin() + pattern_.node_start[static_cast<std::size_t>(j)];
-                const auto end = pattern_.node_row.begin() + pattern_.node_start[static_cast<std::size_t>(j) + 1];
-                if (!std::binary_search(begin, end, i)) return false;
+                if (!layout_.pattern.holds(i, j)) return false;
             }
         }
         return true;
     }
 
     void assemble(const State& state, const Controls& controls, bool project, std::vector<double>& values) const {
-        values.assign(pattern_.entries(), 0.0);
-        system_->add_tangent(state, controls, pattern_, values, project);
+        values.assign(layout_.pattern.entries(), 0.0);
+        system_->add_tangent(state, controls, layout_, values, project);
     }
 
     static constexpr double smallest_share = 1.0 / 16;
@@ -103,7 +97,7 @@ private:
     static constexpr int skew_limit = 60;
 
     const Equilibrium* system_;
-    linalg::SymmetricPattern pattern_;
+    TangentLayout layout_;
     std::vector<double> values_;     ///< tangent
     std::vector<double> projected_;  ///< its positive projection, where it was needed
     std::vector<double> blended_;

@@ -397,16 +397,20 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
     return cliques;
 }
 
-std::vector<std::vector<int>> Equilibrium::cliques() const {
+TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching) const {
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
     for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
-    return cliques;
+    cliques.insert(cliques.end(), touching.begin(), touching.end());
+    TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
+    layout.element_slots = model_->elements().stiffness_slots(model_->free_index(), layout.pattern);
+    return layout;
 }
 
-void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
+void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
-    model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
+    const linalg::SymmetricPattern& pattern = layout.pattern;
+    model_->elements().add_tangent(view(state.x), layout.element_slots, values, project, controls.laws);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {

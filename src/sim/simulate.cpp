@@ -162,20 +162,27 @@ private:
         }
     }
 
-    [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) const {
+    [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) {
         const Damping& damping = program_.dynamics->damping;
         std::shared_ptr<StiffnessMatrix> stiffness;
         if (damping.stiffness_s > 0) {
+            if (!body_layout_) body_layout_ = make_body_layout();
             stiffness = std::make_shared<StiffnessMatrix>();
-            stiffness->pattern =
-                linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(model_.free_index()));
-            stiffness->values.assign(stiffness->pattern.entries(), 0.0);
+            stiffness->pattern = &body_layout_->pattern;
+            stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
             const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-            model_.elements().add_tangent(x, model_.free_index(), stiffness->pattern, stiffness->values, true,
-                                          controls_.laws);
+            model_.elements().add_tangent(x, body_layout_->element_slots, stiffness->values, true, controls_.laws);
         }
         return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history_, dt, damping,
                                                std::move(stiffness));
+    }
+
+    /// Of the elements alone: what damping by stiffness couples.
+    [[nodiscard]] TangentLayout make_body_layout() const {
+        const auto& index = model_.free_index();
+        TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};
+        layout.element_slots = model_.elements().stiffness_slots(index, layout.pattern);
+        return layout;
     }
 
     void remember(const State& next, double dt) {
@@ -335,7 +342,8 @@ private:
     double time_ = 0;
     double previous_time_ = 0;
     Evaluation evaluation_;
-    History history_;               ///< of a motion in time
+    History history_;                           ///< of a motion in time
+    std::optional<TangentLayout> body_layout_;  ///< made when damping by stiffness first needs it
     std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
     std::vector<IterationRecord> iterations_;

@@ -9,11 +9,11 @@
 
 #include "sim/attach.hpp"
 #include "sim/pressure_limit.hpp"
-#include "sim/reference_problems.hpp"
-#include "sim/simulate.hpp"
+#include "sim/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::solve;
 
 namespace {
 
@@ -45,29 +45,10 @@ Description pulled_bar(double length_ratio) {
     return d;
 }
 
-/// A block of 3 x 1 x 1 cm with an empty box in the middle, clamped at x = 0.
 Description hollow_block(ChamberTarget target) {
-    const auto void_at = [](Vec3 c) {
-        const auto inside = [](double v, double low, double high) { return v > low && v < high; };
-        return inside(c.x, 0.005, 0.025) && inside(c.y, 0.0025, 0.0075) && inside(c.z, 0.0025, 0.0075) ? 1 : 0;
-    };
-    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 6, 4, 4, void_at);
-    whole.region_names = {"solid", "air"};
-    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
-    Description d;
-    d.mesh = std::move(solid.mesh);
-    d.materials = {{"A", material::neo_hookean(1e5, 0.4), 1000}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), target});
+    Description d = testing::hollow_block(1);
+    d.chambers[0].target = std::move(target);
     return d;
-}
-
-Trajectory solve(Description d, Program program) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    Progress silent;
-    return run(*model, program, silent);
 }
 
 /// A solver that finds nothing, or creeps.
