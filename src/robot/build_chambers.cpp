@@ -53,6 +53,16 @@ sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
     return wall;
 }
 
+/// A cavity of the bodies.
+sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const CavityAt& cavity) {
+    const Vec3 point = draft.robot.unit_m * cavity.point;
+    Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(draft.bodies, point);
+    if (faces) return pressed_wall(draft, std::move(*faces));
+    draft.problem(spec.line, "chamber", spec.name,
+                  fmt::format("inside: the point {} {}", draft.show(point), faces.error().message));
+    return {};
+}
+
 /// A closed surface whose points ride on the tets that hold them.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
                        const std::filesystem::path& path) {
