@@ -92,15 +92,6 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
     return wall;
 }
 
-sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const CavityAt& cavity) {
-    const Vec3 point = draft.robot.unit_m * cavity.point;
-    Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(draft.bodies, point);
-    if (faces) return pressed_wall(draft, std::move(*faces));
-    draft.problem(spec.line, "chamber", spec.name,
-                  fmt::format("inside: the point {} {}", draft.show(point), faces.error().message));
-    return {};
-}
-
 void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
     sim::Chamber chamber{spec.name, {}, spec.target};
     if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
