@@ -21,11 +21,6 @@ struct Source {
     bool transpose;  ///< the order of elimination turned the pair round
 };
 
-/// Nodes of a child's update that are next to one another in its parent, too.
-struct Stretch {
-    int from, to, length;
-};
-
 }  // namespace
 
 struct Cholesky::State {
@@ -152,22 +147,11 @@ void Cholesky::State::add_to_panel(int child, const std::vector<Stretch>& parts,
 
 /// The other columns, which its parent passes on.
 void Cholesky::State::add_to_update(int child, const std::vector<Stretch>& parts, int s) const {
-    const int b = pattern.block;
     const int own = e.columns(s);
-    const Real* from = work.data() + layout.update[child];
-    Real* to = work.data() + layout.update[s];
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-        if (parts[part].to < own) continue;
-        for (int c = 0; c < parts[part].length * b; ++c) {
-            const Real* source = from + static_cast<std::size_t>(parts[part].from * b + c) * leading(child);
-            Real* column = to + static_cast<std::size_t>((parts[part].to - own) * b + c) * leading(s);
-            for (std::size_t q = part; q < parts.size(); ++q) {
-                const Real* source_part = source + parts[q].from * b;
-                Real* column_part = column + (parts[q].to - own) * b;
-                for (int r = q == part ? c : 0; r < parts[q].length * b; ++r) column_part[r] += source_part[r];
-            }
-        }
-    }
+    const auto passed = std::find_if(parts.begin(), parts.end(), [&](const Stretch& part) { return part.to >= own; });
+    const std::vector<Stretch> rest(passed, parts.end());
+    add_lower(work.data() + layout.update[child], leading(child), work.data() + layout.update[s], leading(s), rest, own,
+              pattern.block);
 }
 
 bool Cholesky::State::eliminate_supernode(int s, std::span<const double> values) const {

@@ -337,6 +337,30 @@ void solve_upper_any(const Panel<Real>& panel, int count, Real* x, const Real* y
     }
 }
 
+template <class Real>
+void add_lower_any(const Real* from, std::size_t from_leading, Real* to, std::size_t to_leading,
+                   std::span<const Stretch> stretches, int first, int block) {
+    const hn::CappedTag<Real, packet<Real>> d;
+    constexpr int N = static_cast<int>(hn::MaxLanes(d));
+    const auto add = [&](const Real* source, Real* target, int count) {
+        int r = 0;
+        for (; r + N <= count; r += N)
+            hn::StoreU(hn::Add(hn::LoadU(d, target + r), hn::LoadU(d, source + r)), d, target + r);
+        for (; r < count; ++r) target[r] += source[r];
+    };
+    for (std::size_t part = 0; part < stretches.size(); ++part) {
+        for (int c = 0; c < stretches[part].length * block; ++c) {
+            const Real* source = from + static_cast<std::size_t>(stretches[part].from * block + c) * from_leading;
+            Real* target = to + static_cast<std::size_t>((stretches[part].to - first) * block + c) * to_leading;
+            for (std::size_t q = part; q < stretches.size(); ++q) {
+                const int skip = q == part ? c : 0;
+                add(source + stretches[q].from * block + skip, target + (stretches[q].to - first) * block + skip,
+                    stretches[q].length * block - skip);
+            }
+        }
+    }
+}
+
 // What the table below can name.
 bool factorise_double(const Panel<double>& p) {
     return factorise_panel(p);
@@ -349,6 +373,14 @@ void product_double(const Panel<double>& p, double* u) {
 }
 void product_float(const Panel<float>& p, float* u) {
     negative_panel_product(p, u);
+}
+void add_double(const double* from, std::size_t from_leading, double* to, std::size_t to_leading,
+                std::span<const Stretch> stretches, int first, int block) {
+    add_lower_any(from, from_leading, to, to_leading, stretches, first, block);
+}
+void add_float(const float* from, std::size_t from_leading, float* to, std::size_t to_leading,
+               std::span<const Stretch> stretches, int first, int block) {
+    add_lower_any(from, from_leading, to, to_leading, stretches, first, block);
 }
 void lower_double(const Panel<double>& p, int n, double* x, double* y) {
     solve_lower_any(p, n, x, y);
@@ -373,6 +405,8 @@ HWY_EXPORT(factorise_double);
 HWY_EXPORT(factorise_float);
 HWY_EXPORT(product_double);
 HWY_EXPORT(product_float);
+HWY_EXPORT(add_double);
+HWY_EXPORT(add_float);
 HWY_EXPORT(lower_double);
 HWY_EXPORT(lower_float);
 HWY_EXPORT(upper_double);
@@ -393,6 +427,16 @@ void negative_product(const Panel<double>& panel, double* update) {
 template <>
 void negative_product(const Panel<float>& panel, float* update) {
     HWY_DYNAMIC_DISPATCH(product_float)(panel, update);
+}
+template <>
+void add_lower(const double* from, std::size_t from_leading, double* to, std::size_t to_leading,
+               std::span<const Stretch> stretches, int first, int block) {
+    HWY_DYNAMIC_DISPATCH(add_double)(from, from_leading, to, to_leading, stretches, first, block);
+}
+template <>
+void add_lower(const float* from, std::size_t from_leading, float* to, std::size_t to_leading,
+               std::span<const Stretch> stretches, int first, int block) {
+    HWY_DYNAMIC_DISPATCH(add_float)(from, from_leading, to, to_leading, stretches, first, block);
 }
 template <>
 void solve_lower(const Panel<double>& panel, int count, double* x, double* y) {

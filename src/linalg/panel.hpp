@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 namespace pliant::linalg {
 
@@ -41,6 +42,17 @@ template <class Real>
 /// dimension whole_packets(below). Only the lower triangle counts; a little more is written.
 template <class Real>
 void negative_product(const Panel<Real>& panel, Real* update);
+
+/// Nodes of a child's update that are next to one another in its parent, too.
+struct Stretch {
+    int from, to, length;
+};
+
+/// Adds the lower triangle of `from`, at the nodes of the stretches, to `to` at theirs less `first`. Both by columns;
+/// `block` rows and columns a node.
+template <class Real>
+void add_lower(const Real* from, std::size_t from_leading, Real* to, std::size_t to_leading,
+               std::span<const Stretch> stretches, int first, int block);
 
 /// x (columns, count) <- L^-1 x, and y (rows below, padded to packets, count) = L_below x. Vectors one after the other.
 template <class Real>

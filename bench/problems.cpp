@@ -1,0 +1,61 @@
+#include "problems.hpp"
+
+#include "sim/attach.hpp"
+#include "sim/loads.hpp"
+#include "sim/reference_problems.hpp"
+
+namespace pliant::bench {
+
+using namespace pliant::sim;
+
+Description two_material_bend(double nu, int order, int cells_along, int cells_across) {
+    Description d;
+    d.mesh = reference::kuhn_box({0.1, 0.01, 0.01}, cells_along, cells_across, cells_across,
+                                 [](Vec3 c) { return c.x < 0.05 ? 0 : 1; });
+    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
+    d.materials = {{"hard", material::neo_hookean(45e6, nu), 0}, {"soft", material::neo_hookean(12e6, nu), 0}};
+    d.material_of_region = {0, 1};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    std::vector<mesh::Face> faces;
+    for (const mesh::Face& f : mesh::boundary_faces(d.mesh)) {
+        const auto& p = d.mesh.points;
+        if (p[f.nodes[0]].x + p[f.nodes[1]].x + p[f.nodes[2]].x > 0.3 - 1e-9) faces.push_back(f);
+    }
+    const SurfaceShares shares = surface_shares(d.mesh, faces);
+    d.loads = {{"tip", shares.nodes, shares.shares, {0, 0, 5}}};
+    d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.1 - 1e-9; }))}};
+    return d;
+}
+
+Description cable_bar(int order) {
+    Description d = two_material_bend(0.45, order);
+    d.loads.clear();
+    Cable cable{"flexor", {}, {CableTarget::Kind::length_ratio, 0.8}};
+    for (int k = 0; k <= 8; ++k) {
+        const Vec3 at{0.0125 * k, 0.004, 0.01};
+        const auto nodes = reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < 1e-9; });
+        if (!nodes.empty()) cable.points.push_back({nodes, {1.0}, {}});
+    }
+    d.cables = {cable};
+    return d;
+}
+
+Description air_bar() {
+    mesh::TetMesh whole = reference::kuhn_box({0.06, 0.012, 0.012}, 36, 6, 6, [](Vec3 c) {
+        const bool inside = c.x > 0.01 && c.x < 0.05 && c.y > 0.004 && c.y < 0.008 && c.z > 0.002 && c.z < 0.006;
+        return inside ? 1 : 0;
+    });
+    whole.region_names = {"solid", "air"};
+    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
+    Description d;
+    d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}});
+    d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.5};
+    d.mesh = std::move(solid.mesh);
+    d.materials = {{"rubber", material::neo_hookean(1e6, 0.45), 0}};
+    d.material_of_region = {0};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.06 - 1e-9; }))}};
+    return d;
+}
+
+}  // namespace pliant::bench

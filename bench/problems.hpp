@@ -1,0 +1,19 @@
+// The robots of the solver's benchmarks.
+#pragma once
+
+#include "sim/model.hpp"
+
+namespace pliant::bench {
+
+/// Box of 100 x 10 x 10 mm in cells of (cells_along, cells_across, cells_across), six linear tets each (or ten-node
+/// ones, order 2): 45 and 12 MPa, one half each, bent by 5 N at its end. Marker "tip" is the mean of the loaded face.
+[[nodiscard]] sim::Description two_material_bend(double nu, int order, int cells_along = 48, int cells_across = 5);
+
+/// The same bar without the load and with a cable along its upper side, pulled to 0.8 of its length.
+[[nodiscard]] sim::Description cable_bar(int order);
+
+/// A block of 60 x 12 x 12 mm, 1 MPa, nu 0.45, clamped at one end, with a closed chamber of 40 x 4 x 4 mm near its
+/// lower side, inflated to 1.5 of its volume: 7,200 linear tets.
+[[nodiscard]] sim::Description air_bar();
+
+}  // namespace pliant::bench
