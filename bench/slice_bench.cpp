@@ -1,6 +1,8 @@
-// Speed of slicing and of encoding layer images, at 1920 x 1080 pixels.
+// Speed of slicing and of encoding layer images, on all cores that the process may use.
 #include <benchmark/benchmark.h>
 
+#include "bumpy_ball.hpp"
+#include "core/parallel.hpp"
 #include "core/progress.hpp"
 #include "job/job.hpp"
 #include "slice/slicer.hpp"
@@ -31,7 +33,7 @@ void two_cubes(benchmark::State& state, bool encode) {
     for (auto _ : state) {
         const auto summary = slice::slice_bodies(
             bodies, settings,
-            [&](int, int, const slice::Image& image) -> Status {
+            [&](int, int, const slice::RunImage& image) -> Status {
                 if (encode) bytes += job::encode(image).png.size();
                 return {};
             },
@@ -43,7 +45,48 @@ void two_cubes(benchmark::State& state, bool encode) {
     benchmark::DoNotOptimize(bytes);
 }
 
+/// Layers of a body of `around` x `down` rows of triangles, as PNG files in memory, without reading and repair.
+void layers_of_ball(benchmark::State& state, int around, int down, double radius_um, const slice::Raster& raster) {
+    std::vector<slice::Body> bodies{{"a", bench::bumpy_ball(around, down, radius_um), "ball"}};
+    for (Vec3& p : bodies[0].surface_um.points) p.z += radius_um;
+    slice::Settings settings;
+    settings.raster = raster;
+    const auto slicer = slice::Slicer::prepare(bodies, settings);
+    if (!slicer) return state.SkipWithError(slicer.error().message.c_str());
+    const auto count = static_cast<std::size_t>(slicer->layer_count());
+    std::vector<std::size_t> bytes(count);
+    for (auto _ : state) {
+        parallel_for(count, 1, [&](std::size_t k, std::size_t) {
+            bytes[k] = job::encode(slicer->layer(static_cast<int>(k)).images.at(0).image).png.size();
+        });
+    }
+    const auto layers = static_cast<double>(count * state.iterations());
+    state.counters["per_1000_layers"] =
+        benchmark::Counter(layers / 1000, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["layers"] = static_cast<double>(count);
+}
+
+/// From points and triangles to a body that can be cut.
+void prepare_ball(benchmark::State& state, int around, int down) {
+    std::vector<slice::Body> bodies{{"a", bench::bumpy_ball(around, down, 50000), "ball"}};
+    for (Vec3& p : bodies[0].surface_um.points) p.z += 50000;
+    slice::Settings settings;
+    settings.raster = {3840, 2160, 50};
+    for (auto _ : state) benchmark::DoNotOptimize(slice::Slicer::prepare(bodies, settings));
+}
+
+constexpr slice::Raster hd{1920, 1080, 75}, uhd{3840, 2160, 37.5};
+
 }  // namespace
 
+BENCHMARK_CAPTURE(layers_of_ball, 83k_triangles_hd, 300, 140, 30000, hd)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(layers_of_ball, 83k_triangles_uhd, 300, 140, 30000, uhd)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(layers_of_ball, 1m_triangles_uhd, 1000, 500, 30000, uhd)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(prepare_ball, 83k_triangles, 300, 140)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(prepare_ball, 1m_triangles, 1000, 500)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(two_cubes, slice_only, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(two_cubes, slice_and_encode, true)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -10,8 +10,10 @@ find_package(CLI11 REQUIRED)
 find_package(doctest REQUIRED)
 find_package(PNG REQUIRED)
 find_package(embree 3 REQUIRED)
+find_package(hwy REQUIRED)
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
+find_package(CGAL REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
-pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
@@ -27,5 +29,10 @@ function(pliant_find_plain target header library)
   target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
 endfunction()
 
-pliant_find_plain(cholmod cholmod.h cholmod)
+pliant_find_plain(metis metis.h metis)
 pliant_find_plain(gmsh gmsh.h gmsh)
+
+# Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose
+# size is not known when they are compiled (SVE, RVV) do not fit into arrays.
+set(PLIANT_SIMD_TARGETS
+  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")

@@ -2,23 +2,15 @@
 // the same solver stands against CalculiX is in src/sim/cable_reference_test.cpp.
 #include <doctest/doctest.h>
 
-#include "robot/build.hpp"
+#include "robot/test_run.hpp"
 
 using namespace pliant;
 
 namespace {
 
 sim::Trajectory run(const std::vector<std::string>& assignments) {
-    const auto robot = robot::load_robot("examples/cable_gripper/gripper.toml", assignments);
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    auto mesh = robot::build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    const auto model = robot::build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    sim::Trajectory result = sim::run(*model, robot->program, silent);
-    REQUIRE_MESSAGE(result.converged, result.message);
-    return result;
+    return robot::testing::run_to_the_end(
+        robot::testing::build(robot::load_robot("examples/cable_gripper/gripper.toml", assignments)));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "robot/build.hpp"
+#include "robot/test_run.hpp"
 #include "sim/fields.hpp"
 
 using namespace pliant;
@@ -18,16 +18,10 @@ struct Grip {
 
 Grip run(std::vector<std::string> assignments) {
     assignments.emplace_back("mesh.order=1");
-    const auto robot = robot::load_robot("examples/gripper_holds_a_ball/robot.toml", assignments);
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    auto mesh = robot::build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    auto model = robot::build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    sim::Trajectory result = sim::run(*model, robot->program, silent);
-    REQUIRE_MESSAGE(result.converged, result.message);
-    return {std::move(*model), std::move(result)};
+    robot::testing::Built gripper =
+        robot::testing::build(robot::load_robot("examples/gripper_holds_a_ball/robot.toml", assignments));
+    sim::Trajectory result = robot::testing::run_to_the_end(gripper);
+    return {std::move(gripper.model), std::move(result)};
 }
 
 /// The pull that the ball needs: its force on the gripper, downwards.

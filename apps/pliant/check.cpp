@@ -13,11 +13,13 @@
 #include "core/config.hpp"
 #include "core/files.hpp"
 #include "job/job.hpp"
+#include "job/verify.hpp"
 #include "job_tools.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
 #include "plan/safe_stop.hpp"
 #include "robot/build.hpp"
+#include "threemf/read_3mf.hpp"
 
 namespace pliant::app {
 namespace {
@@ -66,13 +68,12 @@ Result<std::string> check_job(const std::string& file) {
     const Result<OpenJob> job = open_job(file);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
+    const machine::Projector& projector = job->printer.projector;
+    const bool corrected = !projector.grey.empty() || !projector.mask.empty();
+    if (Status status = job::verify_images(job->archive, corrected, file); !status)
+        return tl::unexpected(status.error());
     std::size_t images = 0;
-    for (const job::Layer& layer : manifest.layers) {
-        for (const job::LayerImage& image : layer.images) {
-            if (const auto decoded = job->archive.image(image.file); !decoded) return tl::unexpected(decoded.error());
-            ++images;
-        }
-    }
+    for (const job::Layer& layer : manifest.layers) images += layer.images.size();
     const Result<std::string> gcode = job->archive.file("job.gcode");
     if (!gcode) return tl::unexpected(gcode.error());
     if (Status status = plan::check_gcode(*gcode, job->printer); !status)
@@ -98,11 +99,26 @@ Result<std::string> check_program(const std::string& file, const Options& option
                        printer->name);
 }
 
+Result<std::string> check_3mf(const std::string& file) {
+    const Result<threemf::ThreeMf> read = threemf::read_3mf(file);
+    if (!read) return tl::unexpected(read.error());
+    std::string text = fmt::format("3MF file: {} bodies", read->bodies.size());
+    for (const threemf::Body& body : read->bodies) {
+        text += body.slices.empty()
+                    ? fmt::format("\n  {} ({}): {} triangles, {:.6g} mm^3", body.name, body.material,
+                                  body.mesh_mm.triangles.size(), mesh::signed_volume(body.mesh_mm))
+                    : fmt::format("\n  {} ({}): {} slices", body.name, body.material, body.slices.size());
+    }
+    for (const std::string& warning : read->warnings) text += "\n  warning: " + warning;
+    return text;
+}
+
 Result<std::string> check(const std::string& file, const Options& options, Progress& progress) {
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
     if (extension == ".zip") return check_job(file);
     if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
+    if (extension == ".3mf") return check_3mf(file);
     return mesh::describe_mesh_file(file);
 }
 

@@ -25,6 +25,7 @@ void add_simulate(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_slice(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
+void add_export(CLI::App& app, int& status);
 void add_print(CLI::App& app, int& status);
 void add_twin(CLI::App& app, int& status);
 void add_compare_printers(CLI::App& app, int& status);

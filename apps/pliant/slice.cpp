@@ -11,12 +11,14 @@
 #include "core/files.hpp"
 #include "core/units.hpp"
 #include "job/make_job.hpp"
+#include "job/png.hpp"
 #include "machine/printer.hpp"
-#include "mesh/surface_file.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
-#include "robot/build.hpp"
+#include "report/job_picture.hpp"
+#include "slice/arrange.hpp"
 #include "slice/place.hpp"
+#include "slice_input.hpp"
 
 namespace pliant::app {
 namespace {
@@ -26,58 +28,15 @@ struct Options {
     std::string printer;
     std::string layer;
     std::string job;
-    std::vector<std::string> assignments;
+    std::string picture;
+    std::vector<std::string> assignments, resins;
+    int copies = 1;
+    std::string spacing = "2 mm";
+    std::vector<double> turn;
+    bool no_anti_alias = false;
+    double threshold = 0.5;
     Output output;
 };
-
-/// What is to be printed: bodies in micrometres and the resin of each material.
-struct Drawing {
-    std::string name;
-    std::vector<slice::Body> bodies;
-    std::vector<std::pair<std::string, std::string>> resin_of_material;
-    std::vector<std::string> warnings;
-};
-
-Result<Drawing> read_robot(const Options& options, Progress& progress) {
-    const Result<robot::Robot> robot = robot::load_robot(options.inputs.front(), options.assignments);
-    if (!robot) return tl::unexpected(robot.error());
-    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(*robot, progress);
-    if (!surfaces) return tl::unexpected(surfaces.error());
-    Drawing drawing{robot->name, {}, {}, {}};
-    for (robot::BodySurface& body : *surfaces) {
-        const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
-        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
-    }
-    for (const robot::MaterialSpec& material : robot->materials)
-        drawing.resin_of_material.emplace_back(material.name, material.resin);
-    return drawing;
-}
-
-/// MATERIAL=FILE.stl, in millimetres; a material is printed in the resin of its name.
-Result<Drawing> read_surfaces(const Options& options) {
-    Drawing drawing;
-    for (const std::string& input : options.inputs) {
-        const std::size_t equals = input.find('=');
-        if (equals == std::string::npos || equals == 0) {
-            return input_error("{}: write a robot file (.toml) alone, or MATERIAL=FILE.stl for each body", input);
-        }
-        const std::string material = input.substr(0, equals);
-        const std::filesystem::path path = input.substr(equals + 1);
-        Result<mesh::SurfaceFile> surface = mesh::read_surface(path);
-        if (!surface) return tl::unexpected(surface.error());
-        drawing.warnings.insert(drawing.warnings.end(), surface->warnings.begin(), surface->warnings.end());
-        drawing.bodies.push_back({material, mesh::scaled(std::move(surface->mesh), 1e3), path.stem().string()});
-        drawing.resin_of_material.emplace_back(material, material);
-        if (drawing.name.empty()) drawing.name = path.stem().string();
-    }
-    return drawing;
-}
-
-Result<Drawing> read_drawing(const Options& options, Progress& progress) {
-    const bool robot =
-        options.inputs.size() == 1 && std::filesystem::path(options.inputs.front()).extension() == ".toml";
-    return robot ? read_robot(options, progress) : read_surfaces(options);
-}
 
 /// Exposures come from the printer file; for a resin that it does not know, the longest ones it has are taken.
 std::vector<job::Material> with_exposures(const Drawing& drawing, const machine::Printer& printer,
@@ -135,6 +94,47 @@ void print_summary(const Options& options, const job::Manifest& manifest, const 
     fmt::print("{} swaps, {} in all\n", plan.swaps, plan::clock_text(plan.seconds.total));
 }
 
+slice::Raster raster_of(const machine::Projector& p) {
+    return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
+}
+
+/// The mask lies beside the printer file and has the projector's size.
+Result<slice::LightCorrection> light_of(const machine::Projector& projector, const std::filesystem::path& printer) {
+    slice::LightCorrection light;
+    if (!projector.grey.empty()) light.grey = slice::grey_values(projector.grey);
+    if (projector.mask.empty()) return light;
+    const std::filesystem::path path = printer.parent_path() / projector.mask;
+    const Result<std::string> png = read_file(path);
+    if (!png) return tl::unexpected(png.error());
+    Result<slice::Image> mask = job::decode_png(*png, {projector.width_px, projector.height_px}, path.string());
+    if (!mask) return tl::unexpected(mask.error());
+    light.mask = std::move(*mask);
+    return light;
+}
+
+/// Turns the part, lays out its copies and stands them on the platform.
+Status arrange(const Options& options, const slice::Raster& raster, Drawing& drawing) {
+    if (!options.turn.empty()) {
+        const Vec3 degrees{options.turn[0], options.turn[1], options.turn[2]};
+        if (Status status = slice::turn(drawing.bodies, degrees); !status) return status;
+    }
+    const Result<double> spacing = parse_quantity(options.spacing, Dimension::length);
+    if (!spacing) return input_error("--spacing: {}", spacing.error().message);
+    if (Status status = slice::repeat(drawing.bodies, options.copies, *spacing * 1e6, raster); !status) return status;
+    const Result<std::vector<std::string>> warnings = slice::place_on_platform(drawing.bodies, raster);
+    if (!warnings) return tl::unexpected(warnings.error());
+    drawing.warnings.insert(drawing.warnings.end(), warnings->begin(), warnings->end());
+    return {};
+}
+
+Status draw_picture(const Options& options) {
+    const Result<job::Archive> archive = job::Archive::open(options.job);
+    if (!archive) return tl::unexpected(archive.error());
+    const Result<std::string> png = report::job_picture(*archive);
+    if (!png) return tl::unexpected(png.error());
+    return write_file(options.picture, *png);
+}
+
 Status slice(const Options& options) {
     const auto progress = terminal_progress(options.output);
     const Result<machine::Printer> printer = machine::load_printer(options.printer);
@@ -143,25 +143,34 @@ Status slice(const Options& options) {
     if (!printer_text) return tl::unexpected(printer_text.error());
     const Result<int> layer_um = layer_height_um(options, *printer);
     if (!layer_um) return tl::unexpected(layer_um.error());
-    Result<Drawing> drawing = read_drawing(options, *progress);
+    Result<Drawing> drawing = read_drawing(options.inputs, options.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
+    if (Status status = set_resins(options.resins, *drawing); !status) return status;
 
-    const machine::Projector& projector = printer->projector;
     job::JobSettings settings;
     settings.name = drawing->name;
     settings.pliant_version = PLIANT_VERSION;
     settings.bottom_layers = bottom_layers(*printer);
-    settings.slicing.raster = {projector.width_px, projector.height_px, projector.pixel_um, projector.mirror_x,
-                               projector.mirror_y};
+    settings.slicing.raster = raster_of(printer->projector);
+    Result<slice::LightCorrection> light = light_of(printer->projector, options.printer);
+    if (!light) return tl::unexpected(light.error());
+    settings.light = std::move(*light);
+    settings.copies = options.copies;
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
-    const Result<std::vector<std::string>> placed = slice::place_on_platform(drawing->bodies, settings.slicing.raster);
-    if (!placed) return tl::unexpected(placed.error());
-    drawing->warnings.insert(drawing->warnings.end(), placed->begin(), placed->end());
+    settings.slicing.rules.anti_alias = !options.no_anti_alias;
+    settings.slicing.rules.threshold = options.threshold;
+    if (drawing->stacks.empty()) {
+        if (Status status = arrange(options, settings.slicing.raster, *drawing); !status) return status;
+    } else if (options.copies != 1 || !options.turn.empty()) {
+        return input_error("--copies, --turn: layer images are printed as they are");
+    }
 
     Result<job::Writer> writer = job::Writer::create(options.job);
     if (!writer) return tl::unexpected(writer.error());
-    Result<job::MadeJob> made = job::slice_to_job(drawing->bodies, settings, *writer, *progress);
+    Result<job::MadeJob> made = drawing->stacks.empty()
+                                    ? job::slice_to_job(drawing->bodies, settings, *writer, *progress)
+                                    : job::stacks_to_job(drawing->stacks, settings, *writer, *progress);
     if (!made) return tl::unexpected(made.error());
     made->manifest.warnings.insert(made->manifest.warnings.begin(), drawing->warnings.begin(), drawing->warnings.end());
     const Result<plan::Plan> plan = plan::make_plan(made->manifest, *printer);
@@ -172,6 +181,7 @@ Status slice(const Options& options) {
     if (status) status = writer->add_file("plan.json", plan::plan_json(*plan));
     if (status) status = writer->add_file("job.gcode", gcode);
     if (status) status = writer->finish(made->manifest);
+    if (status && !options.picture.empty()) status = draw_picture(options);
     if (status) print_summary(options, made->manifest, *plan);
     return status;
 }
@@ -181,11 +191,24 @@ Status slice(const Options& options) {
 void add_slice(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
-    command->add_option("inputs", options->inputs, "a robot file, or MATERIAL=FILE.stl for each body (millimetres)")
+    command
+        ->add_option("inputs", options->inputs,
+                     "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE or "
+                     "folder or zip of layer images")
         ->required();
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
     command->add_option("-o,--output", options->job, "job file to write (.zip)")->required();
+    command->add_option("--picture", options->picture, "PNG file: the part from the front, and some layers");
     command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
+    command->add_option("--resin", options->resins, "MATERIAL=RESIN: what a material is printed in")
+        ->type_name("MATERIAL=RESIN")
+        ->allow_extra_args(false);
+    command->add_option("--copies", options->copies, "how many of the part, side by side");
+    command->add_option("--spacing", options->spacing, "between copies, as in \"2 mm\"")->capture_default_str();
+    command->add_option("--turn", options->turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
+    command->add_flag("--no-anti-alias", options->no_anti_alias, "pixels are full or dark");
+    command->add_option("--threshold", options->threshold, "without anti-aliasing: least coverage of a full pixel")
+        ->capture_default_str();
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

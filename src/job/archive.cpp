@@ -3,7 +3,7 @@
 #include "job/job.hpp"
 #include "job/manifest.hpp"
 #include "job/png.hpp"
-#include "job/zip_file.hpp"
+#include "zip/zip_file.hpp"
 
 namespace pliant::job {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/files.hpp"
 #include "job/job.hpp"
 #include "job/manifest.hpp"
-#include "job/zip_file.hpp"
+#include "zip/zip_file.hpp"
 
 using namespace pliant;
 using namespace pliant::job;

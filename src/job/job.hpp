@@ -14,16 +14,17 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "slice/image.hpp"
+#include "slice/run_image.hpp"
 
 namespace pliant::job {
 
 using Image = slice::Image;
 
 struct Material {
-    std::string name;              ///< as in the robot file; unique
-    std::string resin;             ///< what a printer's vat is filled with
-    double model_volume_mm3 = 0;   ///< of the bodies as drawn, for the comparison after the print
+    std::string name;   ///< as in the robot file; unique
+    std::string resin;  ///< what a printer's vat is filled with
+    double model_volume_mm3 =
+        0;  ///< of the bodies as drawn, less overlaps that others keep, for the comparison after the print
     double model_area_mm2 = 0;     ///< of their surface: one pixel layer around it is the error a raster may make
     double exposure_s = 0;         ///< of a normal layer
     double bottom_exposure_s = 0;  ///< of the first `bottom_layers`
@@ -71,6 +72,7 @@ struct EncodedImage {
 /// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads. Precondition: at least
 /// one pixel, and as many values as pixels.
 [[nodiscard]] EncodedImage encode(const Image& image);
+[[nodiscard]] EncodedImage encode(const slice::RunImage& image);
 
 /// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
 /// give the same bytes. Encoded files stay in memory until finish(): some 10 kB per image of 2 megapixels.

@@ -1,24 +1,38 @@
 #include "job/make_job.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <set>
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "slice/inspect.hpp"
 
 namespace pliant::job {
 namespace {
 
 /// One layer on its way from the slicer to the archive.
 struct Prepared {
-    slice::SlicedLayer sliced;         ///< its images without their pixels, which are encoded
+    slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
+    slice::LayerShape shape;
 };
 
-Prepared prepare_layer(const slice::Slicer& slicer, int k) {
-    Prepared prepared{slicer.layer(k), {}};
+/// Where layers come from. `layer` is called from any thread; layers in [0, count).
+struct LayerSource {
+    int count = 0;
+    std::function<Result<slice::SlicedLayer>(int)> layer;
+    bool parallel = true;
+};
+
+Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, int k) {
+    auto sliced = source.layer(k);
+    if (!sliced) return tl::unexpected(sliced.error());
+    Prepared prepared{std::move(*sliced), {}, {}};
+    prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
     for (slice::MaterialImage& m : prepared.sliced.images) {
-        prepared.images.push_back(encode(m.image));
+        prepared.images.push_back(encode(settings.light.none() ? m.image : corrected(m.image, settings.light)));
         m.image = {};
     }
     return prepared;
@@ -68,6 +82,128 @@ Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const s
     return layer;
 }
 
+/// One layer of several stacks. A pixel goes whole to the material that lights it most, the later one on a tie.
+Result<slice::SlicedLayer> stacked_layer(std::span<const MaterialStack> stacks, int k) {
+    std::vector<slice::Image> images(stacks.size());
+    slice::SlicedLayer layer;
+    layer.lost_px.assign(stacks.size(), 0.0);
+    for (std::size_t i = 0; i < stacks.size(); ++i) {
+        if (k >= stacks[i].stack.layer_count()) continue;
+        auto image = stacks[i].stack.image(k);
+        if (!image) return tl::unexpected(image.error());
+        images[i] = std::move(*image);
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        for (std::size_t j = i + 1; j < images.size(); ++j) {
+            auto &a = images[i].pixels, &b = images[j].pixels;
+            for (std::size_t p = 0; p < std::min(a.size(), b.size()); ++p) {
+                if (a[p] == 0 || b[p] == 0) continue;
+                const int both = a[p] + b[p];
+                const bool later = b[p] >= a[p];
+                layer.lost_px[later ? i : j] += std::max(0, both - 255) / 255.0;
+                (later ? b[p] : a[p]) = static_cast<std::uint8_t>(std::min(255, both));
+                (later ? a[p] : b[p]) = 0;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (images[i].pixels.empty()) continue;
+        slice::RunImage runs = slice::RunImage::from_image(images[i]);
+        const std::int64_t sum = runs.value_sum();
+        if (sum > 0) layer.images.push_back({static_cast<int>(i), std::move(runs), sum});
+    }
+    return layer;
+}
+
+std::vector<std::size_t> layers_of(const Manifest& manifest, int material) {
+    std::vector<std::size_t> layers;
+    for (std::size_t k = 0; k < manifest.layers.size(); ++k) {
+        for (const LayerImage& image : manifest.layers[k].images) {
+            if (image.material == material) layers.push_back(k);
+        }
+    }
+    return layers;
+}
+
+/// Materials that cost swaps for next to nothing.
+void note_rare_materials(Manifest& manifest) {
+    constexpr std::size_t few = 3;
+    for (std::size_t m = 0; manifest.materials.size() > 1 && m < manifest.materials.size(); ++m) {
+        const std::vector<std::size_t> layers = layers_of(manifest, static_cast<int>(m));
+        if (!layers.empty() && layers.size() <= few && manifest.layers.size() > 10 * few)
+            manifest.warnings.push_back(
+                fmt::format("material \"{}\" occurs in {} of {} layers only, the first is layer {}",
+                            manifest.materials[m].name, layers.size(), manifest.layers.size(), layers.front()));
+    }
+}
+
+/// The images must hold the volume that was drawn.
+void note_volume(Manifest& manifest) {
+    double drawn = 0, lit = 0;
+    for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
+    for (const Layer& layer : manifest.layers) {
+        for (const LayerImage& image : layer.images) lit += image.area_mm2 * layer.thickness_um / 1000;
+    }
+    constexpr double tolerance = 1e-3;
+    if (std::fabs(lit - drawn) > tolerance * drawn)
+        manifest.warnings.push_back(fmt::format("the images hold {:.6g} mm^3, the bodies {:.6g} mm^3: {:+.2f} %", lit,
+                                                drawn, 100 * (lit / drawn - 1)));
+}
+
+void note_findings(const slice::Findings& findings, const JobSettings& settings, Manifest& manifest) {
+    for (std::string& line : describe(findings, settings.slicing.raster, settings.slicing.layer_um))
+        manifest.warnings.push_back(std::move(line));
+    if (static_cast<int>(findings.pieces.size()) > settings.copies)
+        manifest.warnings.push_back(
+            fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
+    note_rare_materials(manifest);
+    note_volume(manifest);
+}
+
+}  // namespace
+
+namespace {
+
+Manifest empty_manifest(const JobSettings& settings, std::vector<Material> materials) {
+    const slice::Raster& raster = settings.slicing.raster;
+    return {settings.name,
+            settings.pliant_version,
+            raster.width_px,
+            raster.height_px,
+            raster.pixel_um,
+            settings.bottom_layers,
+            std::move(materials),
+            {},
+            {}};
+}
+
+/// Makes layers in parallel batches, stores them in order, and tells `note` of each.
+Status make_layers(const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer,
+                   Progress& progress, const std::function<void(int, Prepared&)>& note) {
+    const std::vector<std::string> words = file_words(manifest.materials);
+    constexpr int batch = slice::layers_at_once;
+    for (int first = 0; first < source.count; first += batch) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("slice", static_cast<double>(first) / source.count);
+        const auto size = static_cast<std::size_t>(std::min(batch, source.count - first));
+        std::vector<Result<Prepared>> layers(size);
+        parallel_for(size, source.parallel ? 1 : size, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                layers[i] = prepare_layer(source, settings, first + static_cast<int>(i));
+        });
+        for (std::size_t i = 0; i < size; ++i) {
+            if (!layers[i]) return tl::unexpected(layers[i].error());
+            const int k = first + static_cast<int>(i);
+            note(k, *layers[i]);
+            auto layer = store(*layers[i], k, manifest, words, settings.slicing.layer_um, writer);
+            if (!layer) return tl::unexpected(layer.error());
+            manifest.layers.push_back(std::move(*layer));
+        }
+    }
+    progress.advance("slice", 1);
+    return {};
+}
+
 }  // namespace
 
 Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings, Writer& writer,
@@ -76,38 +212,66 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     if (!slicer) return tl::unexpected(slicer.error());
     auto materials = used_materials(bodies, *slicer, settings.materials);
     if (!materials) return tl::unexpected(materials.error());
-    const slice::Raster& raster = settings.slicing.raster;
-    MadeJob job;
-    job.manifest = {settings.name,
-                    settings.pliant_version,
-                    raster.width_px,
-                    raster.height_px,
-                    raster.pixel_um,
-                    settings.bottom_layers,
-                    std::move(*materials),
-                    {},
-                    {}};
-    const std::vector<std::string> words = file_words(job.manifest.materials);
+    MadeJob job{empty_manifest(settings, std::move(*materials)), {}};
     slice::Tally tally(*slicer);
-    const int count = slicer->layer_count(), batch = slice::batch_size(raster);
-    for (int first = 0; first < count; first += batch) {
-        if (progress.cancelled()) return cancelled();
-        progress.advance("slice", static_cast<double>(first) / count);
-        std::vector<Prepared> layers(static_cast<std::size_t>(std::min(batch, count - first)));
-        parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t) {
-            layers[begin] = prepare_layer(*slicer, first + static_cast<int>(begin));
-        });
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const int k = first + static_cast<int>(i);
-            tally.add(k, layers[i].sliced);
-            auto layer = store(layers[i], k, job.manifest, words, settings.slicing.layer_um, writer);
-            if (!layer) return tl::unexpected(layer.error());
-            job.manifest.layers.push_back(std::move(*layer));
+    slice::Inspector inspector;
+    const LayerSource source{slicer->layer_count(),
+                             [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); }};
+    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
+        tally.add(k, prepared.sliced);
+        inspector.add(std::move(prepared.shape));
+    });
+    if (!made) return tl::unexpected(made.error());
+    job.summary = tally.summary();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        for (Material& m : job.manifest.materials) {
+            if (m.name == bodies[b].material)
+                m.model_volume_mm3 = std::max(0.0, m.model_volume_mm3 - job.summary.lost_mm3[b]);
         }
     }
-    progress.advance("slice", 1);
-    job.summary = tally.summary();
     job.manifest.warnings = job.summary.warnings;
+    note_findings(inspector.finish(), settings, job.manifest);
+    return job;
+}
+
+Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSettings& settings, Writer& writer,
+                              Progress& progress) {
+    std::vector<Material> materials;
+    LayerSource source{0, {}, false};
+    for (const MaterialStack& s : stacks) {
+        const auto known = std::find_if(settings.materials.begin(), settings.materials.end(),
+                                        [&](const Material& m) { return m.name == s.material; });
+        if (known == settings.materials.end())
+            return input_error("material '{}' has no resin and exposure", s.material);
+        const slice::Raster& raster = settings.slicing.raster;
+        if (s.stack.width_px() != raster.width_px || s.stack.height_px() != raster.height_px)
+            return input_error("images of '{}' have {} x {} pixels, the projector {} x {}", s.material,
+                               s.stack.width_px(), s.stack.height_px(), raster.width_px, raster.height_px);
+        materials.push_back(*known);
+        source.count = std::max(source.count, s.stack.layer_count());
+    }
+    source.layer = [&](int k) { return stacked_layer(stacks, k); };
+    MadeJob job{empty_manifest(settings, std::move(materials)), {}};
+    slice::Inspector inspector;
+    std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
+    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int, Prepared& prepared) {
+        inspector.add(std::move(prepared.shape));
+        for (std::size_t i = 0; i < lost_px.size(); ++i) lost_px[i] += prepared.sliced.lost_px[i];
+        for (const auto& m : prepared.sliced.images) lit[m.material] += static_cast<double>(m.value_sum) / 255;
+    });
+    if (!made) return tl::unexpected(made.error());
+    const double pixel_um = settings.slicing.raster.pixel_um;
+    const double voxel_mm3 = pixel_um * pixel_um * settings.slicing.layer_um / 1e9;
+    for (std::size_t i = 0; i < stacks.size(); ++i) {
+        job.manifest.materials[i].model_volume_mm3 = lit[i] * voxel_mm3;
+        if (lost_px[i] * voxel_mm3 > voxel_mm3)
+            job.manifest.warnings.push_back(
+                fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, "
+                            "which keep them",
+                            stacks[i].material, lost_px[i] * voxel_mm3));
+    }
+    job.summary.layer_count = source.count;
+    note_findings(inspector.finish(), settings, job.manifest);
     return job;
 }
 

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/progress.hpp"
+#include "job/image_stack.hpp"
 #include "job/job.hpp"
+#include "slice/light.hpp"
 #include "slice/slicer.hpp"
 
 namespace pliant::job {
@@ -18,6 +20,8 @@ struct JobSettings {
     slice::Settings slicing;
     /// Resin and exposures of every material that a body names; model_volume_mm3 and model_area_mm2 are filled in.
     std::vector<Material> materials;
+    int copies = 1;                  ///< of the part: how many pieces may touch each other nowhere
+    slice::LightCorrection light{};  ///< of the stored images; areas and volumes are those before it
 };
 
 struct MadeJob {
@@ -31,5 +35,17 @@ struct MadeJob {
 /// writer's, cancellation.
 [[nodiscard]] Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings,
                                            Writer& writer, Progress& progress);
+
+/// Images of one material, of one file or folder.
+struct MaterialStack {
+    std::string material;
+    ImageStack stack;
+};
+
+/// The same from images that exist: layers of settings.slicing.layer_um, each material once. Volumes are those of the
+/// images. Where materials share a pixel it goes whole to the brighter, the later one on a tie, and a warning says how
+/// much. Errors: a material without settings, images of another size than the raster, images that cannot be read.
+[[nodiscard]] Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSettings& settings,
+                                            Writer& writer, Progress& progress);
 
 }  // namespace pliant::job

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "job/rle_deflate.hpp"
 
@@ -35,28 +37,38 @@ void put_chunk(std::string& out, std::string_view type, std::string_view data) {
     put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
-bool is_blank(const std::uint8_t* row, std::size_t width) {
-    return row[0] == 0 && std::memcmp(row, row + 1, width - 1) == 0;
+/// Bytes of a row that are equal, up to the column `end`.
+struct Piece {
+    int end;
+    std::uint8_t value;
+};
+
+/// A row of pixels from its first column to its last, dark ones too.
+void spell_row(std::span<const slice::Run> runs, int width, std::vector<Piece>& pieces) {
+    pieces.clear();
+    int at = 0;
+    for (const slice::Run& run : runs) {
+        if (run.begin > at) pieces.push_back({run.begin, 0});
+        pieces.push_back({run.end, run.value});
+        at = run.end;
+    }
+    if (at < width) pieces.push_back({width, 0});
 }
 
-/// Each row as its difference to the one above ("up", filter 2): rows of a solid part repeat, so most become zeros.
-/// Blank rows stay as they are (filter 0), so that they are zeros from end to end.
-std::string filtered(const slice::Image& image) {
-    const auto width = static_cast<std::size_t>(image.width_px), height = static_cast<std::size_t>(image.height_px);
-    std::string rows((width + 1) * height, '\0');
-    for (std::size_t r = 0; r < height; ++r) {
-        const std::uint8_t* row = image.pixels.data() + r * width;
-        const std::uint8_t* above = r > 0 ? row - width : nullptr;
-        auto* out = reinterpret_cast<std::uint8_t*>(rows.data() + r * (width + 1));
-        if (is_blank(row, width)) continue;
-        *out++ = 2;
-        if (above == nullptr) {
-            std::memcpy(out, row, width);
-        } else if (std::memcmp(row, above, width) != 0) {
-            for (std::size_t c = 0; c < width; ++c) out[c] = static_cast<std::uint8_t>(row[c] - above[c]);
+/// What a row adds to the one above it, byte by byte.
+void subtract(const std::vector<Piece>& row, const std::vector<Piece>& above, std::vector<Piece>& difference) {
+    difference.clear();
+    for (auto r = row.begin(), a = above.begin(); r != row.end();) {
+        const int end = std::min(r->end, a->end);
+        const auto value = static_cast<std::uint8_t>(r->value - a->value);
+        if (!difference.empty() && difference.back().value == value) {
+            difference.back().end = end;
+        } else {
+            difference.push_back({end, value});
         }
+        if (r->end == end) ++r;
+        if (a->end == end) ++a;
     }
-    return rows;
 }
 
 struct FreeDecompressor {
@@ -91,54 +103,157 @@ std::optional<slice::Image> decode_own(std::string_view png, const PngSize& size
     return image;
 }
 
+/// About the bits that pieces take: ends of a solid (0, 255) and steps of a full pixel (1) are frequent, so short.
+int cost(const std::vector<Piece>& pieces) {
+    int bits = 0, at = 0;
+    for (const Piece& piece : pieces) {
+        bits += piece.value == 0 || piece.value == 255 || piece.value == 1 ? 3 : 9;
+        if (piece.end - at > 3) bits += 9;
+        at = piece.end;
+    }
+    return bits;
+}
+
+/// The bytes that a PNG file packs: per row the number of a filter, then the row as that filter leaves it. Rows are
+/// kept as they are (filter 0) or as the difference to the row above ("up", filter 2), whichever takes less.
+class RowPacker {
+public:
+    explicit RowPacker(const slice::RunImage& image) : image_(image) {}
+
+    std::string pack() {
+        const auto row_bytes = static_cast<std::uint64_t>(image_.width_px()) + 1;
+        out_.add(0, row_bytes * static_cast<std::uint64_t>(image_.first_row()));
+        spell_row({}, image_.width_px(), above_);
+        for (int r = image_.first_row(); r < image_.end_row(); ++r) pack_row(r);
+        out_.add(0, row_bytes * static_cast<std::uint64_t>(image_.height_px() - image_.end_row()));
+        return out_.finish();
+    }
+
+private:
+    void pack_row(int r) {
+        const std::span<const slice::Run> runs = image_.row(r);
+        const int width = image_.width_px();
+        if (runs.empty()) {
+            out_.add(0, static_cast<std::uint64_t>(width) + 1);
+            spell_row(runs, width, above_);
+            return;
+        }
+        if (r > 0 && std::ranges::equal(runs, image_.row(r - 1))) {
+            out_.add(2, 1);
+            out_.add(0, static_cast<std::uint64_t>(width));
+            return;
+        }
+        spell_row(runs, width, row_);
+        subtract(row_, above_, difference_);
+        const bool up = cost(difference_) < cost(row_);
+        out_.add(up ? 2 : 0, 1);
+        int at = 0;
+        for (const Piece& piece : up ? difference_ : row_) {
+            out_.add(piece.value, static_cast<std::uint64_t>(piece.end - at));
+            at = piece.end;
+        }
+        std::swap(row_, above_);
+    }
+
+    const slice::RunImage& image_;
+    std::vector<Piece> row_, above_, difference_;
+    RunDeflater out_;
+};
+
 }  // namespace
 
 std::string encode_png(const slice::Image& image) {
+    return encode_png(slice::RunImage::from_image(image));
+}
+
+std::string encode_png(const slice::RunImage& image) {
     std::string head;
-    put_u32(head, static_cast<std::uint32_t>(image.width_px));
-    put_u32(head, static_cast<std::uint32_t>(image.height_px));
+    put_u32(head, static_cast<std::uint32_t>(image.width_px()));
+    put_u32(head, static_cast<std::uint32_t>(image.height_px()));
     head += std::string_view("\x08\0\0\0\0", 5);  // 8 bits, grey, deflate, adaptive filters, not interlaced
     std::string png(reinterpret_cast<const char*>(signature.data()), signature.size());
     put_chunk(png, "IHDR", head);
-    put_chunk(png, "IDAT", deflate_runs(filtered(image)));
+    put_chunk(png, "IDAT", RowPacker(image).pack());
     put_chunk(png, "IEND", {});
     return png;
 }
 
-Result<PngSize> png_size(std::string_view head, std::string_view where) {
+namespace {
+
+Result<PngSize> size_in_header(std::string_view head, std::string_view where) {
     if (head.size() < png_head_bytes || std::memcmp(head.data(), signature.data(), signature.size()) != 0 ||
         head.substr(12, 4) != "IHDR")
         return input_error("{}: is not a PNG image", where);
     const std::uint32_t width = get_u32(head, 16), height = get_u32(head, 20);
-    if (head.substr(24, 5) != std::string_view("\x08\0\0\0\0", 5))
-        return input_error("{}: an 8-bit grey PNG without interlacing is needed", where);
     if (width == 0 || height == 0 || width > INT32_MAX || height > INT32_MAX)
         return input_error("{}: claims {} x {} pixels", where, width, height);
     return PngSize{static_cast<int>(width), static_cast<int>(height)};
 }
 
-Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where) {
-    const auto size = png_size(png.substr(0, png_head_bytes), where);
-    if (!size) return tl::unexpected(size.error());
-    if (size->width_px != expected.width_px || size->height_px != expected.height_px)
-        return input_error("{}: {} x {} pixels, the manifest says {} x {}", where, size->width_px, size->height_px,
-                           expected.width_px, expected.height_px);
-    const std::size_t count = static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px);
-    if (count / max_deflate_ratio > png.size())
-        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
-                           size->height_px);
-    if (auto own = decode_own(png, *size)) return std::move(*own);
+/// By libpng; `size` is what the header says.
+Result<slice::Image> decode(std::string_view png, const PngSize& size, std::string_view where) {
+    const std::size_t count = static_cast<std::size_t>(size.width_px) * static_cast<std::size_t>(size.height_px);
     png_image reader{};
     reader.version = PNG_IMAGE_VERSION;
     if (png_image_begin_read_from_memory(&reader, png.data(), png.size()) == 0)
         return input_error("{}: {}", where, std::string(reader.message));
     reader.format = PNG_FORMAT_GRAY;
-    slice::Image image{size->width_px, size->height_px, std::vector<std::uint8_t>(count)};
-    const int done = png_image_finish_read(&reader, nullptr, image.pixels.data(), 0, nullptr);
+    slice::Image image{size.width_px, size.height_px, std::vector<std::uint8_t>(count)};
+    const png_color black{0, 0, 0};
+    const int done = png_image_finish_read(&reader, &black, image.pixels.data(), 0, nullptr);
     const std::string message = reader.message;
     png_image_free(&reader);
     if (done == 0) return input_error("{}: {}", where, message);
     return image;
+}
+
+Status check_size(const PngSize& size, const PngSize& expected, std::string_view where) {
+    if (size.width_px != expected.width_px || size.height_px != expected.height_px)
+        return input_error("{}: {} x {} pixels, {} x {} are needed", where, size.width_px, size.height_px,
+                           expected.width_px, expected.height_px);
+    return {};
+}
+
+}  // namespace
+
+Result<PngSize> png_size(std::string_view head, std::string_view where) {
+    const auto size = size_in_header(head, where);
+    if (size && head.substr(24, 5) != std::string_view("\x08\0\0\0\0", 5))
+        return input_error("{}: an 8-bit grey PNG without interlacing is needed", where);
+    return size;
+}
+
+Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where) {
+    const auto size = png_size(png.substr(0, png_head_bytes), where);
+    if (!size) return tl::unexpected(size.error());
+    if (auto status = check_size(*size, expected, where); !status) return tl::unexpected(status.error());
+    const std::size_t count = static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px);
+    if (count / max_deflate_ratio > png.size())
+        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
+                           size->height_px);
+    if (auto own = decode_own(png, *size)) return std::move(*own);
+    return decode(png, *size, where);
+}
+
+Result<PngSize> any_png_size(std::string_view png, std::string_view where) {
+    const auto size = size_in_header(png.substr(0, png_head_bytes), where);
+    constexpr long long most = 1LL << 28;
+    if (size && static_cast<long long>(size->width_px) * size->height_px > most)
+        return input_error("{}: {} x {} pixels, more than 2^28", where, size->width_px, size->height_px);
+    // The least that a pixel takes is a bit, packed.
+    if (size &&
+        static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px) / 8 / max_deflate_ratio >
+            png.size())
+        return input_error("{}: {} bytes cannot hold {} x {} pixels", where, png.size(), size->width_px,
+                           size->height_px);
+    return size;
+}
+
+Result<slice::Image> decode_any_png(std::string_view png, const PngSize& expected, std::string_view where) {
+    const auto size = any_png_size(png, where);
+    if (!size) return tl::unexpected(size.error());
+    if (auto status = check_size(*size, expected, where); !status) return tl::unexpected(status.error());
+    return decode(png, *size, where);
 }
 
 }  // namespace pliant::job

@@ -4,7 +4,7 @@
 #include "job/job.hpp"
 #include "job/manifest.hpp"
 #include "job/png.hpp"
-#include "job/zip_file.hpp"
+#include "zip/zip_file.hpp"
 
 namespace pliant::job {
 namespace fs = std::filesystem;
@@ -40,6 +40,10 @@ struct Writer::State {
 
 EncodedImage encode(const Image& image) {
     return {image.width_px, image.height_px, encode_png(image)};
+}
+
+EncodedImage encode(const slice::RunImage& image) {
+    return {image.width_px(), image.height_px(), encode_png(image)};
 }
 
 Writer::Writer(std::unique_ptr<State> state) : state_(std::move(state)) {}

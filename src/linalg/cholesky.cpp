@@ -1,107 +1,256 @@
 #include "linalg/cholesky.hpp"
 
-#include <cholmod.h>
-
 #include <algorithm>
+#include <atomic>
 #include <cassert>
-#include <cstring>
 
-// Of libgomp, which CHOLMOD is linked with; declared here because other compilers ship another OpenMP and its header.
-extern "C" {
-int omp_get_max_active_levels(void);
-void omp_set_max_active_levels(int);
-}
+#include "core/aligned_array.hpp"
+#include "core/parallel.hpp"
+#include "linalg/elimination.hpp"
+#include "linalg/multifrontal.hpp"
+#include "linalg/panel.hpp"
 
 namespace pliant::linalg {
-
-struct Cholesky::State {
-    cholmod_common common{};
-    SymmetricPattern pattern;
-    cholmod_factor* factor = nullptr;
-    cholmod_dense* solution = nullptr;  ///< kept between solves, as are the two work spaces
-    cholmod_dense* work_y = nullptr;
-    cholmod_dense* work_e = nullptr;
-
-    State() { cholmod_start(&common); }
-    ~State() {
-        cholmod_free_factor(&factor, &common);
-        cholmod_free_dense(&solution, &common);
-        cholmod_free_dense(&work_y, &common);
-        cholmod_free_dense(&work_e, &common);
-        cholmod_finish(&common);
-    }
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-
-    /// A view of the pattern with these values; CHOLMOD does not write to it.
-    [[nodiscard]] cholmod_sparse view(const double* values) const {
-        cholmod_sparse matrix{};
-        matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.size());
-        matrix.nzmax = pattern.entries();
-        matrix.p = const_cast<int*>(pattern.column_start.data());
-        matrix.i = const_cast<int*>(pattern.row.data());
-        matrix.x = const_cast<double*>(values);
-        matrix.stype = -1;
-        matrix.itype = CHOLMOD_INT;
-        matrix.xtype = values != nullptr ? CHOLMOD_REAL : CHOLMOD_PATTERN;
-        matrix.dtype = CHOLMOD_DOUBLE;
-        matrix.sorted = matrix.packed = 1;
-        return matrix;
-    }
-};
-
 namespace {
 
-/// CHOLMOD's loops ask OpenMP for four threads that spin while they wait; on a shared machine that costs more than the
-/// factorisation. While one of these lives, OpenMP regions run on the calling thread alone.
-class OneThread {
-public:
-    OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
-    ~OneThread() { omp_set_max_active_levels(before_); }
-    OneThread(const OneThread&) = delete;
-    OneThread& operator=(const OneThread&) = delete;
-
-private:
-    int before_;
+/// Where the blocks of the matrix go, in the order of the supernodes.
+struct Source {
+    int pair;        ///< of the pattern
+    int row;         ///< node, counted from the top of the panel
+    int column;      ///< node of the supernode
+    bool transpose;  ///< the order of elimination turned the pair round
 };
 
-/// Fill-reducing order of the nodes: the graph is `block` times smaller than that of the unknowns.
-std::vector<int> order_nodes(const SymmetricPattern& pattern, cholmod_common& common) {
-    cholmod_sparse graph{};
-    graph.nrow = graph.ncol = static_cast<std::size_t>(pattern.nodes);
-    graph.nzmax = pattern.node_row.size();
-    graph.p = const_cast<int*>(pattern.node_start.data());
-    graph.i = const_cast<int*>(pattern.node_row.data());
-    graph.stype = -1;
-    graph.itype = CHOLMOD_INT;
-    graph.xtype = CHOLMOD_PATTERN;
-    graph.sorted = graph.packed = 1;
-    std::vector<int> order(pattern.nodes);
-    if (cholmod_metis(&graph, nullptr, 0, 1, order.data(), &common) == 0) {
-        for (int i = 0; i < pattern.nodes; ++i) order[i] = i;
-    }
-    return order;
-}
+/// Nodes of a child's update that are next to one another in its parent, too.
+struct Stretch {
+    int from, to, length;
+};
 
 }  // namespace
 
-Cholesky::Cholesky(const SymmetricPattern& pattern) : state_(std::make_unique<State>()) {
-    const OneThread scope;
-    cholmod_common& common = state_->common;
-    state_->pattern = pattern;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.print = 0;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    common.postorder = 1;
-    const std::vector<int> nodes = order_nodes(pattern, common);
-    std::vector<int> unknowns;
-    unknowns.reserve(pattern.size());
-    for (const int node : nodes) {
-        for (int u = 0; u < pattern.block; ++u) unknowns.push_back(node * pattern.block + u);
+struct Cholesky::State {
+    using Real = double;
+
+    SymmetricPattern pattern;
+    Elimination e;
+    FrontLayout layout;
+    std::vector<Source> sources;
+    std::vector<int> source_start;           ///< (supernodes + 1)
+    std::vector<std::vector<int>> children;  ///< (supernodes)
+    AlignedArray<Real> factor;
+    AlignedArray<Real> work;
+
+    [[nodiscard]] Panel<Real> panel(int s) const {
+        return {factor.data() + layout.panel[s], e.columns(s) * pattern.block, e.rows_below(s) * pattern.block};
     }
-    cholmod_sparse matrix = state_->view(nullptr);
-    state_->factor = cholmod_analyze_p(&matrix, unknowns.data(), nullptr, 0, &common);
+    [[nodiscard]] std::size_t leading(int s) const {
+        return static_cast<std::size_t>(whole_packets<Real>(e.rows_below(s) * pattern.block));
+    }
+    /// Row of a node in the front of s: its own nodes first, then those below.
+    [[nodiscard]] int local_row(int s, int node) const {
+        if (node < e.first[s + 1]) return node - e.first[s];
+        const auto begin = e.row.begin() + e.row_start[s];
+        return e.columns(s) +
+               static_cast<int>(std::lower_bound(begin, e.row.begin() + e.row_start[s + 1], node) - begin);
+    }
+
+    void find_sources();
+    [[nodiscard]] bool eliminate_supernode(int s, std::span<const double> values) const;
+    template <int block>
+    void add_sources(int s, std::span<const double> values) const;
+    void add_to_panel(int child, const std::vector<Stretch>& stretches, int s) const;
+    void add_to_update(int child, const std::vector<Stretch>& stretches, int s) const;
+    [[nodiscard]] std::vector<Stretch> stretches(int child, int s) const;
+    void solve(double* right_side, int count) const;
+};
+
+void Cholesky::State::find_sources() {
+    std::vector<int> supernode_of(e.position.size());
+    for (int s = 0; s < e.supernodes(); ++s) std::fill_n(supernode_of.begin() + e.first[s], e.columns(s), s);
+    source_start.assign(static_cast<std::size_t>(e.supernodes()) + 1, 0);
+    const auto visit = [&](const auto& use) {
+        for (int j = 0; j < pattern.nodes; ++j) {
+            for (int k = pattern.node_start[j]; k < pattern.node_start[j + 1]; ++k) {
+                const auto [low, high] = std::minmax(e.position[j], e.position[pattern.node_row[k]]);
+                use(supernode_of[low], k, low, high, high == e.position[j]);
+            }
+        }
+    };
+    visit([&](int s, int, int, int, bool) { ++source_start[s + 1]; });
+    for (int s = 0; s < e.supernodes(); ++s) source_start[s + 1] += source_start[s];
+    sources.resize(pattern.node_row.size());
+    std::vector<int> next(source_start.begin(), source_start.end() - 1);
+    visit([&](int s, int k, int low, int high, bool transpose) {
+        sources[next[s]++] = {k, local_row(s, high), low - e.first[s], transpose};
+    });
+}
+
+/// Unknowns of the panel: its own fill whole packets, so those below begin with the next one.
+template <class Real>
+static int panel_row(const Panel<Real>& panel, int unknown) {
+    return unknown < panel.columns ? unknown : unknown - panel.columns + panel.first_below();
+}
+
+template <int block>
+void Cholesky::State::add_sources(int s, std::span<const double> values) const {
+    const Panel<Real> p = panel(s);
+    for (int k = source_start[s]; k < source_start[s + 1]; ++k) {
+        const Source& source = sources[k];
+        const double* value = values.data() + static_cast<std::size_t>(source.pair) * block * block;
+        const int down = source.transpose ? block : 1;
+        const int across = source.transpose ? 1 : block;
+        const int row = panel_row(p, source.row * block);
+        for (int c = 0; c < block; ++c) {
+            for (int r = 0; r < block; ++r)
+                *p.at(row + r, source.column * block + c) = static_cast<Real>(value[c * across + r * down]);
+        }
+    }
+}
+
+std::vector<Stretch> Cholesky::State::stretches(int child, int s) const {
+    std::vector<Stretch> result;
+    for (int k = 0; k < e.rows_below(child); ++k) {
+        const int node = e.row[e.row_start[child] + k];
+        if (!result.empty()) {
+            Stretch& last = result.back();
+            const int next = last.to + last.length;  // row in the front of s
+            const bool own = next < e.columns(s);
+            if (next != e.columns(s) &&
+                (own ? node == e.first[s] + next
+                     : next - e.columns(s) < e.rows_below(s) && node == e.row[e.row_start[s] + next - e.columns(s)])) {
+                ++last.length;
+                continue;
+            }
+        }
+        result.push_back({k, local_row(s, node), 1});
+    }
+    return result;
+}
+
+/// The columns of a child's update that belong to the nodes of its parent.
+void Cholesky::State::add_to_panel(int child, const std::vector<Stretch>& parts, int s) const {
+    const Panel<Real> p = panel(s);
+    const int b = pattern.block;
+    const Real* from = work.data() + layout.update[child];
+    const std::size_t leading_dimension = leading(child);
+    std::vector<std::size_t> place;  // of each row of the child, in column 0 of the panel
+    for (const Stretch& part : parts) {
+        for (int r = 0; r < part.length * b; ++r)
+            place.push_back(static_cast<std::size_t>(p.at(panel_row(p, part.to * b + r), 0) - p.values));
+    }
+    const int rows = static_cast<int>(place.size());
+    for (const Stretch& part : parts) {
+        if (part.to >= e.columns(s)) break;
+        for (int c = 0; c < part.length * b; ++c) {
+            const int first = part.from * b + c;
+            const Real* source = from + static_cast<std::size_t>(first) * leading_dimension;
+            Real* column = p.at(0, part.to * b + c);
+            for (int r = first; r < rows; ++r) column[place[r]] += source[r];
+        }
+    }
+}
+
+/// The other columns, which its parent passes on.
+void Cholesky::State::add_to_update(int child, const std::vector<Stretch>& parts, int s) const {
+    const int b = pattern.block;
+    const int own = e.columns(s);
+    const Real* from = work.data() + layout.update[child];
+    Real* to = work.data() + layout.update[s];
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        if (parts[part].to < own) continue;
+        for (int c = 0; c < parts[part].length * b; ++c) {
+            const Real* source = from + static_cast<std::size_t>(parts[part].from * b + c) * leading(child);
+            Real* column = to + static_cast<std::size_t>((parts[part].to - own) * b + c) * leading(s);
+            for (std::size_t q = part; q < parts.size(); ++q) {
+                const Real* source_part = source + parts[q].from * b;
+                Real* column_part = column + (parts[q].to - own) * b;
+                for (int r = q == part ? c : 0; r < parts[q].length * b; ++r) column_part[r] += source_part[r];
+            }
+        }
+    }
+}
+
+bool Cholesky::State::eliminate_supernode(int s, std::span<const double> values) const {
+    const Panel<Real> p = panel(s);
+    std::fill_n(p.values, p.size(), Real(0));
+    if (pattern.block == 3)
+        add_sources<3>(s, values);
+    else
+        add_sources<1>(s, values);
+    std::vector<std::vector<Stretch>> parts;
+    for (const int child : children[s]) {
+        parts.push_back(stretches(child, s));
+        add_to_panel(child, parts.back(), s);
+    }
+    if (!pliant::linalg::factorise(p)) return false;
+    negative_product(p, work.data() + layout.update[s]);
+    for (std::size_t k = 0; k < parts.size(); ++k) add_to_update(children[s][k], parts[k], s);
+    return true;
+}
+
+void Cholesky::State::solve(double* x, int count) const {
+    const int b = pattern.block;
+    const auto size = static_cast<std::size_t>(pattern.size());
+    // In the order of elimination, and one supernode's part of it.
+    std::vector<Real> permuted(size * static_cast<std::size_t>(count));
+    const auto permute = [&](const auto& move) {
+        for (int c = 0; c < count; ++c) {
+            Real* to = permuted.data() + static_cast<std::size_t>(c) * size;
+            double* from = x + static_cast<std::size_t>(c) * size;
+            for (int node = 0; node < pattern.nodes; ++node) {
+                for (int u = 0; u < b; ++u) move(from[node * b + u], to[e.position[node] * b + u]);
+            }
+        }
+    };
+    permute([](double& from, Real& to) { to = static_cast<Real>(from); });
+    std::vector<Real> own;
+    std::vector<Real> below;
+    const auto gather = [&](int s, const Panel<Real>& p) {
+        own.resize(static_cast<std::size_t>(p.columns * count));
+        below.resize(leading(s) * static_cast<std::size_t>(count));
+        for (int c = 0; c < count; ++c)
+            std::copy_n(permuted.data() + c * size + e.first[s] * b, p.columns, own.data() + c * p.columns);
+    };
+    const auto put_back = [&](int s, const Panel<Real>& p) {
+        for (int c = 0; c < count; ++c)
+            std::copy_n(own.data() + c * p.columns, p.columns, permuted.data() + c * size + e.first[s] * b);
+    };
+    const auto for_rows = [&](int s, const auto& use) {
+        for (int c = 0; c < count; ++c) {
+            Real* part = below.data() + c * leading(s);
+            Real* all = permuted.data() + c * size;
+            for (int k = e.row_start[s]; k < e.row_start[s + 1]; ++k) {
+                for (int u = 0; u < b; ++u) use(*part++, all[e.row[k] * b + u]);
+            }
+        }
+    };
+    for (int s = 0; s < e.supernodes(); ++s) {
+        const Panel<Real> p = panel(s);
+        gather(s, p);
+        solve_lower(p, count, own.data(), below.data());
+        put_back(s, p);
+        for_rows(s, [](Real part, Real& all) { all -= part; });
+    }
+    for (int s = e.supernodes() - 1; s >= 0; --s) {
+        const Panel<Real> p = panel(s);
+        gather(s, p);
+        std::fill(below.begin(), below.end(), Real(0));
+        for_rows(s, [](Real& part, Real all) { part = all; });
+        solve_upper(p, count, own.data(), below.data());
+        put_back(s, p);
+    }
+    permute([](double& from, Real& to) { from = static_cast<double>(to); });
+}
+
+Cholesky::Cholesky(const SymmetricPattern& pattern) : state_(std::make_unique<State>()) {
+    state_->pattern = pattern;
+    state_->e = eliminate(pattern);
+    state_->layout = lay_out(state_->e, pattern.block, packet<State::Real>);
+    state_->children.resize(static_cast<std::size_t>(state_->e.supernodes()));
+    for (int s = 0; s < state_->e.supernodes(); ++s) {
+        if (state_->e.parent[s] >= 0) state_->children[state_->e.parent[s]].push_back(s);
+    }
+    state_->find_sources();
 }
 
 Cholesky::Cholesky(Cholesky&&) noexcept = default;
@@ -110,33 +259,39 @@ Cholesky::~Cholesky() = default;
 
 bool Cholesky::factorise(std::span<const double> values) {
     assert(values.size() == state_->pattern.entries());
-    if (state_->factor == nullptr) return false;
-    const OneThread scope;
-    cholmod_sparse matrix = state_->view(values.data());
-    cholmod_factorize(&matrix, state_->factor, &state_->common);
-    return state_->common.status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
+    State& state = *state_;
+    state.factor.resize(state.layout.panel.back());
+    state.work.resize(state.layout.work_space);
+    std::atomic<bool> definite = true;
+    parallel_for(state.layout.branches.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto& branch = state.layout.branches[k];
+            for (int s = branch.first; s < branch.last && definite; ++s) {
+                if (!state.eliminate_supernode(s, values)) definite = false;
+            }
+        }
+    });
+    for (const int s : state.layout.trunk) {
+        if (!definite) return false;
+        if (!state.eliminate_supernode(s, values)) definite = false;
+    }
+    return definite;
 }
 
 void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
     const auto n = static_cast<std::size_t>(state_->pattern.size());
     assert(right_hand_sides.size() == n * static_cast<std::size_t>(columns));
-    if (n == 0 || columns == 0) return;
-    const OneThread scope;
-    cholmod_dense b{};
-    b.nrow = b.d = n;
-    b.ncol = static_cast<std::size_t>(columns);
-    b.nzmax = n * b.ncol;
-    b.x = right_hand_sides.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    cholmod_solve2(CHOLMOD_A, state_->factor, &b, nullptr, &state_->solution, nullptr, &state_->work_y, &state_->work_e,
-                   &state_->common);
-    std::memcpy(right_hand_sides.data(), state_->solution->x, sizeof(double) * b.nzmax);
+    constexpr int together = 4;
+    for (int c = 0; c < columns && n > 0; c += together)
+        state_->solve(right_hand_sides.data() + static_cast<std::size_t>(c) * n, std::min(together, columns - c));
 }
 
 double Cholesky::factor_entries() const {
-    const cholmod_factor* factor = state_->factor;
-    return factor == nullptr ? 0 : (factor->is_super != 0 ? static_cast<double>(factor->xsize) : state_->common.lnz);
+    return static_cast<double>(state_->layout.panel.back());
+}
+
+double Cholesky::factor_work() const {
+    return state_->layout.work;
 }
 
 }  // namespace pliant::linalg

@@ -8,7 +8,7 @@
 
 namespace pliant::linalg {
 
-/// CHOLMOD (supernodal, METIS on the graph of nodes) behind a small door; single-threaded, the same bits every time.
+/// Supernodal and multifrontal (Duff and Reid 1983), on all cores; the same bits on any number of them.
 class Cholesky {
 public:
     /// Orders and analyses the pattern, which is copied.
@@ -17,15 +17,17 @@ public:
     Cholesky& operator=(Cholesky&&) noexcept;
     ~Cholesky();
 
-    /// `values` (entries) belong to the pattern. False if the matrix is not positive definite (or memory ran out);
-    /// solve() must not be called then.
+    /// `values` (entries) belong to the pattern. False if the matrix is not positive definite; solve() must not be
+    /// called then.
     [[nodiscard]] bool factorise(std::span<const double> values);
 
     /// Solves in place for `columns` right-hand sides, stored one after the other, (columns, size).
     void solve(std::span<double> right_hand_sides, int columns) const;
 
-    /// Entries of the factor, as analysed: a measure of memory and time.
+    /// Entries of the factor, as analysed: a measure of memory.
     [[nodiscard]] double factor_entries() const;
+    /// Multiply-adds of one factorisation, as analysed: a measure of time.
+    [[nodiscard]] double factor_work() const;
 
 private:
     struct State;

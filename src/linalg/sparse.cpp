@@ -6,23 +6,29 @@
 namespace pliant::linalg {
 namespace {
 
-void expand_to_unknowns(SymmetricPattern& p) {
-    p.column_start.assign(static_cast<std::size_t>(p.size()) + 1, 0);
-    for (int j = 0; j < p.nodes; ++j) {
-        const int pairs = p.node_start[j + 1] - p.node_start[j];
-        for (int c = 0; c < p.block; ++c) {
-            const int column = j * p.block + c;
-            p.column_start[column + 1] = p.column_start[column] + pairs * p.block - c;
+/// Adds factor * B v_j to r_i and, off the diagonal, factor * B^T v_i to r_j.
+template <int block>
+void add_block_product(const double* B, double factor, bool diagonal, const double* vi, const double* vj, double* ri,
+                       double* rj) {
+    for (int c = 0; c < block; ++c) {
+        double transposed = 0;
+        for (int r = diagonal ? c : 0; r < block; ++r) {
+            ri[r] += factor * B[block * c + r] * vj[c];
+            if (!diagonal || r > c) transposed += B[block * c + r] * vi[r];
         }
+        rj[c] += factor * transposed;
     }
-    p.row.reserve(p.column_start.back());
+}
+
+template <int block>
+void add_product_of(const SymmetricPattern& p, std::span<const double> values, std::span<const double> v, double factor,
+                    std::span<double> result) {
     for (int j = 0; j < p.nodes; ++j) {
-        for (int c = 0; c < p.block; ++c) {
-            for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
-                for (int r = k == p.node_start[j] ? c : 0; r < p.block; ++r) {
-                    p.row.push_back(p.node_row[k] * p.block + r);
-                }
-            }
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
+            const std::size_t i = static_cast<std::size_t>(p.node_row[k]) * block;
+            const std::size_t column = static_cast<std::size_t>(j) * block;
+            add_block_product<block>(values.data() + static_cast<std::size_t>(k) * block * block, factor, i == column,
+                                     v.data() + i, v.data() + column, result.data() + i, result.data() + column);
         }
     }
 }
@@ -35,6 +41,10 @@ int SymmetricPattern::find(int i, int j) const {
     const auto found = std::lower_bound(begin, end, i);
     assert(found != end && *found == i);
     return static_cast<int>(found - node_row.begin());
+}
+
+bool SymmetricPattern::holds(int i, int j) const {
+    return std::binary_search(node_row.begin() + node_start[j], node_row.begin() + node_start[j + 1], i);
 }
 
 SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vector<int>>& cliques) {
@@ -64,8 +74,16 @@ SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vecto
         pattern.node_start.push_back(static_cast<int>(pattern.node_row.size()));
         std::vector<int>().swap(list);
     }
-    expand_to_unknowns(pattern);
     return pattern;
+}
+
+void add_product(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> v,
+                 double factor, std::span<double> result) {
+    assert(pattern.block == 1 || pattern.block == 3);
+    if (pattern.block == 1)
+        add_product_of<1>(pattern, values, v, factor, result);
+    else
+        add_product_of<3>(pattern, values, v, factor, result);
 }
 
 }  // namespace pliant::linalg

@@ -130,6 +130,10 @@ struct Projector {
     int width_px = 0, height_px = 0;
     double pixel_um = 0;
     bool mirror_x = false, mirror_y = false;  ///< how the panel is seen from the platform
+    double rotation_deg = 0;                  ///< of the part in the image, counter-clockwise
+    double offset_x_um = 0, offset_y_um = 0;  ///< of the platform's centre from the image's
+    std::vector<double> grey;  ///< light of pixels covered 0, 1/n, ... 1: shares of full light; none: the coverage
+    std::string mask;          ///< image file beside the printer file: share of light that each pixel may get
     double irradiance_W_m2 = 0;
     double delay_s = 0;  ///< from the command to the changed image
 };

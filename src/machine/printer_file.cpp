@@ -241,6 +241,28 @@ Resin read_resin(const std::string& name, Reader r) {
     return resin;
 }
 
+/// Light at evenly spaced coverages: from 0, never falling, at most 1.
+std::vector<double> read_grey(Reader& r) {
+    if (!r.has("grey")) return {};
+    std::vector<double> grey = r.numbers("grey");
+    const bool good = grey.size() >= 2 && grey.size() <= 256 && grey.front() == 0 && grey.back() <= 1 &&
+                      std::is_sorted(grey.begin(), grey.end()) && grey.back() > 0;
+    if (!good)
+        r.problem("grey", "must be 2 to 256 numbers that begin with 0, never fall, and end above 0, at most at 1");
+    return grey;
+}
+
+/// How the image lies on the platform, besides mirrors.
+void read_alignment(Reader& r, Projector& p) {
+    p.rotation_deg = r.number("rotation", 0);
+    if (!(std::abs(p.rotation_deg) <= 360)) r.problem("rotation", "must be -360 to 360 degrees");
+    if (!r.has("offset")) return;
+    const std::vector<double> offset = r.quantities("offset", Dimension::length, 2);
+    if (offset.size() != 2) return;
+    p.offset_x_um = checked_um(r, "offset", offset[0]);
+    p.offset_y_um = checked_um(r, "offset", offset[1]);
+}
+
 Projector read_projector(Reader r) {
     Projector p;
     p.width_px = whole(r, "width", 1, 32768);
@@ -248,6 +270,9 @@ Projector read_projector(Reader r) {
     p.pixel_um = positive(r, "pixel", Dimension::length, 1e6);
     p.mirror_x = r.boolean("mirror_x", false);
     p.mirror_y = r.boolean("mirror_y", false);
+    read_alignment(r, p);
+    p.grey = read_grey(r);
+    p.mask = r.text("mask", "");
     p.irradiance_W_m2 = not_negative(r, "irradiance", Dimension::irradiance);
     p.delay_s = not_negative(r, "delay", Dimension::time);
     r.finish();

@@ -75,6 +75,27 @@ TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
     CHECK(holds(message_with("tower_position = \"355.6 mm\"", "tower_position = \"1e300 mm\""), "over 100 m"));
 }
 
+TEST_CASE("the image's place, greys and mask are read, and nonsense is refused") {
+    const auto with = [](const std::string& lines) {
+        std::string text = read_file("examples/printers/tower.toml").value();
+        const std::string key = "mirror_x = false";
+        return parse_printer(text.replace(text.find(key), key.size(), key + "\n" + lines), "p.toml");
+    };
+    const auto printer =
+        with("rotation = -0.5\noffset = [\"0.2 mm\", \"-35 um\"]\ngrey = [0, 0.6, 1]\nmask = \"lens.png\"");
+    REQUIRE_MESSAGE(printer.has_value(), (printer ? "" : printer.error().message));
+    CHECK(printer->projector.rotation_deg == -0.5);
+    CHECK(printer->projector.offset_x_um == 200);
+    CHECK(printer->projector.offset_y_um == -35);
+    CHECK(printer->projector.grey == std::vector<double>{0, 0.6, 1});
+    CHECK(printer->projector.mask == "lens.png");
+    CHECK(with("rotation = 400").error().message.find("rotation: must be -360 to 360") != std::string::npos);
+    for (const char* grey : {"[0]", "[0.1, 1]", "[0, 0.5, 0.4]", "[0, 1.1]", "[0, 0]"})
+        CHECK(with(fmt::format("grey = {}", grey)).error().message.find("must be 2 to 256 numbers") !=
+              std::string::npos);
+    CHECK(!with("offset = [\"1 mm\"]").has_value());
+}
+
 TEST_CASE("an empty file and a missing file are errors, not crashes") {
     CHECK_FALSE(parse_printer("", "p.toml"));
     CHECK_FALSE(parse_printer("vat = 3\naxis = \"x\"\nresin = [1]\n", "p.toml"));

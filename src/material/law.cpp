@@ -146,6 +146,13 @@ Matrix9 tangent(const Law& law, const Matrix3& F) {
     return std::visit([&](const auto& l) { return first_piola_gradient(l, F); }, law);
 }
 
+std::optional<InvariantForm> invariant_form(const Law& law) {
+    if (const auto* l = std::get_if<NeoHookean>(&law)) return InvariantForm{0.5 * l->shear_Pa, 0, 0, 0, l->bulk_Pa};
+    if (const auto* l = std::get_if<MooneyRivlin>(&law)) return InvariantForm{l->c10_Pa, 0, 0, l->c01_Pa, l->bulk_Pa};
+    if (const auto* l = std::get_if<Yeoh>(&law)) return InvariantForm{l->c10_Pa, l->c20_Pa, l->c30_Pa, 0, l->bulk_Pa};
+    return std::nullopt;
+}
+
 bool has_energy(const Law& law) {
     const auto* blend = std::get_if<ShapeBlend>(&law);
     return blend == nullptr || blend->a == 1;

@@ -117,6 +117,15 @@ using Law = std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin
 /// d vec(P) / d vec(F); symmetric where the law has an energy. Precondition: det F > 0.
 [[nodiscard]] Matrix9 tangent(const Law& law, const Matrix3& F);
 
+/// What neo-Hookean, Mooney-Rivlin and Yeoh have in common:
+/// psi = sum_i ci0 (I1_bar - 3)^i + c01 (I2_bar - 3) + K/2 (J - 1)^2. Nothing for laws of another form.
+struct InvariantForm {
+    double c10_Pa = 0, c20_Pa = 0, c30_Pa = 0;
+    double c01_Pa = 0;
+    double bulk_Pa = 0;
+};
+[[nodiscard]] std::optional<InvariantForm> invariant_form(const Law& law);
+
 [[nodiscard]] bool has_energy(const Law& law);
 /// Of small strains from rest.
 [[nodiscard]] Moduli moduli(const Law& law);

@@ -45,6 +45,27 @@ double scale(const Law& law) {
     return stiffness_bound(law);
 }
 
+/// Central difference of f(F) along entry k of F, counted column by column.
+template <typename Function>
+auto difference(const Function& f, const Matrix3& F, int k) {
+    using Value = decltype(f(F));
+    const double h = 1e-6;
+    Matrix3 plus = F;
+    Matrix3 minus = F;
+    plus.data()[k] += h;
+    minus.data()[k] -= h;
+    return Value((f(plus) - f(minus)) / (2 * h));
+}
+
+double energy_difference(const Law& law, const Matrix3& F, int k) {
+    return difference([&](const Matrix3& G) { return *energy(law, G); }, F, k);
+}
+
+Vector9 stress_difference(const Law& law, const Matrix3& F, int k) {
+    const Matrix3 dP = difference([&](const Matrix3& G) { return stress(law, G); }, F, k);
+    return Eigen::Map<const Vector9>(dP.data());
+}
+
 }  // namespace
 
 TEST_CASE("no stress and no energy at rest, whatever the rotation") {
@@ -64,13 +85,8 @@ TEST_CASE("stress is the derivative of the energy") {
         if (!has_energy(law)) continue;
         for (const Matrix3& F : deformations()) {
             const Matrix3 P = stress(law, F);
-            const double h = 1e-6;
             for (int k = 0; k < 9; ++k) {
-                Matrix3 plus = F;
-                Matrix3 minus = F;
-                plus.data()[k] += h;
-                minus.data()[k] -= h;
-                const double difference = (*energy(law, plus) - *energy(law, minus)) / (2 * h);
+                const double difference = energy_difference(law, F, k);
                 CHECK(P.data()[k] == doctest::Approx(difference).scale(0).epsilon(1e-6).scale(P.norm()));
             }
         }
@@ -82,15 +98,7 @@ TEST_CASE("the tangent is the derivative of the stress, symmetric where there is
         CAPTURE(name);
         for (const Matrix3& F : deformations()) {
             const Matrix9 H = tangent(law, F);
-            const double h = 1e-6;
-            for (int k = 0; k < 9; ++k) {
-                Matrix3 plus = F;
-                Matrix3 minus = F;
-                plus.data()[k] += h;
-                minus.data()[k] -= h;
-                const Matrix3 difference = (stress(law, plus) - stress(law, minus)) / (2 * h);
-                CHECK((H.col(k) - Eigen::Map<const Vector9>(difference.data())).norm() < 1e-6 * H.norm());
-            }
+            for (int k = 0; k < 9; ++k) CHECK((H.col(k) - stress_difference(law, F, k)).norm() < 1e-6 * H.norm());
             if (has_energy(law)) CHECK((H - H.transpose()).norm() < 1e-12 * H.norm());
         }
     }
@@ -273,15 +281,9 @@ TEST_CASE("the scaled target: no stress at the scaled shape, stress and tangent 
         const Matrix9 H = tangent(law, F);
         CHECK((stress(law, some_rotation() * F) - some_rotation() * P).norm() < 1e-9 * scale(law));
         CHECK((H - H.transpose()).norm() < 1e-9 * H.norm());
-        const double h = 1e-6;
         for (int k = 0; k < 9; ++k) {
-            Matrix3 plus = F;
-            Matrix3 minus = F;
-            plus.data()[k] += h;
-            minus.data()[k] -= h;
-            CHECK(std::fabs((*energy(law, plus) - *energy(law, minus)) / (2 * h) - P.data()[k]) < 1e-6 * scale(law));
-            const Matrix3 dP = (stress(law, plus) - stress(law, minus)) / (2 * h);
-            CHECK((Eigen::Map<const Vector9>(dP.data()) - H.col(k)).norm() < 1e-5 * (scale(law) + H.norm()));
+            CHECK(std::fabs(energy_difference(law, F, k) - P.data()[k]) < 1e-6 * scale(law));
+            CHECK((stress_difference(law, F, k) - H.col(k)).norm() < 1e-5 * (scale(law) + H.norm()));
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -163,6 +164,50 @@ struct BuildSolid {
         return !boxes_meet(box, {box.low + s.step, box.high + s.step}, gap);
     }
 
+    /// The empty space between the walls falls into pieces; the one that holds the point, unless it is the outermost.
+    Entities operator()(const EnclosedSolid& s) const {
+        Entities walls;
+        Box3 box;
+        for (const Solid& wall : s.walls) {
+            const Entities one = build(wall);
+            walls.insert(walls.end(), one.begin(), one.end());
+            const Box3 around = bounds(wall);
+            box.add(around.low);
+            box.add(around.high);
+        }
+        const double margin = 0.1 * box.diagonal();
+        const Vec3 low = box.low - Vec3{margin, margin, margin};
+        const Vec3 size = box.size() + 2 * Vec3{margin, margin, margin};
+        Entities pieces;
+        std::vector<Entities> map;
+        occ::cut({{3, occ::addBox(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls, pieces, map);
+        Entities kept;
+        for (const auto& piece : pieces) {
+            if (kept.empty() && !reaches(piece, low) && holds(piece, s.point, 1e-6 * margin))
+                kept.push_back(piece);
+            else
+                occ::remove({piece}, true);
+        }
+        return kept;
+    }
+
+    static bool reaches(const std::pair<int, int>& piece, const Vec3& low) {
+        Vec3 a;
+        Vec3 b;
+        occ::getBoundingBox(piece.first, piece.second, a.x, a.y, a.z, b.x, b.y, b.z);
+        return a.x < low.x + 1e-3 * (b.x - a.x);
+    }
+
+    static bool holds(const std::pair<int, int>& piece, const Vec3& point, double radius) {
+        const int probe =
+            occ::addBox(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
+        Entities copy;
+        occ::copy({piece}, copy);
+        const Entities common = intersect(copy, {{3, probe}});
+        if (!common.empty()) occ::remove(common, true);
+        return !common.empty();
+    }
+
     static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
 
     static Entities intersect(const Entities& a, const Entities& b) {
@@ -183,26 +228,33 @@ double mass(const Entities& volumes) {
     return sum;
 }
 
-Status check_overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
+/// Volume that two solids share.
+double common_volume(const Entities& one, const Entities& other) {
+    Entities a;
+    Entities b;
+    occ::copy(one, a);
+    occ::copy(other, b);
+    const Entities common = BuildSolid::intersect(a, b);
+    const double volume = mass(common);
+    if (!common.empty()) occ::remove(common, true);
+    return volume;
+}
+
+/// A line for every two solids that overlap; join_volumes() gives what they share to the later one.
+std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
+    std::vector<std::string> notes;
     for (std::size_t i = 0; i < solids.size(); ++i) {
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
             if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid), 0)) continue;
-            Entities a;
-            Entities b;
-            occ::copy(volumes[i], a);
-            occ::copy(volumes[j], b);
-            const Entities common = BuildSolid::intersect(a, b);
-            const double overlap = mass(common);
-            if (!common.empty()) occ::remove(common, true);
-            if (overlap > 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) {
-                return input_error(
-                    "bodies \"{}\" and \"{}\" overlap in a volume of {:.6g} (in the file's unit, cubed); cut one from "
-                    "the other with difference",
-                    solids[i].name, solids[j].name, overlap);
-            }
+            const double overlap = common_volume(volumes[i], volumes[j]);
+            if (overlap <= 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) continue;
+            notes.push_back(
+                fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
+                            "belongs to \"{1}\", the later one",
+                            solids[i].name, solids[j].name, overlap));
         }
     }
-    return {};
+    return notes;
 }
 
 /// Order of Gmsh's 10-node tet in ours: its last two mid-edge nodes are swapped.
@@ -298,6 +350,37 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
     return solid_of_volume;
 }
 
+/// Which solids an entity of the model belongs to or bounds.
+using SolidsOf = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+
+SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
+    SolidsOf solids;
+    for (const auto& [volume, solid] : solid_of_volume) {
+        Entities level = {{3, volume}};
+        for (int dimension = 3; dimension >= 0; --dimension) {
+            for (const auto& entity : level) solids[entity].push_back(static_cast<std::size_t>(solid));
+            if (dimension == 0) break;
+            Entities below;
+            gmsh::model::getBoundary(level, below, false, false, false);
+            level = std::move(below);
+        }
+    }
+    return solids;
+}
+
+/// Lets `size_at` decide; entities between solids take the smallest of theirs.
+void follow_size(const SizeAt& size_at, const SolidsOf& solids, double size) {
+    if (!size_at) return;
+    gmsh::model::mesh::setSizeCallback([&size_at, solids, size](int dimension, int tag, double x, double y, double z) {
+        double least = size;
+        const auto found = solids.find({dimension, tag});
+        if (found == solids.end()) return std::min(least, size_at(0, {x, y, z}));
+        least = std::numeric_limits<double>::infinity();
+        for (const std::size_t solid : found->second) least = std::min(least, size_at(solid, {x, y, z}));
+        return least;
+    });
+}
+
 /// The surface as one discrete entity of the model.
 int add_triangles(const TriMesh& surface) {
     const int entity = gmsh::model::addDiscreteEntity(2);
@@ -317,7 +400,7 @@ int add_triangles(const TriMesh& surface) {
 }
 
 /// Meshes what the model's surfaces enclose.
-Result<TetMesh> mesh_enclosed(double size) {
+Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
     Entities faces;
     gmsh::model::getEntities(faces, 2);
     std::vector<int> loop;
@@ -325,6 +408,7 @@ Result<TetMesh> mesh_enclosed(double size) {
     const int volume = gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(loop)});
     gmsh::model::geo::synchronize();
     set_size(size);
+    follow_size(size_at, {}, size);
     return generate({{volume, 0}}, 1);
 }
 
@@ -387,18 +471,35 @@ TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
     return surface;
 }
 
-Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, int refinement) {
+tl::unexpected<Error> nothing_left(const NamedSolid& named) {
+    if (const auto* air = std::get_if<EnclosedSolid>(&named.solid->shape)) {
+        return input_error(
+            "chamber \"{}\": the point ({:.6g}, {:.6g}, {:.6g}) lies in no closed cavity: it is in a body, or the "
+            "space "
+            "around it is open; close each mouth with cap = SHAPE",
+            named.name, air->point.x, air->point.y, air->point.z);
+    }
+    return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+}
+
+Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
+                                int refinement) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
         double volume = 0;
         for (const NamedSolid& named : solids) {
             volumes.push_back(BuildSolid::build(named.solid));
             const double one = mass(volumes.back());
-            if (!(one > 0)) return input_error("body \"{}\" is empty: nothing is left of it", named.name);
+            if (!(one > 0)) return nothing_left(named);
             volume += one;
         }
-        if (Status status = check_overlaps(solids, volumes); !status) return tl::unexpected(status.error());
+        std::vector<std::string> notes = overlaps(solids, volumes);
         const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        for (std::size_t i = 0; i < solids.size(); ++i) {
+            const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
+            if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
+                return input_error("body \"{}\" is empty: all of it belongs to later ones", solids[i].name);
+        }
         occ::synchronize();
         Entities joined;
         for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
@@ -407,7 +508,13 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         set_size(size);
         gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
         gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
-        return generate(solid_of_volume, order);
+        if (size_at) {
+            gmsh::option::setNumber("Mesh.MeshSizeMin", 0.05 * size / refinement);
+            follow_size(size_at, solids_of_entities(solid_of_volume), size);
+        }
+        Result<TetMesh> mesh = generate(solid_of_volume, order);
+        if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
+        return mesh;
     });
 }
 
@@ -429,24 +536,24 @@ Status check_tet_count(double volume, double area, double size) {
         estimate(size), most, enough);
 }
 
-Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order) {
-    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, 1);
+Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at) {
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, 1);
     // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
     for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
-        mesh = try_mesh_solids(solids, size, order, refinement);
+        mesh = try_mesh_solids(solids, size, order, size_at, refinement);
     return mesh;
 }
 
-Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg) {
+Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(surface);
         gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
         gmsh::model::mesh::createGeometry();
-        return mesh_enclosed(size);
+        return mesh_enclosed(size, size_at);
     };
     const auto as_drawn = [&]() -> Result<TetMesh> {
         add_triangles(surface);
-        return mesh_enclosed(size);
+        return mesh_enclosed(size, size_at);
     };
     // Gmsh's parametrisation never comes to an end, or worse, on triangles without area.
     Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")

@@ -2,6 +2,7 @@
 // wait for each other, and each begins with an empty model.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 
@@ -17,14 +18,19 @@ struct NamedSolid {
     Solid solid;
 };
 
-/// One conforming mesh; region i is solid i, without region names. An empty solid, solids that overlap and a size that
-/// gives too many tets are errors.
-[[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order);
+/// Wanted edge length in solid i at a point; empty: the size of the mesh everywhere.
+using SizeAt = std::function<double(std::size_t, const Vec3&)>;
+
+/// One conforming mesh; region i is solid i, without region names. Where solids overlap the later one has what they
+/// share, and a note tells the volume. An empty solid and a size that gives too many tets are errors.
+[[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order,
+                                          const SizeAt& size_at = {});
 
 /// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
 /// than `angle_deg` stay. A surface that cannot be parametrised keeps its own triangles,
 /// and a note says so.
-[[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg);
+[[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg,
+                                           const SizeAt& size_at = {});
 
 /// See mesher.hpp.
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);

@@ -80,3 +80,38 @@ TEST_CASE("broken STL files: read, read with a warning, or refused with a reason
         CHECK(surface->warnings.size() == row.warnings);
     }
 }
+
+TEST_CASE("broken STL files are meshed from their winding number, or refused with a reason") {
+    struct Row {
+        const char* file;
+        double volume;     ///< 0: refused
+        const char* told;  ///< part of the note or of the error; none: a clean mesh
+    };
+    for (const Row& row :
+         {Row{"cube_good_binary", 1000, ""}, Row{"hole_one_triangle", 1000, "3 open edges"},
+          Row{"t_junction", 1000, "winding number"}, Row{"inverted_all", 1000, "turned inside out"},
+          Row{"duplicate_triangle", 1000, "1 repeated"}, Row{"degenerate_triangles", 1000, "flat"},
+          Row{"shared_vertex", 2000, ""}, Row{"touching_faces", 2000, ""}, Row{"cavity_inverted_inner", 784, ""},
+          Row{"open_sheet", 0, "encloses nothing"}, Row{"tiny_1um_cube", 1e-9, ""}, Row{"far_from_origin", 1000, ""},
+          Row{"ascii_two_solids", 2000, ""}}) {
+        CAPTURE(row.file);
+        const Result<SurfaceFile> surface = read_surface(folder("3mf/broken_stl/") + row.file + ".stl");
+        REQUIRE_MESSAGE(surface, (surface ? "" : surface.error().message));
+        Progress silent;
+        const double size = bounds(surface->mesh).size().x / 6;
+        const Result<TetMesh> mesh =
+            mesh_bodies(std::vector<BodyGeometry>{{"cube", surface->mesh}}, {.size = size, .order = 1}, silent);
+        if (row.volume == 0) {
+            CHECK_FALSE(mesh);
+            if (!mesh) CHECK(mesh.error().message.find(row.told) != std::string::npos);
+            continue;
+        }
+        REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        CHECK(volume(*mesh) == doctest::Approx(row.volume).scale(0).epsilon(0.02));
+        CHECK(report_on(*mesh).min_dihedral_deg > 5);
+        std::string notes;
+        for (const std::string& note : mesh->notes) notes += note + "; ";
+        CAPTURE(notes);
+        CHECK(notes.find(row.told) != std::string::npos);
+    }
+}

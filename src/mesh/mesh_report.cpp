@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/files.hpp"
+#include "mesh/curved_tets.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
+#include "mesh/tet_format.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -22,8 +25,8 @@ double quality(const TetMesh& mesh, std::size_t t) {
     return longest > 0 ? 6 * std::sqrt(2.0) * volume / (longest * longest * longest) : 0;
 }
 
-/// The smallest angle between two of the tet's faces, by its corners.
-double min_dihedral(const TetMesh& mesh, std::size_t t) {
+/// The six angles between the tet's faces, in degrees.
+std::array<double, 6> dihedral_angles(const TetMesh& mesh, std::size_t t) {
     const auto n = mesh.tet(t);
     std::array<Vec3, 4> normal;  // of the face opposite to each corner, outwards
     for (std::size_t f = 0; f < 4; ++f) {
@@ -31,14 +34,55 @@ double min_dihedral(const TetMesh& mesh, std::size_t t) {
         const Vec3& a = mesh.points[n[c[0]]];
         normal[f] = cross(mesh.points[n[c[1]]] - a, mesh.points[n[c[2]]] - a);
     }
-    double smallest = std::numbers::pi;
+    std::array<double, 6> angles{};
+    std::size_t k = 0;
     for (std::size_t f = 0; f < 4; ++f) {
         for (std::size_t g = 0; g < f; ++g) {
             const double between = std::atan2(norm(cross(normal[f], normal[g])), dot(normal[f], normal[g]));
-            smallest = std::min(smallest, std::numbers::pi - between);
+            angles[k++] = 180 - between * 180 / std::numbers::pi;
         }
     }
-    return smallest;
+    return angles;
+}
+
+/// The bin of `value` among `bins` from 0 to `end`.
+std::size_t bin(double value, double end, std::size_t bins) {
+    const double at = value / end * static_cast<double>(bins);
+    return at > 0 ? std::min(static_cast<std::size_t>(at), bins - 1) : 0;
+}
+
+void add_shapes(const TetMesh& mesh, MeshReport& report) {
+    std::vector<double> all(mesh.tet_count());
+    report.worst_quality = std::numeric_limits<double>::infinity();
+    report.min_dihedral_deg = 180;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        all[t] = quality(mesh, t);
+        ++report.quality_counts[bin(all[t], 1, MeshReport::quality_bins)];
+        for (const double angle : dihedral_angles(mesh, t)) {
+            report.min_dihedral_deg = std::min(report.min_dihedral_deg, angle);
+            report.max_dihedral_deg = std::max(report.max_dihedral_deg, angle);
+            ++report.dihedral_counts[bin(angle, 180, MeshReport::dihedral_bins)];
+        }
+        if (mesh.order == 2 && all[t] > 0)
+            report.worst_jacobian = std::min(report.worst_jacobian, worst_scaled_jacobian(mesh, t));
+        if (all[t] >= report.worst_quality) continue;
+        report.worst_quality = all[t];
+        report.worst_at = {};
+        for (std::size_t c = 0; c < 4; ++c) report.worst_at += 0.25 * mesh.points[mesh.tet(t)[c]];
+    }
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    report.median_quality = *middle;
+}
+
+void add_regions(const TetMesh& mesh, MeshReport& report) {
+    for (const std::string& name : mesh.region_names) report.regions.push_back({name, 0, 0});
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto n = mesh.tet(t);
+        RegionReport& region = report.regions[static_cast<std::size_t>(mesh.region[t])];
+        ++region.tets;
+        region.volume += signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]);
+    }
 }
 
 std::string surface_text(const SurfaceFile& surface) {
@@ -58,20 +102,9 @@ MeshReport report_on(const TetMesh& mesh) {
     report.points = mesh.points.size();
     report.tets = mesh.tet_count();
     for (const Vec3& p : mesh.points) report.box.add(p);
-    report.region_names = mesh.region_names;
     report.notes = mesh.notes;
-    for (std::size_t r = 0; r < mesh.region_names.size(); ++r)
-        report.region_volumes.push_back(volume(mesh, static_cast<int>(r)));
-    std::vector<double> all;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) all.push_back(quality(mesh, t));
-    std::sort(all.begin(), all.end());
-    double angle = mesh.tet_count() > 0 ? std::numbers::pi : 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) angle = std::min(angle, min_dihedral(mesh, t));
-    report.min_dihedral_deg = angle * 180 / std::numbers::pi;
-    if (!all.empty()) {
-        report.worst_quality = all.front();
-        report.median_quality = all[all.size() / 2];
-    }
+    add_regions(mesh, report);
+    if (mesh.tet_count() > 0) add_shapes(mesh, report);
     return report;
 }
 
@@ -82,9 +115,9 @@ std::string report_text(const MeshReport& report) {
         "smallest dihedral angle {:.1f} degrees",
         report.points, report.tets, report.order == 2 ? "quadratic" : "linear", size.x, size.y, size.z,
         report.worst_quality, report.median_quality, report.min_dihedral_deg);
-    for (std::size_t r = 0; r < report.region_names.size(); ++r) {
-        text += fmt::format("\n  region \"{}\": volume {:.6g}", report.region_names[r], report.region_volumes[r]);
-    }
+    if (report.order == 2) text += fmt::format(", smallest J {:.3f}", report.worst_jacobian);
+    for (const RegionReport& region : report.regions)
+        text += fmt::format("\n  region \"{}\": {} tets, volume {:.6g}", region.name, region.tets, region.volume);
     for (const std::string& note : report.notes) text += "\n  note: " + note;
     return text;
 }
@@ -93,18 +126,23 @@ Result<std::string> describe_mesh_file(const std::filesystem::path& path) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (looks_like_tet_mesh(*bytes)) {
-        const Result<TetMesh> mesh = parse_tet_mesh(*bytes, path.string());
-        if (!mesh) return tl::unexpected(mesh.error());
-        return report_text(report_on(*mesh));
+        const Result<MeshReport> report = report_on_file(path);
+        if (!report) return tl::unexpected(report.error());
+        return report_text(*report);
     }
     if (bytes->empty() || looks_like_surface(*bytes)) {
         const Result<SurfaceFile> surface = parse_surface(*bytes, path.string());
         if (!surface) return tl::unexpected(surface.error());
         return surface_text(*surface);
     }
-    return input_error(
-        "{}: is no mesh that Pliant reads (tet meshes: .vtk, .vtu or .msh; surfaces: .stl, .obj or .ply; by content)",
-        path.string());
+    return input_error("{}: is no mesh that Pliant reads (tet meshes: {}; surfaces: .stl, .obj or .ply; by content)",
+                       path.string(), tet_format_list);
+}
+
+Result<MeshReport> report_on_file(const std::filesystem::path& path) {
+    const Result<TetMesh> mesh = read_tet_mesh(path);
+    if (!mesh) return tl::unexpected(mesh.error());
+    return report_on(*mesh);
 }
 
 }  // namespace pliant::mesh

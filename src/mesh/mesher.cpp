@@ -4,10 +4,13 @@
 #include <vector>
 
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/size_field.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
+#include "mesh/walls.hpp"
+#include "mesh/winding_mesher.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -49,7 +52,16 @@ Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGe
         name, bodies[static_cast<std::size_t>(other)].name);
 }
 
-Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings) {
+/// Sizes for the kernel, whose solids are some of the bodies; empty where one size holds everywhere.
+kernel::SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of_solid) {
+    if (field.uniform()) return {};
+    return [&field, bodies = std::move(body_of_solid)](std::size_t solid, const Vec3& p) {
+        return field.at(bodies[solid], p);
+    };
+}
+
+Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
+                               const SizeField& field) {
     std::vector<kernel::NamedSolid> solids;
     std::vector<int> body_of_solid;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -59,7 +71,8 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
         body_of_solid.push_back(static_cast<int>(b));
     }
     if (solids.empty()) return Part{};
-    Result<TetMesh> mesh = kernel::mesh_solids(solids, settings.size, settings.order);
+    const kernel::SizeAt size_at = sizes_of(field, {body_of_solid.begin(), body_of_solid.end()});
+    Result<TetMesh> mesh = kernel::mesh_solids(solids, settings.size, settings.order, size_at);
     if (!mesh) return tl::unexpected(mesh.error());
     for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
     return Part{std::move(*mesh), false};
@@ -76,28 +89,52 @@ double surface_area(const TriMesh& surface) {
     return sum;
 }
 
-/// One part per solid piece of the surface of body `b`.
+/// A body whose surface is closed and simple: one mesh per solid piece.
+Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings,
+                                         const kernel::SizeAt& size_at) {
+    if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
+    const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
+    if (!pieces) return tl::unexpected(pieces.error());
+    std::vector<TetMesh> meshes;
+    for (const TriMesh& piece : *pieces) {
+        Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg, size_at);
+        if (!mesh) return tl::unexpected(mesh.error());
+        int region = 0;
+        for (const TetMesh& before : meshes) {
+            if (reaches_into(*mesh, before, 0.01 * settings.size, region) ||
+                reaches_into(before, *mesh, 0.01 * settings.size, region))
+                return input_error("two shells of its surface touch or overlap");
+        }
+        meshes.push_back(std::move(*mesh));
+    }
+    return meshes;
+}
+
+/// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
-                                            const MeshSettings& settings) {
-    TriMesh surface = std::get<TriMesh>(bodies[b].shape);
+                                            const MeshSettings& settings, const SizeField& field) {
+    const auto& drawn = std::get<TriMesh>(bodies[b].shape);
+    TriMesh surface = drawn;
     const SliverCount slivers = remove_slivers(surface);
     const auto blame = [&](const Error& error) {
         return tl::unexpected(Error{error.cause, fmt::format("body \"{}\": {}", bodies[b].name, error.message)});
     };
-    if (Status status = check_closed(surface); !status) return blame(status.error());
-    const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
-    if (!pieces) return blame(pieces.error());
-    Status few = kernel::check_tet_count(signed_volume(surface), surface_area(surface), settings.size);
+    Status few = kernel::check_tet_count(std::fabs(signed_volume(surface)), surface_area(surface), settings.size);
     if (!few) return blame(few.error());
+    Result<std::vector<TetMesh>> meshes = mesh_pieces(surface, settings, sizes_of(field, {b}));
+    if (!meshes) {
+        Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg);
+        if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
+        meshes = std::vector<TetMesh>{std::move(*mesh)};
+    } else if (slivers.removed > 0) {
+        meshes->front().notes.insert(meshes->front().notes.begin(),
+                                     fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
+    }
     std::vector<Part> parts;
-    for (const TriMesh& piece : *pieces) {
-        Result<TetMesh> mesh = kernel::mesh_surface(piece, settings.size, settings.angle_deg);
-        if (!mesh) return blame(mesh.error());
-        mesh->region.assign(mesh->region.size(), static_cast<int>(b));
-        if (slivers.removed > 0 && parts.empty())
-            mesh->notes.push_back(fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
-        for (std::string& note : mesh->notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
-        parts.push_back({settings.order == 2 ? to_quadratic(*mesh) : std::move(*mesh), true});
+    for (TetMesh& mesh : *meshes) {
+        mesh.region.assign(mesh.region.size(), static_cast<int>(b));
+        for (std::string& note : mesh.notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
+        parts.push_back({settings.order == 2 ? to_quadratic(mesh) : std::move(mesh), true});
     }
     return parts;
 }
@@ -122,17 +159,10 @@ Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& 
     return {};
 }
 
-}  // namespace
-
-Box3 bounds(const BodyGeometry& body) {
-    const auto* solid = std::get_if<Solid>(&body.shape);
-    return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
-}
-
-Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
-    if (Status status = check_settings(bodies, settings); !status) return tl::unexpected(status.error());
+Result<TetMesh> mesh_once(std::span<const BodyGeometry> bodies, const MeshSettings& settings, const SizeField& field,
+                          Progress& progress) {
     progress.advance("mesh", 0);
-    Result<Part> solids = mesh_drawn_solids(bodies, settings);
+    Result<Part> solids = mesh_drawn_solids(bodies, settings, field);
     if (!solids) return tl::unexpected(solids.error());
     std::vector<Part> parts;
     if (solids->mesh.tet_count() > 0) parts.push_back(std::move(*solids));
@@ -140,7 +170,7 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
         if (!std::holds_alternative<TriMesh>(bodies[b].shape)) continue;
         if (progress.cancelled()) return cancelled();
         progress.advance("mesh", static_cast<double>(b) / static_cast<double>(bodies.size()));
-        Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings);
+        Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings, field);
         if (!fresh) return tl::unexpected(fresh.error());
         for (Part& part : *fresh) {
             for (const Part& before : parts) {
@@ -153,6 +183,86 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
     TetMesh mesh = joined(parts, settings.order);
     for (const BodyGeometry& body : bodies) mesh.region_names.push_back(body.name);
     progress.advance("mesh", 1);
+    return mesh;
+}
+
+/// The walls of a body in a mesh.
+std::vector<WallSample> walls_of(const TetMesh& mesh, std::size_t body) {
+    return wall_samples(region_surface(mesh, static_cast<int>(body)));
+}
+
+/// About as many tets as the sizes will give, by a first mesh.
+double expected_tets(const TetMesh& mesh, const SizeField& field) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto n = mesh.tet(t);
+        const auto at = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(n[k])]; };
+        const double size = field.at(static_cast<std::size_t>(mesh.region[t]), 0.25 * (at(0) + at(1) + at(2) + at(3)));
+        sum += 8.5 * signed_tet_volume(at(0), at(1), at(2), at(3)) / (size * size * size);
+    }
+    return sum;
+}
+
+/// Meshes once to see how thick the walls are, and lets the sizes follow.
+Status follow_walls(std::span<const BodyGeometry> bodies, const MeshSettings& settings, SizeField& field,
+                    Progress& progress) {
+    if (settings.through_wall < 1) return {};
+    MeshSettings coarse = settings;
+    coarse.order = 1;
+    const Result<TetMesh> first = mesh_once(bodies, coarse, field, progress);
+    if (!first) return tl::unexpected(first.error());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (!bodies[b].air) field.add_walls(walls_of(*first, b));
+    }
+    constexpr double most = 20e6;
+    const double tets = expected_tets(*first, field);
+    if (tets <= most) return {};
+    return input_error(
+        "{} elements through every wall are about {:.2g} tetrahedra, more than the {:.2g} allowed; ask for "
+        "fewer or take a larger size",
+        settings.through_wall, tets, most);
+}
+
+/// A note for each body with a wall of fewer than three elements: the thinnest, by the edges of the mesh there.
+void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
+    constexpr double enough = 2.5;  // about three
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (bodies[b].air) continue;
+        const WallSample* thinnest = nullptr;
+        const std::vector<WallSample> walls = walls_of(mesh, b);
+        for (const WallSample& wall : walls) {
+            if (thinnest == nullptr || wall.thickness / wall.edge < thinnest->thickness / thinnest->edge)
+                thinnest = &wall;
+        }
+        if (thinnest == nullptr || thinnest->thickness > enough * thinnest->edge) continue;
+        mesh.notes.push_back(fmt::format(
+            "body \"{}\": the wall at ({:.4g}, {:.4g}, {:.4g}), {:.3g} thick, has about {:.1f} elements through it; "
+            "elements_through_wall asks for more",
+            bodies[b].name, thinnest->at.x, thinnest->at.y, thinnest->at.z, thinnest->thickness,
+            thinnest->thickness / thinnest->edge));
+    }
+}
+
+}  // namespace
+
+Box3 bounds(const BodyGeometry& body) {
+    const auto* solid = std::get_if<Solid>(&body.shape);
+    return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
+}
+
+Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
+    if (Status status = check_settings(bodies, settings); !status) return tl::unexpected(status.error());
+    SizeField field(bodies, settings);
+    if (Status status = follow_walls(bodies, settings, field, progress); !status) return tl::unexpected(status.error());
+    Result<TetMesh> mesh = mesh_once(bodies, settings, field, progress);
+    if (!mesh) return mesh;
+    if (field.too_thin())
+        mesh->notes.push_back(
+            fmt::format("a wall is too thin for {} elements through it: edges go down to an eighth of the mesh size; "
+                        "take a smaller one",
+                        settings.through_wall));
+    else if (settings.judge_walls && settings.through_wall == 0)
+        judge_walls(bodies, *mesh);
     return mesh;
 }
 

@@ -17,20 +17,27 @@ namespace pliant::mesh {
 struct BodyGeometry {
     std::string name;
     std::variant<Solid, TriMesh> shape;
+    bool air = false;  ///< empty space: it has no walls of its own
+    double size = 0;   ///< wanted edge length in this body; 0: that of the whole mesh
 };
 
 [[nodiscard]] Box3 bounds(const BodyGeometry& body);
 
 struct MeshSettings {
-    double size = 0;        ///< wanted edge length, above zero
-    int order = 2;          ///< 1 or 2; mid-edge nodes lie on the curved faces of solids where that folds no tet
-    double angle_deg = 30;  ///< edges of a surface file sharper than this are kept
+    double size = 0;              ///< wanted edge length, above zero
+    int order = 2;                ///< 1 or 2; mid-edge nodes lie on the curved faces of solids where that folds no tet
+    double angle_deg = 30;        ///< edges of a surface file sharper than this are kept
+    int through_wall = 0;         ///< elements through every wall, at least; 0: as the size gives
+    bool judge_walls = false;     ///< a note names the thinnest wall that has fewer than three elements through it
+    double size_near_cables = 0;  ///< within twice this length of a cable; 0: no wish
+    std::vector<std::vector<Vec3>> cables = {};  ///< their points
 };
 
-/// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; bodies
-/// that overlap are an error with the volume. A surface may have several shells and cavities; it is meshed anew, its
-/// sharp edges kept (or, where that fails, it keeps its triangles, and a note says so), and must stand apart from every
-/// other body. The same input gives the same mesh. A mesh of more than 20 million tets is refused.
+/// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; of
+/// those that overlap the later one has what they share, and a note tells the volume. A surface may have several shells
+/// and cavities; it is meshed anew, its sharp edges kept (or, where that fails, it keeps its triangles, and a note says
+/// so), and must stand apart from every other body. The same input gives the same mesh. A mesh of more than 20 million
+/// tets is refused.
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
                                           Progress& progress);
 

@@ -228,15 +228,47 @@ TEST_CASE("the same bodies give the same mesh, byte for byte") {
     CHECK(first.nodes == second.nodes);
 }
 
+TEST_CASE("where bodies overlap the later one wins, and a note tells the volume") {
+    const Solid left = box({0, 0, 0}, {10, 10, 10});
+    const Solid right = box({8, 0, 0}, {20, 10, 10});
+    const TetMesh mesh = mesh_of({{"left", left}, {"right", right}}, 4, 1);
+    CHECK(volume(mesh, 0) == doctest::Approx(800).scale(0));
+    CHECK(volume(mesh, 1) == doctest::Approx(1200).scale(0));
+    REQUIRE(mesh.notes.size() == 1);
+    CHECK(mesh.notes[0].find("\"left\" and \"right\" overlap in a volume of 200 ") == 0);
+    CHECK(mesh.notes[0].find("belongs to \"right\"") != std::string::npos);
+    const TetMesh other = mesh_of({{"right", right}, {"left", left}}, 4, 1);
+    CHECK(volume(other, 0) == doctest::Approx(1000).scale(0));
+}
+
+TEST_CASE("enclosed space is a region of its own, with a cap where it has a mouth") {
+    const auto enclosed = [](const Vec3& at, std::vector<Solid> walls) {
+        return std::make_shared<const SolidNode>(SolidNode{EnclosedSolid{at, std::move(walls)}});
+    };
+    const Solid shell = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
+    const TetMesh closed = mesh_of({{"shell", shell}, {"air", enclosed({5, 5, 5}, {shell})}}, 4, 1);
+    CHECK(volume(closed, 1) == doctest::Approx(64).scale(0));
+    CHECK(boundary_faces(closed).size() < region_faces(closed, 0).size());  // the air fills the cavity
+    const Solid pot = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 11}));
+    const std::string open = problem({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot})}}, 4);
+    CHECK(open.find("chamber \"air\": the point (5, 5, 5) lies in no closed cavity") != std::string::npos);
+    const Solid lid = box({2, 2, 10}, {8, 8, 11});
+    const TetMesh capped = mesh_of({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot, lid})}}, 4, 1);
+    CHECK(volume(capped, 0) == doctest::Approx(1000 - 7 * 16).scale(0));
+    CHECK(volume(capped, 1) == doctest::Approx(7 * 16).scale(0));
+}
+
 TEST_CASE("what cannot be meshed is refused with a reason") {
-    CHECK(problem({{"a", box({0, 0, 0}, {10, 10, 10})}, {"b", box({8, 0, 0}, {20, 10, 10})}}, 3)
-              .find("overlap in a volume of 200") != std::string::npos);
+    CHECK(problem({{"a", box({1, 1, 1}, {2, 2, 2})}, {"b", box({0, 0, 0}, {5, 5, 5})}}, 3)
+              .find("body \"a\" is empty: all of it belongs to later ones") != std::string::npos);
     CHECK(problem({{"a", without(box({0, 0, 0}, {1, 1, 1}), box({-1, -1, -1}, {2, 2, 2}))}}, 1).find("is empty") !=
           std::string::npos);
     CHECK(problem({{"a", box({0, 0, 0}, {100, 100, 100})}}, 0.1).find("tetrahedra, more than") != std::string::npos);
     TriMesh open = *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1);
-    open.triangles.pop_back();
-    CHECK(problem({{"a", open}}, 1).find("not closed") != std::string::npos);
+    open.triangles.resize(2);
+    const std::string sheet = problem({{"a", open}}, 1);
+    CHECK(sheet.find("body \"a\": the surface encloses nothing: it is an open sheet") == 0);
+    CHECK(sheet.find("not closed: ") != std::string::npos);
     const TriMesh cube = *tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1);
     CHECK(problem({{"a", cube}, {"b", box({10, 0, 0}, {20, 10, 10})}}, 4).find("touches or overlaps") !=
           std::string::npos);

@@ -54,6 +54,15 @@ struct Contains {
         }
         return false;
     }
+    bool operator()(const EnclosedSolid& s) const {
+        Box3 box;
+        for (const Solid& wall : s.walls) {
+            if (contains(wall, p)) return false;
+            box.add(bounds(wall).low);
+            box.add(bounds(wall).high);
+        }
+        return box.contains(p);
+    }
 };
 
 Box3 united(Box3 a, const Box3& b) {
@@ -117,6 +126,11 @@ struct Bounds {
         const Box3 box = bounds(s.of);
         const Vec3 last = (s.count - 1) * s.step;
         return united(box, {box.low + last, box.high + last});
+    }
+    Box3 operator()(const EnclosedSolid& s) const {
+        Box3 box = bounds(s.walls.front());
+        for (const Solid& wall : s.walls) box = united(box, bounds(wall));
+        return box;
     }
 };
 

@@ -65,13 +65,19 @@ struct RepeatedSolid {
     Vec3 step;
 };
 
+/// The piece of the empty space between walls that holds a point. Not written by people: the air of a chamber.
+struct EnclosedSolid {
+    Vec3 point;
+    std::vector<Solid> walls;  ///< at least one
+};
+
 struct SolidNode {
     std::variant<BoxSolid, SphereSolid, CylinderSolid, PrismSolid, CombinedSolid, TranslatedSolid, RotatedSolid,
-                 RepeatedSolid>
+                 RepeatedSolid, EnclosedSolid>
         shape;
 };
 
-/// Exact membership; points on the surface may fall either way.
+/// Exact membership; points on the surface may fall either way. For an EnclosedSolid: between the walls, in any piece.
 [[nodiscard]] bool contains(const Solid& solid, const Vec3& point);
 
 /// A box that holds the solid (not always the smallest one).

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "mesh/tet_writer.hpp"
+
 using namespace pliant;
 using namespace pliant::mesh;
 
@@ -36,7 +38,7 @@ const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNST
 
 TEST_CASE("linear and quadratic meshes come back as they were written") {
     for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
-        const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+        const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
         REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
         CHECK(back->order == mesh.order);
         CHECK(back->points.size() == mesh.points.size());
@@ -55,7 +57,7 @@ TEST_CASE("names of regions come back whatever they hold, and however long they 
     TetMesh mesh = two_tets();
     for (const std::string& name : {std::string("a, b"), std::string("100%,\n\xc3\xa9"), std::string(400, 'n')}) {
         mesh.region_names[1] = name;
-        const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+        const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
         REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
         CHECK(back->region_names == mesh.region_names);
     }
@@ -97,7 +99,7 @@ TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges")
     std::swap(mesh.nodes[1], mesh.nodes[2]);
     std::swap(mesh.nodes[4], mesh.nodes[6]);
     std::swap(mesh.nodes[8], mesh.nodes[9]);
-    const Result<TetMesh> back = parse_vtk(vtk_text(mesh), "a.vtk");
+    const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
     REQUIRE(back);
     for (std::size_t t = 0; t < back->tet_count(); ++t) {
         const auto n = back->tet(t);
@@ -125,7 +127,8 @@ TEST_CASE("broken files give a reason with the line, and claims are not believed
 }
 
 TEST_CASE("an unknown kind of file to write is refused") {
-    CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk or .vtu") != std::string::npos);
+    CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk, .vtu, .msh, .mesh or .inp") !=
+          std::string::npos);
 }
 
 TEST_CASE("attributes that are not read are passed over: colours, tables, texts, coordinates of pictures") {

@@ -23,6 +23,9 @@ public:
     [[nodiscard]] std::size_t bytes_left() const { return text_.size() - at_; }
     [[nodiscard]] std::size_t position() const { return at_; }
     [[nodiscard]] int line() const { return line_; }
+    /// Over bytes that are no text; `line()` means nothing afterwards. At most to the end of the text.
+    void move_past(std::size_t bytes) { at_ += bytes < bytes_left() ? bytes : bytes_left(); }
+    void move_to(std::size_t position) { at_ = position < text_.size() ? position : text_.size(); }
 
     /// The next word as a finite number, or an error that names it.
     [[nodiscard]] Result<double> number();

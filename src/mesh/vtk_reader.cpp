@@ -13,8 +13,10 @@
 #include <optional>
 #include <set>
 
+#include "core/byte_order.hpp"
 #include "mesh/tet_collector.hpp"
 #include "mesh/tet_file.hpp"
+#include "mesh/tet_writer.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -123,29 +125,64 @@ private:
         return error("a count is needed instead of \"" + word.substr(0, 40) + "\"");
     }
 
-    static std::size_t width_of(const std::string& type) {
-        static const std::map<std::string, std::size_t> widths = {
-            {"float", 4},        {"double", 8},        {"int", 4},         {"unsigned_int", 4}, {"long", 8},
-            {"vtktypeint64", 8}, {"unsigned_long", 8}, {"vtkIdType", 8},   {"short", 2},        {"unsigned_short", 2},
-            {"char", 1},         {"unsigned_char", 1}, {"vtktypeint32", 4}};
-        const auto found = widths.find(type);
-        return found == widths.end() ? 0 : found->second;
+    /// A type of number, by its name in a file. Width 0: unknown.
+    struct NumberType {
+        std::size_t width = 0;
+        bool floating = false;
+        bool is_signed = true;
+    };
+    static NumberType number_type(const std::string& name) {
+        static const std::map<std::string, NumberType> types = {
+            {"float", {4, true}},
+            {"double", {8, true}},
+            {"int", {4}},
+            {"unsigned_int", {4, false, false}},
+            {"long", {8}},
+            {"unsigned_long", {8, false, false}},
+            {"vtktypeint64", {8}},
+            {"vtkIdType", {8}},
+            {"vtktypeuint64", {8, false, false}},
+            {"vtktypeint32", {4}},
+            {"short", {2}},
+            {"unsigned_short", {2, false, false}},
+            {"char", {1}},
+            {"unsigned_char", {1, false, false}},
+        };
+        const auto found = types.find(name);
+        return found == types.end() ? NumberType{} : found->second;
     }
 
-    double decode(const std::string& type, std::size_t width, std::size_t at) const {
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < width; ++i) bits = (bits << 8) | static_cast<unsigned char>(bytes_[at + i]);
-        if (type == "float") return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-        if (type == "double") return std::bit_cast<double>(bits);
-        if (type.starts_with("unsigned")) return static_cast<double>(bits);
-        const std::uint64_t sign = std::uint64_t{1} << (8 * width - 1);
-        return static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
+    /// The bytes at a place, big-endian.
+    [[nodiscard]] std::uint64_t bits(std::size_t width, std::size_t at) const {
+        if (width == 8) {
+            std::uint64_t value = 0;
+            std::memcpy(&value, bytes_.data() + at, 8);
+            return byte_swapped(value);
+        }
+        if (width == 4) {
+            std::uint32_t value = 0;
+            std::memcpy(&value, bytes_.data() + at, 4);
+            return byte_swapped(value);
+        }
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < width; ++i) value = value << 8U | static_cast<unsigned char>(bytes_[at + i]);
+        return value;
+    }
+
+    [[nodiscard]] double decode(const NumberType& type, std::size_t at) const {
+        const std::uint64_t value = bits(type.width, at);
+        if (type.floating && type.width == 4) return std::bit_cast<float>(static_cast<std::uint32_t>(value));
+        if (type.floating) return std::bit_cast<double>(value);
+        if (!type.is_signed) return static_cast<double>(value);
+        const std::uint64_t sign = std::uint64_t{1} << (8 * type.width - 1);
+        return static_cast<double>(static_cast<std::int64_t>((value ^ sign) - sign));
     }
 
     /// `count` numbers of a type; memory follows what the file holds, not what it claims.
-    Result<std::vector<double>> read_numbers(std::size_t count, const std::string& type) {
-        const std::size_t width = width_of(type);
-        if (width == 0) return error("unknown data type \"" + type.substr(0, 40) + "\"");
+    Result<std::vector<double>> read_numbers(std::size_t count, const std::string& type_name) {
+        const NumberType type = number_type(type_name);
+        const std::size_t width = type.width;
+        if (width == 0) return error("unknown data type \"" + type_name.substr(0, 40) + "\"");
         if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
         if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
         const std::size_t left = bytes_.size() - at_;
@@ -153,7 +190,7 @@ private:
         if (binary_) {
             if (count > left / width) return error(fmt::format("{} values are announced, the file ends before", count));
             numbers.reserve(count);
-            for (std::size_t i = 0; i < count; ++i, at_ += width) numbers.push_back(decode(type, width, at_));
+            for (std::size_t i = 0; i < count; ++i, at_ += width) numbers.push_back(decode(type, at_));
             return numbers;
         }
         if (count > left / 2 + 1) return error(fmt::format("{} values are announced, the file ends before", count));

@@ -111,18 +111,20 @@ std::string cells_text(const Compressor& compressor, const TetMesh& mesh) {
            data_array(compressor, "types", 1, types);
 }
 
-/// Text arrays are lists of character codes, each text ended by 0.
+/// Character codes, each name ended by 0. Numbers, because other readers stumble over arrays of type String.
 std::string names_text(const std::vector<std::string>& names) {
     if (names.empty()) return "";
     std::string codes;
+    std::size_t count = 0;
     for (const std::string& name : names) {
+        count += name.size() + 1;
         for (const unsigned char c : name) codes += fmt::format("{} ", static_cast<int>(c));
         codes += "0 ";
     }
     return fmt::format(
-        "<FieldData>\n<DataArray type=\"String\" Name=\"region_names\" NumberOfTuples=\"{}\" "
+        "<FieldData>\n<DataArray type=\"UInt8\" Name=\"region_names\" NumberOfTuples=\"{}\" "
         "format=\"ascii\">\n{}\n</DataArray>\n</FieldData>\n",
-        names.size(), codes);
+        count, codes);
 }
 
 std::string points_text(const Compressor& compressor, std::span<const Vec3> points) {

@@ -38,14 +38,32 @@ double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
     return std::max({box.size().x, box.size().y, box.size().z}) / 24;
 }
 
-/// The drawn air of all chambers and gaps, in the order of the mesh's regions.
+/// The drawn air of all chambers and gaps that is cut out of the bodies. Enclosed air is outside them as it is.
 std::vector<mesh::Solid> drawn_air(const Robot& robot) {
     std::vector<mesh::Solid> solids;
     for (const Region& region : regions_of(robot)) {
         if (region.use == Region::Use::body) continue;
-        if (const auto* solid = std::get_if<mesh::Solid>(region.geometry)) solids.push_back(*solid);
+        const auto* solid = std::get_if<mesh::Solid>(region.geometry);
+        if (solid != nullptr && !std::holds_alternative<mesh::EnclosedSolid>((*solid)->shape)) solids.push_back(*solid);
     }
     return solids;
+}
+
+bool boxes_overlap(const Box3& a, const Box3& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (a.low[k] >= b.high[k] || b.low[k] >= a.high[k]) return false;
+    }
+    return true;
+}
+
+/// Where drawn bodies overlap the later one is printed, as it is the later one that is meshed.
+std::vector<mesh::Solid> cut_from(const Robot& robot, std::size_t body, std::vector<mesh::Solid> air) {
+    const auto& own = std::get<mesh::Solid>(robot.bodies[body].geometry);
+    for (std::size_t b = body + 1; b < robot.bodies.size(); ++b) {
+        const auto* later = std::get_if<mesh::Solid>(&robot.bodies[b].geometry);
+        if (later != nullptr && boxes_overlap(mesh::bounds(own), mesh::bounds(*later))) air.push_back(*later);
+    }
+    return air;
 }
 
 /// A drawn body without the air that is cut out of it.
@@ -56,25 +74,35 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
 }
 
+/// A size that the file gives is taken at its word; without one, walls get three elements.
+mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+    mesh::MeshSettings settings;
+    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
+    settings.order = robot.mesh.order;
+    settings.through_wall = robot.mesh.elements_through_wall.value_or(robot.mesh.size > 0 ? 0 : 3);
+    settings.judge_walls = !robot.mesh.elements_through_wall;
+    settings.size_near_cables = robot.mesh.size_near_cables;
+    for (const CableSpec& cable : robot.cables) settings.cables.push_back(cable.points);
+    return settings;
+}
+
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<mesh::BodyGeometry> bodies;
     for (const BodySpec& body : robot.bodies) {
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            bodies.push_back({body.name, without_air(*solid, air)});
+            bodies.push_back({body.name, without_air(*solid, air), false, body.size});
         } else {
             Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
             if (!surface) return tl::unexpected(surface.error());
-            bodies.push_back({body.name, std::move(*surface)});
+            bodies.push_back({body.name, std::move(*surface), false, body.size});
         }
     }
     for (const Region& region : regions_of(robot)) {
         if (region.use != Region::Use::body)
-            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry)});
+            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry), true});
     }
-    mesh::MeshSettings settings;
-    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
-    settings.order = robot.mesh.order;
+    const mesh::MeshSettings settings = mesh_settings(robot, bodies);
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     if (!mesh) {
         // The mesher names bodies, chambers and gaps; the line is that of the last one it names.
@@ -161,7 +189,7 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         Result<mesh::TriMesh> surface;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
             constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
-            surface = mesh::tessellate(without_air(*solid, air), printable_m / robot.unit_m);
+            surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
         } else if (const auto* file = std::get_if<SurfaceFile>(&body.geometry)) {
             surface = read_body_surface(robot, body, *file);
         } else {

@@ -14,7 +14,8 @@ namespace pliant::robot {
 /// Meshes the bodies, or reads the mesh file. Metres. Regions as in regions_of(). Errors name the body and its line.
 [[nodiscard]] Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress);
 
-/// Ties supports, loads, cables, chambers and markers to the mesh of build_mesh().
+/// Ties supports, plates, loads, cables, chambers and markers to the mesh of build_mesh(). An error holds one line per
+/// problem, each with file and line.
 [[nodiscard]] Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh);
 
 /// The closed surface of one body as drawn.
@@ -23,6 +24,7 @@ struct BodySurface {
     int material = 0;  ///< index into Robot::materials
     mesh::TriMesh surface_m;
 };
+/// One for every body, in their order, without the air of chambers and gaps. Errors name the body and its line.
 [[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);
 
 }  // namespace pliant::robot

@@ -1,10 +1,8 @@
 #include "robot/build_contact.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "mesh/mesher.hpp"
 #include "mesh/surface_file.hpp"
+#include "robot/regions.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -25,15 +23,6 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
     }
     if (!surface) return surface;
     return mesh::scaled(std::move(*surface), robot.unit_m);
-}
-
-double softest_Pa(const Robot& robot) {
-    double softest = std::numeric_limits<double>::infinity();
-    for (const BodySpec& body : robot.bodies) {
-        const MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
-        softest = std::min(softest, material::youngs_modulus(material::moduli(material.law)));
-    }
-    return softest;
 }
 
 }  // namespace

@@ -1,10 +1,5 @@
 #include "robot/contact_file.hpp"
 
-#include <fmt/format.h>
-
-#include <filesystem>
-#include <set>
-
 namespace pliant::robot {
 namespace {
 
@@ -17,30 +12,25 @@ double read_friction(Reader& reader) {
     return friction;
 }
 
-std::variant<mesh::Solid, SurfaceFile, PlaneSelector> read_shape(Reader& reader, const Robot& robot,
-                                                                 const mesh::NamedShapes& shapes,
-                                                                 config::Problems& problems) {
+std::variant<mesh::Solid, SurfaceFile, PlaneSelector> read_obstacle_shape(Reader& reader, Context& context) {
     const int given = int{reader.has("geometry")} + int{reader.has("surface")} + int{reader.has("plane")};
     if (given != 1) reader.problem("", "takes one of geometry (a shape), surface (a file) and plane");
     std::variant<mesh::Solid, SurfaceFile, PlaneSelector> shape = PlaneSelector{{}, {0, 0, 1}};
     if (reader.has("plane")) {
-        Reader plane = reader.table("plane");
-        const PlaneSelector selector{plane.vector("point"), plane.vector("normal")};
-        if (plane.has("normal") && norm(selector.normal) == 0) plane.problem("normal", "must not be zero");
-        plane.finish();
-        shape = selector;
+        shape = read_plane(reader);
     } else if (reader.has("surface")) {
-        std::filesystem::path path(reader.text("surface"));
-        if (!path.is_absolute()) path = robot.file.parent_path() / path;
-        std::error_code code;
-        if (!std::filesystem::is_regular_file(path, code))
-            reader.problem("surface", "there is no file " + path.string());
-        shape = SurfaceFile{path};
+        shape = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context)};
     } else if (reader.has("geometry")) {
-        shape = mesh::read_solid(*reader.raw("geometry"), reader.path() + ".geometry", shapes, problems);
+        shape = read_shape(reader, context);
     }
     for (const char* key : {"geometry", "surface", "plane"}) (void)reader.raw(key);
     return shape;
+}
+
+void read_obstacle(Reader& reader, Context& context, ObstacleSpec& obstacle) {
+    obstacle.shape = read_obstacle_shape(reader, context);
+    obstacle.friction = read_friction(reader);
+    obstacle.move = reader.vector("move", Vec3{});
 }
 
 ContactSpec read_rules(Reader reader, const Robot& robot) {
@@ -63,22 +53,11 @@ ContactSpec read_rules(Reader reader, const Robot& robot) {
 
 }  // namespace
 
-void read_contact(Reader& root, Robot& robot, const mesh::NamedShapes& shapes, config::Problems& problems) {
+void read_contact(Reader& root, Context& context) {
     const bool has_rules = root.has("contact");
-    ContactSpec rules = read_rules(root.table("contact", false), robot);
-    std::set<std::string> taken;
-    for (Reader& reader : root.tables("obstacle")) {
-        ObstacleSpec obstacle;
-        obstacle.line = reader.line();
-        obstacle.name = reader.text("name");
-        if (!taken.insert(obstacle.name).second)
-            reader.problem("name", fmt::format("there are two obstacles named \"{}\"", obstacle.name));
-        obstacle.shape = read_shape(reader, robot, shapes, problems);
-        obstacle.friction = read_friction(reader);
-        obstacle.move = reader.vector("move", Vec3{});
-        reader.finish();
-        robot.obstacles.push_back(std::move(obstacle));
-    }
+    Robot& robot = context.robot;
+    const ContactSpec rules = read_rules(root.table("contact", false), robot);
+    read_each(root, context, "obstacle", "obstacles", robot.obstacles, read_obstacle);
     if (has_rules || !robot.obstacles.empty()) robot.contact = rules;
 }
 

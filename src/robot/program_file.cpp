@@ -129,8 +129,6 @@ void read_keys(Reader& program, Robot& robot) {
     for (Reader& key : keys) key.finish();
 }
 
-}  // namespace
-
 /// Mass and damping take part where a time step is given. Gravity then acts from the beginning.
 void read_dynamics(Reader& program, Robot& robot) {
     const bool moving = program.has("time_step");
@@ -154,6 +152,8 @@ void spread_steps(Reader& program, Robot& robot) {
     }
     robot.program.steps = static_cast<int>(steps);
 }
+
+}  // namespace
 
 void read_program(config::Reader& root, Robot& robot) {
     config::Reader reader = root.table("program", false);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "robot/build.hpp"
+#include "robot/test_run.hpp"
 
 using namespace pliant;
 
@@ -47,16 +47,8 @@ steps = {}
                        folder, mesh, order, steps);
 }
 
-sim::Trajectory pull(const std::string& text, std::size_t fixed_corners) {
-    const auto robot = robot::parse_robot(text, "finger.toml");
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    auto mesh = robot::build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    const auto model = robot::build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    if (fixed_corners > 0) CHECK(model->description().supports[0].nodes.size() == fixed_corners);
-    return sim::run(*model, robot->program, silent);
+sim::Trajectory simulate(const std::string& text) {
+    return robot::testing::run(robot::testing::build(robot::parse_robot(text, "robot.toml")));
 }
 
 void check_pull(const sim::Trajectory& result) {
@@ -77,27 +69,17 @@ void check_pull(const sim::Trajectory& result) {
 }  // namespace
 
 TEST_CASE("finger.vtk, linear and quadratic, 0 to 50 mm") {
-    check_pull(pull(finger("finger.vtk", 1, 25), 20));
-    check_pull(pull(finger("finger.vtk", 2, 25), 0));
+    const auto linear = robot::testing::build(robot::parse_robot(finger("finger.vtk", 1, 25), "finger.toml"));
+    CHECK(linear.model.description().supports[0].nodes.size() == 20);
+    check_pull(robot::testing::run(linear));
+    check_pull(simulate(finger("finger.vtk", 2, 25)));
 }
 
 TEST_CASE("finger_7k.vtk, linear, 0 to 50 mm") {
-    const sim::Trajectory result = pull(finger("finger_7k.vtk", 1, 25), 0);
-    check_pull(result);
+    check_pull(simulate(finger("finger_7k.vtk", 1, 25)));
 }
 
 namespace {
-
-sim::Trajectory simulate(const std::string& text) {
-    const auto robot = robot::parse_robot(text, "robot.toml");
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    auto mesh = robot::build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    const auto model = robot::build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return sim::run(*model, robot->program, silent);
-}
 
 /// The pneunet of softrobots/README.md with its stiff layer, and a target for its air.
 std::string pneunet(const std::string& target, int steps) {

@@ -1,6 +1,7 @@
 #include "robot/regions.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace pliant::robot {
 
@@ -12,7 +13,7 @@ std::vector<Region> regions_of(const Robot& robot) {
     }
     for (std::size_t i = 0; i < robot.chambers.size(); ++i) {
         const ChamberSpec& chamber = robot.chambers[i];
-        if (std::holds_alternative<SurfaceFile>(chamber.air)) continue;
+        if (std::holds_alternative<SurfaceFile>(chamber.air) || std::holds_alternative<CavityAt>(chamber.air)) continue;
         regions.push_back(
             {Region::Use::chamber, i, "chamber", chamber.name, &chamber.air, chamber.line, chamber.elements});
     }
@@ -23,6 +24,15 @@ std::vector<Region> regions_of(const Robot& robot) {
         regions.push_back({Region::Use::gap, i, "gap", gap.name, &gap.space, gap.line, gaps_act});
     }
     return regions;
+}
+
+double softest_Pa(const Robot& robot) {
+    double softest = std::numeric_limits<double>::infinity();
+    for (const BodySpec& body : robot.bodies) {
+        const MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
+        softest = std::min(softest, material::youngs_modulus(material::moduli(material.law)));
+    }
+    return softest;
 }
 
 }  // namespace pliant::robot

@@ -20,7 +20,11 @@ struct Region {
     bool has_elements = true;  ///< carries a material, or a target shape of the thesis' actuators; else it is cut out
 };
 
-/// In the order of the mesh's regions; the robot must outlive it. A chamber whose wall is a surface file has none.
+/// In the order of the mesh's regions; the robot must outlive it. A chamber whose wall is a surface file or a cavity of
+/// the bodies has none.
 [[nodiscard]] std::vector<Region> regions_of(const Robot& robot);
+
+/// Young's modulus of the softest body at small strains, Pa; infinity where there is no body.
+[[nodiscard]] double softest_Pa(const Robot& robot);
 
 }  // namespace pliant::robot

@@ -42,12 +42,17 @@ struct MeshRegion {
     std::string name;
     std::optional<BoxSelector> box;  ///< only the tets whose centroid lies inside, taken from those named before
 };
-using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion>;
+/// The closed cavity of the bodies around a point; air alone is drawn so.
+struct CavityAt {
+    Vec3 point;
+};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt>;
 
 struct BodySpec {
     std::string name;
     int material = 0;  ///< index into Robot::materials
     Geometry geometry;
+    double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
     int line = 0;
 };
 
@@ -55,6 +60,8 @@ struct MeshSpec {
     double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
     std::optional<std::filesystem::path> file;
     int order = 2;
+    std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
+    double size_near_cables = 0;               ///< in length units; 0: no wish
     int line = 0;
 };
 
@@ -121,7 +128,8 @@ struct GapSpec {
     int line = 0;
 };
 
-/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, or a region of the mesh file.
+/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, a region of the mesh file, or a
+/// cavity of the bodies.
 struct ChamberSpec {
     std::string name;
     Geometry air;

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mesh/tet_file.hpp"
-#include "robot/build.hpp"
+#include "mesh/tet_writer.hpp"
+#include "robot/test_run.hpp"
 
 using namespace pliant;
 using namespace pliant::robot;
@@ -154,8 +154,8 @@ TEST_CASE("shapes that make no sense are refused") {
 }
 
 TEST_CASE("what does not fit the robot is refused with its line") {
-    check_problem(with("geometry = { box = [[20,", "geometry = { box = [[18,"),
-                  "bar.toml:20: body: bodies \"left\" and \"right\" overlap in a volume of 200");
+    check_problem(with("geometry = { box = [[20,", "geometry = { box = [[-1,-1,-1],[50, 50, 50]] } #"),
+                  "body \"left\" is empty: all of it belongs to later ones");
     check_problem(with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40, 5, 30]]"),
                   "lies outside every body");
     check_problem(with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[-9, 0, 0], [-5, 10, 10]]"),
@@ -203,28 +203,14 @@ TEST_CASE("a load is spread over the outer surface in its box") {
 
 namespace {
 
-/// The robot of a text that must be read and built.
-struct Built {
-    Robot robot;
-    sim::Model model;
-};
+using testing::Built;
 
 Built build(const std::string& text, const std::vector<std::string>& assignments = {}) {
-    Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
-    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return {std::move(*robot), std::move(*model)};
+    return testing::build(parse_robot(text, "bar.toml", assignments));
 }
 
 sim::Step last_step(const Built& built) {
-    Progress silent;
-    sim::Trajectory result = sim::run(built.model, built.robot.program, silent);
-    REQUIRE_MESSAGE(result.converged, result.message);
-    return result.steps.back();
+    return testing::run_to_the_end(built).steps.back();
 }
 
 std::string chamber(const std::string& air, const std::string& target) {
@@ -276,6 +262,39 @@ TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
     const sim::Step step = last_step(built);
     CHECK(step.chambers[0].volume_m3 == doctest::Approx(1.2 * 192e-9).scale(0).epsilon(1e-5));
     CHECK(step.chambers[0].pressure_Pa > 0);
+}
+
+TEST_CASE("a cavity of the bodies is named by a point inside it, and needs no second drawing") {
+    const std::string hollow = with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+                                    "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, "
+                                    "3], [36, 7, 7]] }] }");
+    const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { volume_ratio = 1.2 }\n";
+    const Built built = build(hollow + air);
+    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 192)).scale(0));
+    const sim::Step found = last_step(built);
+    CHECK(found.chambers[0].volume_m3 == doctest::Approx(1.2 * 192e-9).scale(0).epsilon(1e-5));
+    const sim::Step drawn = last_step(build(chamber(room, "volume_ratio = 1.2")));
+    CHECK(found.chambers[0].pressure_Pa == doctest::Approx(drawn.chambers[0].pressure_Pa).scale(0).epsilon(0.05));
+    check_problem(good + air, "bar.toml:39: chamber \"air\": inside: the point (30, 5, 5) lies in the material");
+    check_problem(hollow + air + "geometry = { box = [[0, 0, 0], [1, 1, 1]] }\n",
+                  "leave geometry, surface and region out");
+    check_problem(chamber(room + "\ncap = { box = [[0, 0, 0], [1, 1, 1]] }", "volume_ratio = 1.2"),
+                  "inside = [x, y, z]");
+}
+
+TEST_CASE("a cavity with a mouth is closed by a cap, and its mouth must be held") {
+    const std::string pot =
+        with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+             "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, 3], "
+             "[36, 7, 11]] }] }");
+    const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { pressure = \"1 kPa\" }\n";
+    const std::string cap = "cap = { box = [[20, 0, 10], [40, 10, 11]] }\n";
+    check_problem(pot + air, "open to the outside; close each mouth with cap");
+    check_problem(pot + air + cap, "the chamber is open; close it with a body");
+    const std::string held = "[[fixed]]\nname = \"flange\"\nbox = [[20, 0, 10], [40, 10, 10]]\n";
+    const Built built = build(pot + air + cap + held);
+    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 12 * 4 * 7)).scale(0));
+    CHECK(last_step(built).chambers[0].volume_m3 == doctest::Approx(336e-9).scale(0).epsilon(0.01));
 }
 
 TEST_CASE("a chamber takes one target of four") {

@@ -1,18 +1,25 @@
+#include "sim/calculix_deck.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <type_traits>
 
-#include "sim/calculix.hpp"
+#include "mesh/tet_writer.hpp"
 
 namespace pliant::sim::calculix {
 namespace {
 
 constexpr double mm_per_m = 1e3;
 constexpr double uN_per_N = 1e6;
+constexpr double g_per_mm3 = 1e-6;  ///< of kg/m^3: a force in uN is g mm/s^2
+/// A support that turns goes along the chord of its arc: beyond this its nodes would come too near each other.
+constexpr double most_turn_rad = std::numbers::pi / 3 + 1e-9;
 /// Of the ramped springs: far more than a cable can stretch or shrink, so that ccx never extrapolates.
 constexpr double spring_range_mm = 1e5;
 
@@ -76,11 +83,12 @@ public:
     DeckWriter(const Description& description, const Effort& effort) : d_(description), effort_(effort) {}
 
     Result<std::string> write() {
-        for (const auto part : {&DeckWriter::check, &DeckWriter::mesh, &DeckWriter::materials, &DeckWriter::springs,
-                                &DeckWriter::step, &DeckWriter::pressures}) {
+        for (const auto part :
+             {&DeckWriter::check, &DeckWriter::head, &DeckWriter::mesh, &DeckWriter::materials, &DeckWriter::supports,
+              &DeckWriter::springs, &DeckWriter::step, &DeckWriter::pressures}) {
             if (Status done = (this->*part)(); !done) return tl::unexpected(done.error());
         }
-        line("*NODE PRINT,NSET=ALL,FREQUENCY=100000\nU,RF\n*END STEP");
+        line("*NODE PRINT,NSET=ALL,FREQUENCY=100000\nU,RF\n*NODE FILE\nU,RF\n*EL FILE\nS\n*END STEP");
         return std::move(text_);
     }
 
@@ -92,20 +100,34 @@ private:
     }
 
     Status check() {
-        if (d_.contact || !d_.growths.empty() || !d_.plates.empty() || norm(d_.gravity_m_s2) > 0)
-            return input_error("the CalculiX deck has no contact, growth, rigid plates or gravity");
+        if (d_.contact) return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
+        if (!d_.growths.empty() || !d_.plates.empty())
+            return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
         for (const Support& support : d_.supports) {
-            if (support.turn.angle_rad != 0) return input_error("CalculiX: support {} must not turn", support.name);
+            if (std::fabs(support.turn.angle_rad * support.share.at(1)) > most_turn_rad)
+                return input_error("CalculiX: support \"{}\" turns by more than 60 degrees", support.name);
         }
         for (const Cable& cable : d_.cables) {
             if (cable.target.kind != CableTarget::Kind::tension_N)
-                return input_error("CalculiX: cable {} must be driven by its tension", cable.name);
-            if (cable.friction != 0) return input_error("CalculiX: cable {} must be without friction", cable.name);
+                return input_error(
+                    "CalculiX: cable \"{0}\" must be driven by its tension: take what simulate reports, as in "
+                    "--set 'cable.{0}.target={{tension=\"8 N\"}}'",
+                    cable.name);
+            if (cable.friction != 0) return input_error("CalculiX: cable \"{}\" must be without friction", cable.name);
         }
         for (const Chamber& chamber : d_.chambers) {
             if (chamber.target.kind != ChamberTarget::Kind::pressure_Pa)
-                return input_error("CalculiX: chamber {} must be driven by its pressure", chamber.name);
+                return input_error(
+                    "CalculiX: chamber \"{0}\" must be driven by its pressure: take what simulate reports, as in "
+                    "--set 'chamber.{0}.target={{pressure=\"40 kPa\"}}'",
+                    chamber.name);
         }
+        return {};
+    }
+
+    Status head() {
+        line("*HEADING\nrobot of pliant: mm, uN, Pa, g; displacements and forces at the end of the program");
+        text_ += mesh::inp_name_comments(d_.mesh.region_names);
         return {};
     }
 
@@ -118,7 +140,7 @@ private:
         line("*NODE,NSET=ALL");
         for (const Vec3& p : d_.mesh.points) node(p);
         for (std::size_t r = 0; r < d_.material_of_region.size(); ++r) {
-            line("*ELEMENT,TYPE={},ELSET=R{}", d_.mesh.order == 2 ? "C3D10" : "C3D4", r);
+            line("*ELEMENT,TYPE={},ELSET={}", d_.mesh.order == 2 ? "C3D10" : "C3D4", label(r));
             for (std::size_t t = 0; t < d_.mesh.tet_count(); ++t) {
                 if (d_.mesh.region[t] != static_cast<int>(r)) continue;
                 fmt::format_to(out_, "{}", t + 1);
@@ -129,24 +151,63 @@ private:
         return {};
     }
 
+    /// The element set of a region. Robots that were put together by hand may have fewer names than regions.
+    [[nodiscard]] std::string label(std::size_t region) const {
+        const std::vector<std::string> labels = mesh::inp_labels(d_.mesh.region_names);
+        return region < labels.size() ? labels[region] : fmt::format("R{}", region + 1);
+    }
+
     Status materials() {
         for (std::size_t m = 0; m < d_.materials.size(); ++m) {
-            line("*MATERIAL,NAME=M{}", m);
+            line("** material \"{}\"\n*MATERIAL,NAME=M{}", d_.materials[m].name, m + 1);
             if (Status done = write_law(out_, d_.materials[m].law); !done) return done;
+            if (norm(d_.gravity_m_s2) > 0) line("*DENSITY\n{:.10g}", g_per_mm3 * d_.materials[m].density_kg_m3);
         }
         for (std::size_t r = 0; r < d_.material_of_region.size(); ++r)
-            line("*SOLID SECTION,ELSET=R{},MATERIAL=M{}", r, d_.material_of_region[r]);
+            line("*SOLID SECTION,ELSET={},MATERIAL=M{}", label(r), d_.material_of_region[r] + 1);
         return {};
     }
 
-    /// Node of a cable's point, 1-based; points that are fixed in space get a node of their own.
-    Result<int> cable_node(const Cable& cable, const Attachment& point) {
+    Status supports() {
+        for (std::size_t s = 0; s < d_.supports.size(); ++s) {
+            line("** support \"{}\"\n*NSET,NSET=S{}", d_.supports[s].name, s + 1);
+            for (const int n : d_.supports[s].nodes) line("{},", n + 1);
+        }
+        return {};
+    }
+
+    /// Node of a cable's point, 1-based: a node of the mesh, one fixed in space, or one that rides on several.
+    int cable_node(const Attachment& point) {
         if (point.nodes.size() == 1) return point.nodes[0] + 1;
-        if (!point.nodes.empty()) return input_error("CalculiX: a point of cable {} is not a node", cable.name);
         line("*NODE");
-        node(point.fixed);
-        anchors_.push_back(nodes_);
+        if (point.nodes.empty()) {
+            node(point.fixed);
+            anchors_.push_back(nodes_);
+            return nodes_;
+        }
+        Vec3 rest;
+        for (std::size_t k = 0; k < point.nodes.size(); ++k)
+            rest += point.weights[k] * d_.mesh.points[static_cast<std::size_t>(point.nodes[k])];
+        node(rest);
+        for (int direction = 1; direction <= 3; ++direction) tie(nodes_, direction, point);
         return nodes_;
+    }
+
+    /// The node moves as the weighted mean of those that it rides on.
+    void tie(int rider, int direction, const Attachment& point) {
+        constexpr int per_line = 4;
+        const auto terms =
+            1 + std::count_if(point.weights.begin(), point.weights.end(), [](double w) { return w != 0; });
+        line("*EQUATION\n{}", terms);
+        fmt::format_to(out_, "{},{},1.", rider, direction);
+        int written = 1;
+        for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+            if (point.weights[k] == 0) continue;
+            fmt::format_to(out_, "{}{},{},{:#.10g}", written % per_line == 0 ? "\n" : ",", point.nodes[k] + 1,
+                           direction, -point.weights[k]);
+            ++written;
+        }
+        text_ += '\n';
     }
 
     /// A segment that pulls with the same force at any length; the force grows with the temperature, from 0 to 1.
@@ -155,15 +216,13 @@ private:
         for (std::size_t c = 0; c < d_.cables.size(); ++c) {
             std::vector<int> path;
             for (const Attachment& point : d_.cables[c].points) {
-                const Result<int> at = cable_node(d_.cables[c], point);
-                if (!at) return tl::unexpected(at.error());
-                path.push_back(*at);
-                sprung_.push_back(*at);
+                path.push_back(cable_node(point));
+                sprung_.push_back(path.back());
             }
-            line("*ELEMENT,TYPE=SPRINGA,ELSET=C{}", c);
+            line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET=CABLE{}", d_.cables[c].name, c + 1);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
             const double tension = uN_per_N * d_.cables[c].target.at(1);
-            line("*SPRING,NONLINEAR,ELSET=C{}", c);
+            line("*SPRING,NONLINEAR,ELSET=CABLE{}", c + 1);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})
                     line("{:#.10g},{:#.10g},{:#.10g}", share * tension, elongation, share);
@@ -184,9 +243,11 @@ private:
         line("*CONTROLS,PARAMETERS=FIELD\n{0:.3g},{0:.3g},,,{0:.3g},,,", effort_.tolerance);
         if (!d_.supports.empty()) line("*BOUNDARY");
         for (const Support& support : d_.supports) {
-            const Vec3 move = support.share.at(1) * mm_per_m * support.move_m;
-            for (const int n : support.nodes)
+            for (const int n : support.nodes) {
+                const Vec3& rest = d_.mesh.points[static_cast<std::size_t>(n)];
+                const Vec3 move = mm_per_m * (support.position(rest, support.share.at(1)) - rest);
                 line("{0},1,1,{1:.12g}\n{0},2,2,{2:.12g}\n{0},3,3,{3:.12g}", n + 1, move.x, move.y, move.z);
+            }
         }
         if (!d_.loads.empty()) line("*CLOAD");
         for (const Load& load : d_.loads) {
@@ -197,7 +258,17 @@ private:
         }
         if (!sprung_.empty()) line("*TEMPERATURE");
         for (const int n : sprung_) line("{},1.", n);
+        weigh();
         return {};
+    }
+
+    void weigh() {
+        const Vec3 g = d_.gravity_share.at(1) * mm_per_m * d_.gravity_m_s2;
+        const double size = norm(g);
+        if (size == 0) return;
+        for (std::size_t r = 0; r < d_.material_of_region.size(); ++r)
+            line("*DLOAD\n{},GRAV,{:.12g},{:#.10g},{:#.10g},{:#.10g}", label(r), size, g.x / size, g.y / size,
+                 g.z / size);
     }
 
     Status pressures() {

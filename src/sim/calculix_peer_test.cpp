@@ -159,3 +159,39 @@ TEST_CASE("inflated chamber") {
         for (const double nu : poisson_ratios) check_chamber(order, nu);
     }
 }
+
+TEST_CASE("a cable through points inside tets, gravity, and a grip that turns") {
+    for (const int order : {1, 2}) {
+        CAPTURE(order);
+        Description d = comparison::bar(order, material::neo_hookean(5e6, 0.45), material::neo_hookean(2e6, 0.4), 0);
+        d.supports[1].turn = {0.4, {1, 0.2, 0}, d.mesh.points.back()};
+        d.gravity_m_s2 = {0, 0, -30};
+        for (Material& m : d.materials) m.density_kg_m3 = 1100;
+        const std::vector<int> few(d.mesh.nodes.begin() + 40, d.mesh.nodes.begin() + 44);
+        const std::vector<int> more(d.mesh.nodes.end() - 44, d.mesh.nodes.end() - 40);
+        const std::vector<double> weights = {0.1, 0.2, 0.3, 0.4};
+        d.cables.push_back({"flexor",
+                            {{{}, {}, {-0.05, 0.0, 0.02}}, {few, weights, {}}, {more, weights, {}}},
+                            {CableTarget::Kind::tension_N, 4}});
+        const Step last = ours(d, 5).steps.back();
+        const calculix::Solution peer = theirs(d);
+        CHECK(mismatch(d, last, peer) < same_displacement);
+    }
+}
+
+TEST_CASE("decks name what CalculiX lacks, and what to set instead") {
+    Description d =
+        comparison::cable_finger(1, material::neo_hookean(5e6, 0.45), {CableTarget::Kind::length_ratio, 0.9});
+    const auto refused = calculix::deck(d);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("target={tension=") != std::string::npos);
+    d.cables[0].target = {CableTarget::Kind::tension_N, 3};
+    d.mesh.region_names = {"left half"};
+    d.supports[0].turn.angle_rad = 2;
+    CHECK(calculix::deck(d).error().message.find("60 degrees") != std::string::npos);
+    d.supports[0].turn.angle_rad = 0;
+    const auto deck = calculix::deck(d);
+    REQUIRE(deck);
+    CHECK(deck->find("** region R1 \"left half\"\n") != std::string::npos);
+    CHECK(deck->find("*SOLID SECTION,ELSET=R1,MATERIAL=M1") != std::string::npos);
+}

@@ -6,44 +6,16 @@
 
 #include "sim/attach.hpp"
 #include "sim/chamber_surface.hpp"
-#include "sim/reference_problems.hpp"
-#include "sim/simulate.hpp"
+#include "sim/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::hollow_block;
+using testing::solve;
 
 namespace {
 
 constexpr double side = 0.01;
-
-/// A block of 3 x 1 x 1 cm with an empty box in the middle, clamped at x = 0.
-Description hollow_block(int order, double nu = 0.4) {
-    const auto void_at = [](Vec3 c) {
-        const auto inside = [](double v, double low, double high) { return v > low && v < high; };
-        return inside(c.x, 0.005, 0.025) && inside(c.y, 0.0025, 0.0075) && inside(c.z, 0.0025, 0.0075) ? 1 : 0;
-    };
-    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 6, 4, 4, void_at);
-    whole.region_names = {"solid", "air"};
-    if (order == 2) whole = mesh::to_quadratic(whole);
-    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
-    Description d;
-    d.mesh = std::move(solid.mesh);
-    d.materials = {{"A", material::neo_hookean(1e5, nu), 1000}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    Chamber air{"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}};
-    d.chambers.push_back(std::move(air));
-    d.markers = {
-        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }))}};
-    return d;
-}
-
-Trajectory solve(Description d, Program program) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    Progress silent;
-    return run(*model, program, silent);
-}
 
 /// Rest positions with a smooth and a rough distortion.
 std::vector<double> distorted(const mesh::TetMesh& mesh) {
@@ -97,13 +69,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         double largest = 0;
         double wrong = 0;
         std::vector<double> product(x.size(), 0.0);
-        for (int column = 0; column < pattern.size(); ++column) {
-            for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-                const int row = pattern.row[k];
-                product[row] += hessian[k] * direction[column];
-                if (row != column) product[column] += hessian[k] * direction[row];
-            }
-        }
+        linalg::add_product(pattern, hessian, direction, 1, product);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const double expected = (gradient_ahead[i] - gradient_behind[i]) / (2 * h);
             largest = std::max(largest, std::fabs(expected));
@@ -130,13 +96,7 @@ TEST_CASE("an open wall: symmetric and skew part together are the derivative of 
     std::vector<double> hessian(pattern.entries(), 0.0);
     surface.add_hessian(x, 1, free_index, pattern, hessian, false);
     std::vector<double> product(x.size(), 0.0);
-    for (int column = 0; column < pattern.size(); ++column) {
-        for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-            const int row = pattern.row[k];
-            product[row] += hessian[k] * v[column];
-            if (row != column) product[column] += hessian[k] * v[row];
-        }
-    }
+    linalg::add_product(pattern, hessian, v, 1, product);
     std::vector<double> skew(x.size(), 0.0);
     surface.apply_skew(x, 1, v, skew);
     const double h = 1e-5;

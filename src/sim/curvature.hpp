@@ -2,17 +2,23 @@
 //   local-global   the pre-factored weighted Laplacian: one step is the thesis' local and global step (A.1 to A.4)
 //   anderson       the same step, mixed with the last eight so that they cancel as much of it as they can
 //   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
-//   newton         the tangent stiffness with the actuators' own stiffness, factorised anew
+//   newton         the tangent stiffness with the actuators' own stiffness, factorised anew where the last factor, with
+//                  what was learnt since, does not lead on quickly
 // so that elements, constraints and line search are the same for all.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
 
+#include "sim/element_kernels.hpp"
 #include "sim/equilibrium.hpp"
 #include "sim/solver.hpp"
 
 namespace pliant::sim {
+
+/// How sure a direction must be: as quick as it can be had; of the state at hand, if that makes a difference; or of a
+/// positive definite H.
+enum class Care { usual, exact, cautious };
 
 class Curvature {
 public:
@@ -24,15 +30,25 @@ public:
 
     /// Called at the start of each step of the program.
     virtual void restart() {}
-    /// Called before solve() at a new state; `cautious` asks for a positive definite H. False: no H could be made.
-    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, bool cautious) = 0;
+    /// Called before solve() at a new state, or again where its direction was no good. False: no H could be made, or no
+    /// better one.
+    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, Care care) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
+    /// Where the whole body goes that sets out along `motion` (3n); to first order x + motion.
+    [[nodiscard]] virtual Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
+        return x + motion;
+    }
     /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed
     /// multipliers.
     virtual void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
         (void)step;
         (void)change;
+    }
+    /// After an accepted step: the error before it and after it.
+    virtual void judge(double before, double after) {
+        (void)before;
+        (void)after;
     }
 };
 
@@ -44,6 +60,10 @@ public:
     ~FactoredLaplacian();
     /// columns (3 free, k) <- L^-1 columns.
     void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
+    /// Where the nodes get to, (3n), if every tet turns instead of growing (see Turning) and the Laplacian reconciles
+    /// what each one wants, as the local and the global step of the thesis do. Held nodes go where `turning.end` has
+    /// them. After Huang et al. 2011, "Interactive shape interpolation through controllable dynamic deformation".
+    [[nodiscard]] Eigen::VectorXd turn(const Equilibrium& system, const Turning& turning) const;
     /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
 
@@ -55,6 +75,6 @@ private:
 [[nodiscard]] std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian);
 [[nodiscard]] std::unique_ptr<Curvature> make_anderson(const FactoredLaplacian& laplacian);
 [[nodiscard]] std::unique_ptr<Curvature> make_quasi_newton(const FactoredLaplacian& laplacian);
-[[nodiscard]] std::unique_ptr<Curvature> make_newton(const Equilibrium& system);
+[[nodiscard]] std::unique_ptr<Curvature> make_newton(const Equilibrium& system, const FactoredLaplacian& laplacian);
 
 }  // namespace pliant::sim

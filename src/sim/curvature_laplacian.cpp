@@ -30,7 +30,7 @@ public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
     [[nodiscard]] Solver solver() const override { return Solver::local_global; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
-    [[nodiscard]] bool refresh(const sim::State&, const Controls&, bool) override { return true; }
+    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care) override { return care != Care::exact; }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }
 
 private:
@@ -62,6 +62,16 @@ Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen
     Eigen::VectorXd motion = -system.restrict_to_free(coupling);
     solve_components(state_->factor, motion);
     return motion;
+}
+
+Eigen::VectorXd FactoredLaplacian::turn(const Equilibrium& system, const Turning& turning) const {
+    Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(turning.end, 3 * state_->model->node_count());
+    Eigen::VectorXd turned = Eigen::VectorXd::Zero(end.size());
+    state_->model->elements().add_turning(turning, {turned.data(), static_cast<std::size_t>(turned.size())});
+    Eigen::VectorXd correction = system.restrict_to_free(turned);
+    solve_components(state_->factor, correction);
+    system.add_free(correction, 1, end);
+    return end;
 }
 
 std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian) {

@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "sim/elements.hpp"
-#include "sim/reference_problems.hpp"
-#include "sim/simulate.hpp"
+#include "sim/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::solve;
 
 namespace {
 
@@ -32,13 +32,6 @@ Description beam(int order, double gravity) {
     d.gravity_m_s2 = {0, 0, -gravity};
     d.gravity_share = {{0}, {1}};
     return d;
-}
-
-Trajectory solve(Description d, Program program) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    Progress silent;
-    return run(*model, program, silent);
 }
 
 /// First natural frequency of a clamped beam: 1.8751^2 sqrt(EI / (rho A L^4)) / 2 pi (Euler and Bernoulli).

@@ -4,10 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "core/aligned_array.hpp"
 #include "core/error.hpp"
 #include "linalg/small.hpp"
 #include "linalg/sparse.hpp"
 #include "material/law.hpp"
+#include "sim/element_kernels.hpp"
 
 namespace pliant::sim {
 
@@ -29,10 +31,12 @@ public:
     Evaluation evaluate(std::span<const double> x, std::span<double> forces,
                         std::span<const material::Law> laws = {}) const;
 
-    /// Adds the tangent stiffness to `values` of a pattern over free nodes (block 3). With `project`, every integration
-    /// point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
-    void add_tangent(std::span<const double> x, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+    /// Where the blocks of the tets' stiffness go in a pattern over free nodes (block 3): made once for each pattern.
+    [[nodiscard]] std::vector<int> stiffness_slots(const std::vector<int>& free_index,
+                                                   const linalg::SymmetricPattern& pattern) const;
+    /// Adds the tangent stiffness to the `values` of the pattern of the slots. With `project`, every integration point
+    /// contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
+    void add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values, bool project,
                      std::span<const material::Law> laws = {}) const;
 
     /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient) for a pattern
@@ -41,6 +45,10 @@ public:
                        std::span<double> values) const;
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
+
+    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: what a straight motion leaves out of a turning
+    /// one. W as in the Laplacian.
+    void add_turning(const Turning& turning, std::span<double> result) const;
 
     /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
     /// block 3, and result (3n) += M u.
@@ -56,7 +64,8 @@ public:
     [[nodiscard]] int points_per_tet() const { return points_per_tet_; }
     [[nodiscard]] linalg::Matrix3 deformation_gradient(std::size_t tet, int point, std::span<const double> x) const;
     [[nodiscard]] double point_volume(std::size_t tet, int point) const {
-        return volume_[tet * static_cast<std::size_t>(points_per_tet_) + static_cast<std::size_t>(point)];
+        return volume_[place_[tet] / lanes * points() * lanes + static_cast<std::size_t>(point) * lanes +
+                       place_[tet] % lanes];
     }
     [[nodiscard]] const material::Law& law(std::size_t tet) const { return laws_[static_cast<std::size_t>(law_[tet])]; }
     [[nodiscard]] std::size_t tet_count() const { return law_.size(); }
@@ -65,32 +74,59 @@ public:
     [[nodiscard]] std::vector<std::vector<int>> cliques(const std::vector<int>& free_index) const;
 
 private:
+    static constexpr std::size_t lanes = batch_lanes;
+    static constexpr std::size_t no_tet = static_cast<std::size_t>(-1);
+
     Elements() = default;
-    [[nodiscard]] const double* gradients(std::size_t tet, int point) const {
-        return gradient_.data() + (tet * static_cast<std::size_t>(points_per_tet_) + static_cast<std::size_t>(point)) *
-                                      3 * static_cast<std::size_t>(nodes_per_tet_);
+    [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(nodes_per_tet_); }
+    [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(points_per_tet_); }
+    [[nodiscard]] std::size_t pairs() const { return width() * (width() + 1) / 2; }
+    [[nodiscard]] std::size_t batches() const { return batch_law_.size(); }
+    [[nodiscard]] int node(std::size_t tet, int a) const {
+        return nodes_[(place_[tet] / lanes * width() + static_cast<std::size_t>(a)) * lanes + place_[tet] % lanes];
     }
+    /// First component of grad N_a; the others follow at steps of `lanes`.
+    [[nodiscard]] const double* gradient(std::size_t tet, int point, int a) const {
+        return gradient_.data() +
+               ((place_[tet] / lanes * points() + static_cast<std::size_t>(point)) * width() +
+                static_cast<std::size_t>(a)) *
+                   3 * lanes +
+               place_[tet] % lanes;
+    }
+    [[nodiscard]] TetBatch batch(std::size_t b) const;
+    void group_by_law();
+    void fill_empty_lanes();
     Status integrate_tet(const Description& description, std::size_t tet);
     void link_nodes(std::size_t node_count);
-    /// Upper triangle by blocks of 3, row by row, (3 nodes_per_tet)^2.
-    void tet_tangent(std::size_t tet, std::span<const double> x, const material::Law& law, bool project,
-                     double* K) const;
-    Evaluation evaluate_tet(std::size_t tet, std::span<const double> x, const material::Law& law, double* forces) const;
-    [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t tet) const {
-        return laws.empty() ? law(tet) : laws[static_cast<std::size_t>(law_[tet])];
+    [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t batch) const {
+        const auto index = static_cast<std::size_t>(batch_law_[batch]);
+        return laws.empty() ? laws_[index] : laws[index];
     }
+    // Of batches, where the law has no SIMD kernel; same arrays as those of element_kernels.hpp.
+    [[nodiscard]] BatchResult forces_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law,
+                                                double* forces) const;
+    void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
+                            double* blocks) const;
+    /// Adds what each batch wrote for its nodes, (batches, nodes_per_tet, 3, lanes), in the order of the batches.
+    void gather_forces(const AlignedArray<double>& buffer, std::span<double> forces) const;
+    void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
+                    std::span<double> values) const;
 
     int nodes_per_tet_ = 4;
     int points_per_tet_ = 1;
     bool has_energy_ = true;
-    std::vector<int> nodes_;        ///< (m * nodes_per_tet)
-    std::vector<int> law_;          ///< (m)
-    std::vector<double> gradient_;  ///< (m, points, nodes_per_tet, 3): grad N_a, 1/m
-    std::vector<double> volume_;    ///< (m, points): integration weights, m^3
+    std::vector<int> law_;            ///< (m)
+    std::vector<std::size_t> place_;  ///< (m) batch * lanes + lane: each batch holds tets of one law
+    std::vector<std::size_t> tet_;    ///< (batches, lanes) the inverse; no_tet where a lane is empty
+    std::vector<int> batch_law_;      ///< (batches)
+    AlignedArray<int> nodes_;         ///< (batches, nodes_per_tet, lanes)
+    AlignedArray<double> gradient_;   ///< (batches, points, nodes_per_tet, 3, lanes): grad N_a, 1/m
+    AlignedArray<double> volume_;     ///< (batches, points, lanes): integration weights, m^3
     std::vector<double> node_mass_;
     std::vector<double> tet_mass_;  ///< (m) kg
     std::vector<material::Law> laws_;
-    // For each node the places in the per-tet force buffer that add up to its force, in the order of the tets.
+    // For each node the places in the force buffer (batches, nodes_per_tet, 3, lanes) that add up to its force, in the
+    // order of the batches; y and z follow x at steps of `lanes`.
     std::vector<int> use_start_;
     std::vector<int> use_;
 };

@@ -279,26 +279,6 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
            controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
 }
 
-Equilibrium::Merit Equilibrium::merit(const Eigen::VectorXd& x, const Controls& controls,
-                                      const Eigen::VectorXd& prices) const {
-    const Elements::Evaluation elastic = model_->elements().evaluate(view(x), {}, controls.laws);
-    Merit merit{elastic.min_J, 0};
-    if (!(merit.min_J > 0)) return merit;
-    merit.value_J = elastic.energy_J - controls.external_N.dot(x - rest_) + contact_energy(x, controls);
-    for (const Plate& plate : plates_) merit.value_J += plate.energy(view(x));
-    if (controls.inertia) merit.value_J += controls.inertia->energy(x);
-    for (std::size_t a = 0; a < actuators_.size(); ++a) {
-        const Drive& drive = controls.drives[a];
-        const double g = actuators_[a].measure(view(x), controls.shares[a]);
-        merit.value_J += drive_energy(drive, a, g);
-        if (drive.kind != Drive::Kind::measure) continue;
-        const double excess = (g - drive.value) / actuators_[a].rest_measure();
-        const double counted = actuators_[a].only_pulls() ? std::max(excess, 0.0) : std::fabs(excess);
-        merit.value_J += prices[static_cast<Eigen::Index>(a)] * counted;
-    }
-    return merit;
-}
-
 std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
     std::vector<double> all(x.data(), x.data() + x.size());
     all.insert(all.end(), obstacles.data(), obstacles.data() + obstacles.size());
@@ -397,16 +377,20 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
     return cliques;
 }
 
-std::vector<std::vector<int>> Equilibrium::cliques() const {
+TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching) const {
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
     for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
-    return cliques;
+    cliques.insert(cliques.end(), touching.begin(), touching.end());
+    TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
+    layout.element_slots = model_->elements().stiffness_slots(model_->free_index(), layout.pattern);
+    return layout;
 }
 
-void Equilibrium::add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
+void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
-    model_->elements().add_tangent(view(state.x), model_->free_index(), pattern, values, project, controls.laws);
+    const linalg::SymmetricPattern& pattern = layout.pattern;
+    model_->elements().add_tangent(view(state.x), layout.element_slots, values, project, controls.laws);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {

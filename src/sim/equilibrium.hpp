@@ -46,6 +46,12 @@ struct Evaluation {
     [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
 };
 
+/// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
+struct TangentLayout {
+    linalg::SymmetricPattern pattern;  ///< over free nodes, block 3
+    std::vector<int> element_slots;    ///< Elements::stiffness_slots
+};
+
 /// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure
 /// loads, each in the order of the model.
 class Equilibrium {
@@ -67,23 +73,16 @@ public:
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Energies and measures only: what a line search needs. `prices` (actuators): J for each unit of excess.
-    struct Merit {
-        double min_J = 0;
-        double value_J = 0;
-    };
-    [[nodiscard]] Merit merit(const Eigen::VectorXd& x, const Controls& controls, const Eigen::VectorXd& prices) const;
-
     /// Elastic and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
-    /// Node lists that the tangent couples, as free indices: of the body and its actuators, and of what touches at one
-    /// state.
-    [[nodiscard]] std::vector<std::vector<int>> cliques() const;
+    /// Node lists that contact couples at one state, as free indices.
     [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls) const;
+    /// For the body, its actuators and these cliques.
+    [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {}) const;
     /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
     /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
-    void add_tangent(const State& state, const Controls& controls, const linalg::SymmetricPattern& pattern,
+    void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project) const;
 
     /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by

@@ -34,20 +34,15 @@ Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
     if (damping_.mass_per_s > 0) force += damping_.mass_per_s * mass_times(*elements_, motion);
     if (!stiffness_) return force;
-    const linalg::SymmetricPattern& pattern = stiffness_->pattern;
+    const linalg::SymmetricPattern& pattern = *stiffness_->pattern;
     const auto& index = *free_index_;
     Eigen::VectorXd free = Eigen::VectorXd::Zero(pattern.size());
     for (std::size_t node = 0; node < index.size(); ++node) {
         if (index[node] >= 0) free.segment<3>(3 * index[node]) = motion.segment<3>(3 * static_cast<Eigen::Index>(node));
     }
     Eigen::VectorXd product = Eigen::VectorXd::Zero(pattern.size());
-    for (int column = 0; column < pattern.size(); ++column) {
-        for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-            const int row = pattern.row[k];
-            product[row] += stiffness_->values[k] * free[column];
-            if (row != column) product[column] += stiffness_->values[k] * free[row];
-        }
-    }
+    linalg::add_product(pattern, stiffness_->values, {free.data(), static_cast<std::size_t>(free.size())}, 1,
+                        {product.data(), static_cast<std::size_t>(product.size())});
     for (std::size_t node = 0; node < index.size(); ++node) {
         if (index[node] < 0) continue;
         force.segment<3>(3 * static_cast<Eigen::Index>(node)) +=
@@ -69,16 +64,13 @@ void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) co
 void Inertia::add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
     elements_->add_mass(*free_index_, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
     if (!stiffness_) return;
-    const linalg::SymmetricPattern& own = stiffness_->pattern;
+    const linalg::SymmetricPattern& own = *stiffness_->pattern;
     for (int j = 0; j < own.nodes; ++j) {
         for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
             const int i = own.node_row[k];
-            const int position = k - own.node_start[j];
-            pattern.add_block(values, i, j, [&](int r, int c) {
-                const int column = own.column_start[3 * j + c];
-                const int entry = position == 0 ? column - c + r : column + (3 - c) + (position - 1) * 3 + r;
-                return rate_ * damping_.stiffness_s * stiffness_->values[static_cast<std::size_t>(entry)];
-            });
+            const double* block = stiffness_->values.data() + static_cast<std::size_t>(k) * own.block_entries();
+            pattern.add_block(values, i, j,
+                              [&](int r, int c) { return rate_ * damping_.stiffness_s * block[3 * c + r]; });
         }
     }
 }

@@ -25,9 +25,9 @@ struct History {
     double dt_before = 0;  ///< 0: there is no step before the last
 };
 
-/// A symmetric matrix over free nodes.
+/// A symmetric matrix over free nodes. The pattern outlives it: it is the same for all steps.
 struct StiffnessMatrix {
-    linalg::SymmetricPattern pattern;  ///< block 3
+    const linalg::SymmetricPattern* pattern = nullptr;  ///< block 3
     std::vector<double> values;
 };
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "sim/curvature.hpp"
@@ -18,12 +20,18 @@ namespace {
 
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 
+constexpr double worst_start = 0.2;  // error of a state that is worth starting from
+
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
 constexpr double friction_slack = 10;         // of the tolerance, where sliding contact goes back and forth
 constexpr double cable_friction_share = 0.1;  // of the tolerance, for the length of a cable with friction
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -39,7 +47,6 @@ public:
           laplacian_(model),
           solvers_(make_chain(program.solver, system_, laplacian_)),
           state_(system_.rest()),
-          previous_(state_),
           controls_(system_.controls(0)) {
         const Eigen::VectorXd still = Eigen::VectorXd::Zero(state_.x.size());
         history_ = {state_.x, still, state_.x, still, 0};
@@ -64,8 +71,8 @@ public:
             note(outcome.history, step.index, target);
             if (outcome.converged) {
                 if (program_.dynamics) remember(next, target - time_);
-                previous_ = std::move(state_);
-                previous_time_ = time_;
+                past_.push_back({time_, std::move(state_)});
+                if (past_.size() > 2) past_.pop_front();
                 state_ = std::move(next);
                 controls_ = solved_controls_;
                 time_ = target;
@@ -154,6 +161,12 @@ public:
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
+    /// A converged state.
+    struct Known {
+        double time;
+        State state;
+    };
+
     void note(const std::vector<IterationRecord>& history, int step, double time) {
         for (IterationRecord record : history) {
             record.step = step;
@@ -162,20 +175,27 @@ private:
         }
     }
 
-    [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) const {
+    [[nodiscard]] std::shared_ptr<const Inertia> make_inertia(double dt) {
         const Damping& damping = program_.dynamics->damping;
         std::shared_ptr<StiffnessMatrix> stiffness;
         if (damping.stiffness_s > 0) {
+            if (!body_layout_) body_layout_ = make_body_layout();
             stiffness = std::make_shared<StiffnessMatrix>();
-            stiffness->pattern =
-                linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(model_.free_index()));
-            stiffness->values.assign(stiffness->pattern.entries(), 0.0);
+            stiffness->pattern = &body_layout_->pattern;
+            stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
             const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-            model_.elements().add_tangent(x, model_.free_index(), stiffness->pattern, stiffness->values, true,
-                                          controls_.laws);
+            model_.elements().add_tangent(x, body_layout_->element_slots, stiffness->values, true, controls_.laws);
         }
         return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history_, dt, damping,
                                                std::move(stiffness));
+    }
+
+    /// Of the elements alone: what damping by stiffness couples.
+    [[nodiscard]] TangentLayout make_body_layout() const {
+        const auto& index = model_.free_index();
+        TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};
+        layout.element_slots = model_.elements().stiffness_slots(index, layout.pattern);
+        return layout;
     }
 
     void remember(const State& next, double dt) {
@@ -245,29 +265,62 @@ private:
         return settle_friction(controls, next, progress);
     }
 
-    /// Starts from the supports at their new place and everything on as before or, where that would turn a tet inside
-    /// out or pass through something, as it was. Returns why there is no start.
+    /// Starts from where the last states lead or, where that would turn a tet inside out or pass through something,
+    /// from the last state with the supports at their new place. Returns why there is no start.
     [[nodiscard]] std::string predict(double time, const Controls& controls, State& next) const {
-        const State still = follow_supports(state_, controls);
-        if (previous_time_ < time_) {
-            State onward = state_;
-            const double factor = (time - time_) / (time_ - previous_time_);
-            onward.x += factor * (state_.x - previous_.x);
-            onward.multiplier += factor * (state_.multiplier - previous_.multiplier);
-            for (std::size_t c = 0; c < system_.cable_count(); ++c) {
-                double& tension = onward.multiplier[static_cast<Eigen::Index>(c)];
-                tension = std::max(tension, 0.0);
-            }
-            system_.place_supports(controls, onward.x);
-            if (system_.evaluate(onward, controls).min_J > 0 && passes(onward, controls)) {
-                next = std::move(onward);
-                return {};
-            }
+        if (const auto onward = extrapolate(time, controls)) {
+            next = *onward;
+            return {};
         }
-        next = still;
-        if (!(system_.evaluate(next, controls).min_J > 0))
+        next = follow_supports(state_, controls);
+        if (!(model_.elements().evaluate(view(next.x), {}, controls.laws).min_J > 0))
             return "the prescribed motion turns a tetrahedron inside out";
         return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
+    }
+
+    /// On from the last two states and from the last three, whichever ends nearer to equilibrium.
+    [[nodiscard]] std::optional<State> extrapolate(double time, const Controls& controls) const {
+        std::optional<State> best;
+        double least = 0;
+        for (std::size_t count = 2; count <= past_.size() + 1; ++count) {
+            State state = onward(time, count, controls);
+            const Evaluation e = system_.evaluate(state, controls);
+            if (!(e.min_J > 0) || (best && !(e.error() < least)) || !passes(state, controls)) continue;
+            best = std::move(state);
+            least = e.error();
+        }
+        // Beyond this the body buckles or something new begins to act: where it is, at least its tangent is sound.
+        if (least > worst_start) best.reset();
+        return best;
+    }
+
+    /// The multipliers follow the polynomial through the last `count` states, 2 or 3. Every tet goes on turning and
+    /// growing at its rate between the last two or, with three, at the rate that theirs lead to: a bent body keeps its
+    /// length, where its nodes, on straight lines, would stretch it.
+    [[nodiscard]] State onward(double time, std::size_t count, const Controls& controls) const {
+        const Known& before = past_.back();
+        const double last = time_ - before.time;
+        const double ahead = time - time_;
+        State next{state_.x, state_.multiplier + ahead / last * (state_.multiplier - before.state.multiplier)};
+        system_.place_supports(controls, next.x);
+        Turning turning{state_.x.data(), next.x.data(), before.state.x.data(), nullptr, ahead / last, 0};
+        if (count == 3) {
+            const Known& first = past_[past_.size() - 2];
+            const double earlier = before.time - first.time;
+            const double bend = (time - before.time) / (time_ - first.time);  // rates are known half-way between states
+            turning.first = first.state.x.data();
+            turning.onward = (1 + bend) * ahead / last;
+            turning.earlier = -bend * ahead / earlier;
+            const Eigen::VectorXd slope = (state_.multiplier - before.state.multiplier) / last;
+            const Eigen::VectorXd slope_before = (before.state.multiplier - first.state.multiplier) / earlier;
+            next.multiplier += ahead * bend * (slope - slope_before);
+        }
+        next.x = laplacian_.turn(system_, turning);
+        for (std::size_t c = 0; c < system_.cable_count(); ++c) {
+            double& tension = next.multiplier[static_cast<Eigen::Index>(c)];
+            tension = std::max(tension, 0.0);
+        }
+        return next;
     }
 
     /// True if the way from the last state to `next` meets nothing.
@@ -329,13 +382,13 @@ private:
     FactoredLaplacian laplacian_;
     SolverChain solvers_;
     State state_;
-    State previous_;
+    std::deque<Known> past_;    ///< the states before it
     Controls controls_;         ///< of the last converged state
     Controls solved_controls_;  ///< of the state that was solved last
     double time_ = 0;
-    double previous_time_ = 0;
     Evaluation evaluation_;
-    History history_;               ///< of a motion in time
+    History history_;                           ///< of a motion in time
+    std::optional<TangentLayout> body_layout_;  ///< made when damping by stiffness first needs it
     std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
     std::vector<IterationRecord> iterations_;

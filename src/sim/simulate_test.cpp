@@ -12,11 +12,12 @@
 #include "sim/elements.hpp"
 #include "sim/fields.hpp"
 #include "sim/loads.hpp"
-#include "sim/reference_problems.hpp"
 #include "sim/step_solver.hpp"
+#include "sim/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::solve;
 
 namespace {
 
@@ -46,13 +47,6 @@ Cable flexor(const mesh::TetMesh& mesh, CableTarget target) {
         cable.points.push_back({nodes, {1.0}, {}});
     }
     return cable;
-}
-
-Trajectory solve(Description d, Program program) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    Progress silent;
-    return run(*model, program, silent);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLa
                     return solver == Solver::local_global   ? make_local_global(laplacian)
                            : solver == Solver::anderson     ? make_anderson(laplacian)
                            : solver == Solver::quasi_newton ? make_quasi_newton(laplacian)
-                                                            : make_newton(system);
+                                                            : make_newton(system, laplacian);
                 }};
     };
     if (asked != Solver::automatic) return SolverChain({link(asked)});

@@ -9,11 +9,11 @@
 
 #include "sim/attach.hpp"
 #include "sim/pressure_limit.hpp"
-#include "sim/reference_problems.hpp"
-#include "sim/simulate.hpp"
+#include "sim/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::solve;
 
 namespace {
 
@@ -45,29 +45,10 @@ Description pulled_bar(double length_ratio) {
     return d;
 }
 
-/// A block of 3 x 1 x 1 cm with an empty box in the middle, clamped at x = 0.
 Description hollow_block(ChamberTarget target) {
-    const auto void_at = [](Vec3 c) {
-        const auto inside = [](double v, double low, double high) { return v > low && v < high; };
-        return inside(c.x, 0.005, 0.025) && inside(c.y, 0.0025, 0.0075) && inside(c.z, 0.0025, 0.0075) ? 1 : 0;
-    };
-    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 6, 4, 4, void_at);
-    whole.region_names = {"solid", "air"};
-    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
-    Description d;
-    d.mesh = std::move(solid.mesh);
-    d.materials = {{"A", material::neo_hookean(1e5, 0.4), 1000}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), target});
+    Description d = testing::hollow_block(1);
+    d.chambers[0].target = std::move(target);
     return d;
-}
-
-Trajectory solve(Description d, Program program) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    Progress silent;
-    return run(*model, program, silent);
 }
 
 /// A solver that finds nothing, or creeps.
@@ -77,7 +58,7 @@ public:
         : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 1000; }
-    [[nodiscard]] bool refresh(const State&, const Controls&, bool) override {
+    [[nodiscard]] bool refresh(const State&, const Controls&, Care) override {
         ++*asked_;
         return creeps_;
     }
@@ -115,7 +96,7 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
             REQUIRE_MESSAGE(outcome.converged, outcome.reason);
             CHECK(outcome.solver == Solver::quasi_newton);
             CHECK(outcome.evaluation.residual <= 1e-6);
-            CHECK(asked - before == (creeps ? 30 : 2));  // plain and cautious, or until patience ends
+            CHECK(asked - before == (creeps ? 30 : 3));  // plain and cautious, or until patience ends
             before = asked;
             const auto first_of = [&](Solver solver) {
                 return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
@@ -239,7 +220,7 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->restart();
     mixing->learn(inverse.col(0), 5 * u);
     mixing->learn(inverse.col(1), 0.2 * v);
-    REQUIRE(mixing->refresh(state, controls, false));
+    REQUIRE(mixing->refresh(state, controls, Care::usual));
     Eigen::MatrixXd asked(n, 2);
     asked << 5 * u, u + v;
     Eigen::MatrixXd expected(n, 2);
@@ -247,12 +228,12 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->solve(asked);
     CHECK((asked - expected).norm() < 1e-8 * expected.norm());
     // Cautious: the plain step.
-    REQUIRE(mixing->refresh(state, controls, true));
+    REQUIRE(mixing->refresh(state, controls, Care::cautious));
     Eigen::MatrixXd plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
     // And what has misled is forgotten.
-    REQUIRE(mixing->refresh(state, controls, false));
+    REQUIRE(mixing->refresh(state, controls, Care::usual));
     plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);

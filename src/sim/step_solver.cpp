@@ -92,8 +92,8 @@ public:
     }
 
     /// One iteration; false if no acceptable step was found.
-    bool iterate(bool cautious) {
-        if (!curvature_.refresh(state_, controls_, cautious)) return false;
+    bool iterate(Care care) {
+        if (!curvature_.refresh(state_, controls_, care)) return false;
         const Direction direction = find_direction();
         if (!direction.dx.allFinite()) return false;
         return search(direction);
@@ -184,12 +184,8 @@ private:
     /// Halves the step until min_J stays positive and the merit (or the error) goes down.
     bool search(const Direction& direction) {
         raise_prices(direction);
-        const Equilibrium::Merit start = system_.merit(state_.x, controls_, prices_);
-        double cost = 0;  // of the present excess; a full step removes it
-        for (const Eigen::Index a : solved_) {
-            const double excess = evaluation_.excess[a];
-            cost += prices_[a] * (actuator(a).only_pulls() ? std::max(excess, 0.0) : std::fabs(excess));
-        }
+        const double cost = cost_of_excess(evaluation_);  // a full step removes it
+        const double start = evaluation_.energy_J + cost;
         const double slope = direction.slope_J - cost;
         const bool conservative = system_.conservative();
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
@@ -197,15 +193,14 @@ private:
         const double longest = system_.largest_step(state_.x, motion, controls_);
         for (double alpha = longest; alpha > curvature_.smallest_share() * longest; alpha *= 0.5) {
             State next = state_;
-            system_.add_free(direction.dx, alpha, next.x);
+            next.x = curvature_.go(state_.x, alpha * motion);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);
-            const Equilibrium::Merit merit = system_.merit(next.x, controls_, prices_);
-            if (!(merit.min_J > 0.05 * evaluation_.min_J)) continue;
+            Evaluation evaluation = system_.evaluate(next, controls_);
+            if (!(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
             // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
             const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
-            const bool lower =
-                conservative && merit.value_J < start.value_J - 1e-4 * alpha * std::fabs(slope) + rounding;
-            Evaluation evaluation = system_.evaluate(next, controls_);
+            const double merit = evaluation.energy_J + cost_of_excess(evaluation);
+            const bool lower = conservative && merit < start - 1e-4 * alpha * std::fabs(slope) + rounding;
             const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
             if (!lower && !nearer) continue;
@@ -213,6 +208,16 @@ private:
             return true;
         }
         return false;
+    }
+
+    /// What the present excess adds to the merit: a cable that is not too long costs nothing.
+    [[nodiscard]] double cost_of_excess(const Evaluation& evaluation) const {
+        double cost = 0;
+        for (const Eigen::Index a : solved_) {
+            const double excess = evaluation.excess[a];
+            cost += prices_[a] * (actuator(a).only_pulls() ? std::max(excess, 0.0) : std::fabs(excess));
+        }
+        return cost;
     }
 
     /// Without an energy only the error can guide. It is a ratio of forces and rises where a cable begins to pull, so
@@ -234,7 +239,9 @@ private:
         // The quasi-Newton pair needs both forces at the same multipliers.
         next.multiplier = evaluation.multiplier;
         const Eigen::VectorXd old_force = solved_.empty() ? evaluation_.out_of_balance : force_at(next.multiplier);
-        curvature_.learn(alpha * direction.dx, system_.restrict_to_free(evaluation.out_of_balance - old_force));
+        curvature_.learn(system_.restrict_to_free(next.x - state_.x),
+                         system_.restrict_to_free(evaluation.out_of_balance - old_force));
+        curvature_.judge(evaluation_.error(), evaluation.error());
         state_ = std::move(next);
         evaluation_ = std::move(evaluation);
         alpha_ = alpha;
@@ -316,7 +323,7 @@ StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Co
             break;
         }
         ++outcome.iterations;
-        if (!solver.iterate(false) && !solver.iterate(true)) {
+        if (!solver.iterate(Care::usual) && !solver.iterate(Care::exact) && !solver.iterate(Care::cautious)) {
             outcome.reason = fmt::format(
                 "no step lowers the energy without turning a tetrahedron inside out, residual {:.2e}", residual());
             break;

@@ -7,16 +7,9 @@
 namespace pliant::slice {
 namespace {
 
-/// Coverage is kept in steps of 2^-36: coarser than the rounding of sums along a row, far finer than a grey value, so
-/// that an exact tie is a tie and what has left a row has left it.
-double quantised(double coverage) {
-    constexpr double steps = 68719476736.0;
-    return std::nearbyint(coverage * steps) / steps;
-}
-
 struct Share {
     int body;
-    double winding;  ///< signed coverage
+    std::int64_t winding;  ///< signed coverage, in steps
 };
 
 struct Owner {
@@ -24,72 +17,104 @@ struct Owner {
     std::uint8_t value = 0;
 };
 
-/// Paints into images that are made when they are first needed.
+struct Pixel {
+    int row, column;
+};
+
+std::int64_t covered(std::int64_t winding) {
+    return std::min(full_coverage, winding < 0 ? -winding : winding);
+}
+
+/// The grey values of coverages.
+class Greys {
+public:
+    explicit Greys(const ComposeRules& rules)
+        : anti_alias_(rules.anti_alias),
+          threshold_(std::max<std::int64_t>(
+              1, static_cast<std::int64_t>(std::ceil(rules.threshold * static_cast<double>(full_coverage) - 0.5)))) {}
+
+    [[nodiscard]] std::uint8_t operator()(std::int64_t coverage) const {
+        if (!anti_alias_) return coverage >= threshold_ ? 255 : 0;
+        return static_cast<std::uint8_t>((255 * coverage + full_coverage / 2) >> coverage_bits);
+    }
+
+private:
+    bool anti_alias_;
+    std::int64_t threshold_;
+};
+
+/// The images of all materials of a layer.
 class Canvas {
 public:
-    Canvas(const Raster& raster, std::size_t materials) : raster_(raster), images_(materials) {}
+    Canvas(const Raster& raster, std::size_t materials)
+        : width_px_(raster.width_px), images_(materials, RunImage(raster.width_px, raster.height_px)) {}
 
     void run(const Owner& owner, int row, int begin, int end) {
-        end = std::min(end, raster_.width_px);
+        end = std::min(end, width_px_);
         if (owner.value == 0 || begin >= end) return;
-        auto& pixels = image(owner.material).pixels;
-        const auto at = pixels.begin() + index(row, begin);
-        std::fill(at, at + (end - begin), owner.value);
-        sums_[owner.material] += std::int64_t{owner.value} * (end - begin);
+        images_[owner.material].append(row, begin, end, owner.value);
     }
 
     /// The material and value of a pixel; material -1 where it is dark or outside.
-    [[nodiscard]] std::pair<int, int> look(int row, int column) const {
-        if (row < 0 || column < 0 || row >= raster_.height_px || column >= raster_.width_px) return {-1, 0};
+    [[nodiscard]] std::pair<int, int> look(Pixel p) const {
         for (std::size_t m = 0; m < images_.size(); ++m) {
-            if (images_[m].pixels.empty()) continue;
-            if (const int value = images_[m].at(row, column); value > 0) return {static_cast<int>(m), value};
+            if (const int value = images_[m].at(p.row, p.column); value > 0) return {static_cast<int>(m), value};
         }
         return {-1, 0};
     }
 
-    void brighten(int row, int column) {
-        const auto [material, value] = look(row, column);
-        images_[material].pixels[index(row, column)] = 255;
-        sums_[material] += 255 - value;
+    [[nodiscard]] bool mixed() const {
+        return std::count_if(images_.begin(), images_.end(), [](const RunImage& i) { return !i.blank(); }) > 1;
+    }
+
+    /// Gives full light to pixels, ordered by row and column.
+    void brighten(const std::vector<Pixel>& pixels) {
+        std::vector<std::vector<Pixel>> of_material(images_.size());
+        for (const Pixel& p : pixels) of_material[look(p).first].push_back(p);
+        for (std::size_t m = 0; m < images_.size(); ++m) {
+            if (!of_material[m].empty()) images_[m] = brightened(images_[m], of_material[m]);
+        }
     }
 
     std::vector<MaterialImage> take() {
         std::vector<MaterialImage> taken;
         for (std::size_t m = 0; m < images_.size(); ++m) {
-            if (!images_[m].pixels.empty()) taken.push_back({static_cast<int>(m), std::move(images_[m]), sums_[m]});
+            if (images_[m].blank()) continue;
+            const std::int64_t sum = images_[m].value_sum();
+            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum});
         }
         return taken;
     }
 
 private:
-    [[nodiscard]] std::size_t index(int row, int column) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(raster_.width_px) +
-               static_cast<std::size_t>(column);
-    }
-    Image& image(int material) {
-        Image& image = images_[material];
-        if (image.pixels.empty()) {
-            image.width_px = raster_.width_px;
-            image.height_px = raster_.height_px;
-            image.pixels.resize(static_cast<std::size_t>(raster_.width_px) *
-                                static_cast<std::size_t>(raster_.height_px));
+    static RunImage brightened(const RunImage& image, const std::vector<Pixel>& pixels) {
+        RunImage result(image.width_px(), image.height_px());
+        auto next = pixels.begin();
+        for (int row = image.first_row(); row < image.end_row(); ++row) {
+            for (const Run& run : image.row(row)) {
+                int begin = run.begin;
+                for (; next != pixels.end() && next->row == row && next->column < run.end; ++next) {
+                    if (begin < next->column) result.append(row, begin, next->column, run.value);
+                    result.append(row, next->column, next->column + 1, 255);
+                    begin = next->column + 1;
+                }
+                if (begin < run.end) result.append(row, begin, run.end, run.value);
+            }
         }
-        return image;
+        return result;
     }
 
-    const Raster& raster_;
-    std::vector<Image> images_;
-    std::vector<std::int64_t> sums_ = std::vector<std::int64_t>(images_.size(), 0);
+    int width_px_;
+    std::vector<RunImage> images_;
 };
 
 class Composer {
 public:
     Composer(std::span<const int> material_of, const Raster& raster, const ComposeRules& rules)
         : material_of_(material_of),
-          raster_(raster),
-          rules_(rules),
           material_count_(material_of.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1),
+          width_px_(raster.width_px),
+          grey_(rules),
           share_of_(material_count_),
           canvas_(raster, material_count_) {
         layer_.lost_px.assign(material_of.size(), 0.0);
@@ -98,10 +123,18 @@ public:
     }
 
     ComposedLayer compose(const std::vector<Cell>& cells) {
+        const bool alone = !cells.empty() && std::all_of(cells.begin(), cells.end(), [&](const Cell& c) {
+            return c.body() == cells.front().body();
+        });
         for (std::size_t i = 0; i < cells.size();) {
             std::size_t end = i;
             while (end < cells.size() && cells[end].row() == cells[i].row()) ++end;
-            sweep_row(std::span(cells).subspan(i, end - i));
+            const std::span row(cells.data() + i, end - i);
+            if (alone) {
+                sweep_row_of_one(row);
+            } else {
+                sweep_row(row);
+            }
             i = end;
         }
         close_gaps();
@@ -110,6 +143,24 @@ public:
     }
 
 private:
+    /// A layer of one body has no owner to find and no gap to close.
+    void sweep_row_of_one(std::span<const Cell> cells) {
+        const int material = material_of_[cells[0].body()], row = cells[0].row();
+        std::int64_t winding = 0;
+        int cursor = 0;
+        for (std::size_t i = 0; i < cells.size();) {
+            const int column = cells[i].column();
+            if (winding != 0) canvas_.run({material, grey_(covered(winding))}, row, cursor, column);
+            std::int64_t here = winding;
+            for (; i < cells.size() && cells[i].column() == column; ++i) {
+                here += cells[i].area;
+                winding += cells[i].cover;
+            }
+            canvas_.run({material, grey_(covered(here))}, row, column, column + 1);
+            cursor = column + 1;
+        }
+    }
+
     void sweep_row(std::span<const Cell> cells) {
         active_.clear();
         int cursor = 0;
@@ -133,7 +184,7 @@ private:
             at(here_, cell.body()).winding += cell.area;
             at(active_, cell.body()).winding += cell.cover;
         }
-        std::erase_if(active_, [](const Share& s) { return quantised(s.winding) == 0; });
+        std::erase_if(active_, [](const Share& s) { return s.winding == 0; });
     }
 
     static Share& at(std::vector<Share>& shares, int body) {
@@ -144,66 +195,61 @@ private:
     }
 
     void paint(const std::vector<Share>& shares, int row, int begin, int end) {
+        end = std::min(end, width_px_);
         if (shares.empty() || begin >= end) return;
-        const Owner owner = resolve(shares, std::min(end, raster_.width_px) - begin);
+        const Owner owner = resolve(shares, end - begin);
         canvas_.run(owner, row, begin, end);
         if (owner.value >= least_gap_value_ && owner.value < 255) {
-            for (int column = begin; column < std::min(end, raster_.width_px); ++column)
-                nearly_full_.emplace_back(row, column);
+            for (int column = begin; column < end; ++column) nearly_full_.push_back({row, column});
         }
     }
 
     /// Serves the bodies from the last to the first until the pixel is full.
     Owner resolve(const std::vector<Share>& shares, int pixels) {
-        double used = 0;
+        std::int64_t used = 0;
         int winner = -1;
         served_.clear();
         for (std::size_t i = shares.size(); i-- > 0;) {
-            const double wanted = std::min(1.0, std::fabs(quantised(shares[i].winding)));
+            const std::int64_t wanted = covered(shares[i].winding);
             if (wanted == 0) continue;
             const int material = material_of_[shares[i].body];
             if (std::find(served_.begin(), served_.end(), material) == served_.end()) {
                 served_.push_back(material);
                 share_of_[material] = 0;
             }
-            const double got = std::min(wanted, 1 - used);
-            const double taken_by_others = std::min(wanted - got, used - share_of_[material]);
-            if (taken_by_others > 0) layer_.lost_px[shares[i].body] += taken_by_others * pixels;
+            const std::int64_t got = std::min(wanted, full_coverage - used);
+            const std::int64_t taken_by_others = std::min(wanted - got, used - share_of_[material]);
+            if (taken_by_others > 0)
+                layer_.lost_px[shares[i].body] += static_cast<double>(taken_by_others) / full_coverage * pixels;
             share_of_[material] += got;
             used += got;
         }
         for (const int material : served_) {
             if (winner < 0 || share_of_[material] > share_of_[winner]) winner = material;
         }
-        return {winner, value_of(used)};
-    }
-
-    [[nodiscard]] std::uint8_t value_of(double coverage) const {
-        if (!rules_.anti_alias) return coverage > 0 && coverage >= rules_.threshold ? 255 : 0;
-        return static_cast<std::uint8_t>(std::lround(255 * std::min(1.0, coverage)));
+        return {winner, grey_(used)};
     }
 
     void close_gaps() {
-        const auto between = [&](int row, int column, int down, int right) {
-            const auto [m0, v0] = canvas_.look(row - down, column - right);
-            const auto [m1, v1] = canvas_.look(row + down, column + right);
+        if (nearly_full_.empty() || !canvas_.mixed()) return;
+        const auto between = [&](Pixel p, int down, int right) {
+            const auto [m0, v0] = canvas_.look({p.row - down, p.column - right});
+            const auto [m1, v1] = canvas_.look({p.row + down, p.column + right});
             return m0 >= 0 && m1 >= 0 && m0 != m1 && std::max(v0, v1) == 255 && std::min(v0, v1) >= least_gap_value_;
         };
-        std::erase_if(nearly_full_, [&](const auto& p) {
-            return !between(p.first, p.second, 0, 1) && !between(p.first, p.second, 1, 0);
-        });
-        for (const auto& [row, column] : nearly_full_) canvas_.brighten(row, column);
+        std::erase_if(nearly_full_, [&](Pixel p) { return !between(p, 0, 1) && !between(p, 1, 0); });
+        canvas_.brighten(nearly_full_);
         layer_.closed_gap_pixels = static_cast<std::int64_t>(nearly_full_.size());
     }
 
     std::span<const int> material_of_;
-    const Raster& raster_;
-    const ComposeRules& rules_;
     std::size_t material_count_;
-    std::vector<double> share_of_;  ///< per material, of the pixel being resolved
-    std::vector<int> served_;       ///< the materials that share_of_ is valid for, latest body first
+    int width_px_;
+    Greys grey_;
+    std::vector<std::int64_t> share_of_;  ///< per material, of the pixel being resolved
+    std::vector<int> served_;             ///< the materials that share_of_ is valid for, latest body first
     std::vector<Share> active_, here_;
-    std::vector<std::pair<int, int>> nearly_full_;
+    std::vector<Pixel> nearly_full_;
     int least_gap_value_ = 255;
     Canvas canvas_;
     ComposedLayer layer_;

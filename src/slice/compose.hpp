@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slice/coverage.hpp"
-#include "slice/image.hpp"
+#include "slice/run_image.hpp"
 
 namespace pliant::slice {
 
@@ -18,7 +18,7 @@ struct ComposeRules {
 
 struct MaterialImage {
     int material = 0;
-    Image image;
+    RunImage image;
     std::int64_t value_sum = 0;  ///< of all pixels, for the area
 };
 

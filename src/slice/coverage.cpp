@@ -3,24 +3,47 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slice/raster_frame.hpp"
+
 namespace pliant::slice {
+namespace {
+
+constexpr double steps = static_cast<double>(full_coverage);
+
+std::int64_t to_steps(double amount) {
+    return static_cast<std::int64_t>(amount < 0 ? amount - 0.5 : amount + 0.5);
+}
+
+bool before(const Cell& l, const Cell& r) {
+    return l.key < r.key;
+}
+
+/// Rows hold a handful of cells, nearly in order.
+void sort_row(Cell* begin, Cell* end) {
+    constexpr int few = 40;
+    if (end - begin > few) return std::sort(begin, end, before);
+    for (Cell* i = begin + 1; i < end; ++i) {
+        const Cell cell = *i;
+        Cell* j = i;
+        for (; j > begin && before(cell, j[-1]); --j) *j = j[-1];
+        *j = cell;
+    }
+}
+
+}  // namespace
 
 CellBuffer::CellBuffer(const Raster& raster) : raster_(raster) {}
 
 void CellBuffer::add(int body, const std::vector<Segment>& segments) {
     body_ = static_cast<std::uint64_t>(body);
-    const double pixel = raster_.pixel_um * grid_per_um;
+    const RasterFrame frame(raster_, 1.0 / grid_per_um);
     const double width = raster_.width_px, height = raster_.height_px;
-    const auto column = [&](double x) {
-        return std::clamp((raster_.mirror_x ? -x : x) / pixel + width / 2, 0.0, width);
-    };
-    const auto row = [&](double y) {
-        return std::clamp((raster_.mirror_y ? y : -y) / pixel + height / 2, 0.0, height);
-    };
-    const bool reversed = raster_.mirror_x != raster_.mirror_y;  // one mirror turns left into right
     for (const Segment& s : segments) {
-        const double u0 = column(s.x0), v0 = row(s.y0), u1 = column(s.x1), v1 = row(s.y1);
-        if (reversed) {
+        const double u0 = std::clamp(frame.column(s.x0, s.y0), 0.0, width);
+        const double v0 = std::clamp(frame.row(s.x0, s.y0), 0.0, height);
+        const double u1 = std::clamp(frame.column(s.x1, s.y1), 0.0, width);
+        const double v1 = std::clamp(frame.row(s.x1, s.y1), 0.0, height);
+        if (frame.mirrored()) {
             add_line(u1, v1, u0, v0);
         } else {
             add_line(u0, v0, u1, v1);
@@ -28,51 +51,53 @@ void CellBuffer::add(int body, const std::vector<Segment>& segments) {
     }
 }
 
+/// Cuts a line where it passes from row to row. Heights are whole steps from here on, so that they add up exactly.
 void CellBuffer::add_line(double u0, double v0, double u1, double v1) {
-    if (v0 == v1) return;
-    const double slope = (u1 - u0) / (v1 - v0);
-    const auto u_at = [&](double v) { return std::clamp(u0 + (v - v0) * slope, std::min(u0, u1), std::max(u0, u1)); };
-    const int step = v1 > v0 ? 1 : -1;
-    // The row of the piece that starts at v and goes towards v1.
-    int row = step > 0 ? static_cast<int>(std::floor(v0)) : static_cast<int>(std::ceil(v0)) - 1;
-    double u = u0, v = v0;
-    while (v != v1) {
-        const double border = step > 0 ? row + 1 : row;
-        const bool last = step > 0 ? v1 <= border : v1 >= border;
-        const double v_next = last ? v1 : border;
-        const double u_next = last ? u1 : u_at(border);
-        add_in_row(row, u, v, u_next, v_next);
+    const std::int64_t from = to_steps(v0 * steps), to = to_steps(v1 * steps);
+    if (from == to) return;
+    const double slope = (u1 - u0) / static_cast<double>(to - from);
+    const double low_u = std::min(u0, u1), high_u = std::max(u0, u1);
+    const bool down = to > from;
+    const std::int64_t first = down ? from : from - 1, last = down ? to - 1 : to;
+    int row = static_cast<int>(first >> coverage_bits);
+    const int last_row = static_cast<int>(last >> coverage_bits);
+    double u = u0;
+    std::int64_t v = from;
+    for (; row != last_row; row += down ? 1 : -1) {
+        const std::int64_t border = static_cast<std::int64_t>(down ? row + 1 : row) << coverage_bits;
+        const double u_next = std::clamp(u0 + static_cast<double>(border - from) * slope, low_u, high_u);
+        add_in_row(row, u, u_next, border - v);
         u = u_next;
-        v = v_next;
-        row += step;
+        v = border;
     }
+    add_in_row(row, u, u1, to - v);
 }
 
 /// A piece inside one row of pixels, cut where it passes from column to column.
-void CellBuffer::add_in_row(int row, double u0, double v0, double u1, double v1) {
-    const int first = static_cast<int>(std::floor(std::min(u0, u1)));
-    const int last = static_cast<int>(std::ceil(std::max(u0, u1))) - 1;
-    // The solid lies to the left of an outline seen from above, so to the right of one that runs down the image.
-    const double height = v1 - v0;
-    if (last <= first) {
-        add_cell(row, first, height, height * (1 - ((u0 + u1) / 2 - first)));
-        return;
-    }
+void CellBuffer::add_in_row(int row, double u0, double u1, std::int64_t height) {
     const double low_u = std::min(u0, u1), high_u = std::max(u0, u1);
-    const double per_column = height / (high_u - low_u);
-    double left = low_u, rest = height;
-    for (int column = first; column <= last; ++column) {
-        const double right = column == last ? high_u : column + 1;
-        const double cover = column == last ? rest : (right - left) * per_column;
-        add_cell(row, column, cover, cover * (1 - ((left + right) / 2 - column)));
-        rest -= cover;
+    const int first = static_cast<int>(low_u);
+    const int last = static_cast<int>(std::ceil(high_u)) - 1;
+    // The solid lies to the left of an outline seen from above, so to the right of one that runs down the image.
+    if (last <= first) return add_cell(row, first, height, (u0 + u1) / 2 - first);
+    const double per_column = static_cast<double>(height) / (high_u - low_u);
+    double left = low_u;
+    std::int64_t done = 0;  // rounded as a sum, so that what rounding leaves does not add up
+    for (int column = first; column < last; ++column) {
+        const double right = column + 1;
+        const std::int64_t so_far = to_steps((right - low_u) * per_column);
+        add_cell(row, column, so_far - done, (left + right) / 2 - column);
+        done = so_far;
         left = right;
     }
+    add_cell(row, last, height - done, (left + high_u) / 2 - last);
 }
 
-void CellBuffer::add_cell(int row, int column, double cover, double area) {
+/// `middle`: where in the pixel the piece passes, 0 to 1 from its left side.
+void CellBuffer::add_cell(int row, int column, std::int64_t cover, double middle) {
     const std::uint64_t key =
         (static_cast<std::uint64_t>(row) << 48) | (static_cast<std::uint64_t>(column) << 31) | body_;
+    const std::int64_t area = to_steps(static_cast<double>(cover) * (1 - middle));
     if (!cells_.empty() && cells_.back().key == key) {
         cells_.back().cover += cover;
         cells_.back().area += area;
@@ -81,9 +106,22 @@ void CellBuffer::add_cell(int row, int column, double cover, double area) {
     }
 }
 
+/// By counting into rows, then within each row.
 const std::vector<Cell>& CellBuffer::sorted() {
-    std::stable_sort(cells_.begin(), cells_.end(), [](const Cell& l, const Cell& r) { return l.key < r.key; });
-    return cells_;
+    sorted_.resize(cells_.size());
+    if (cells_.empty()) return sorted_;
+    const auto [low, high] = std::minmax_element(cells_.begin(), cells_.end(), before);
+    const int first = low->row(), last = high->row();
+    std::vector<std::uint32_t> ends(static_cast<std::size_t>(last - first) + 2, 0);
+    for (const Cell& c : cells_) ++ends[static_cast<std::size_t>(c.row() - first) + 1];
+    for (std::size_t r = 1; r < ends.size(); ++r) ends[r] += ends[r - 1];
+    for (const Cell& c : cells_) sorted_[ends[static_cast<std::size_t>(c.row() - first)]++] = c;
+    std::uint32_t begin = 0;
+    for (std::size_t r = 0; r + 1 < ends.size(); ++r) {
+        sort_row(sorted_.data() + begin, sorted_.data() + ends[r]);
+        begin = ends[r];
+    }
+    return sorted_;
 }
 
 }  // namespace pliant::slice

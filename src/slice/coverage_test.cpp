@@ -45,10 +45,11 @@ double clipped_area(std::vector<Point2> polygon, double x0, double x1, double y0
 /// Dense coverage from the cells, by the rule that Cell states.
 std::vector<double> dense(const std::vector<Cell>& cells, const Raster& raster) {
     std::vector<double> own(raster.width_px * raster.height_px, 0.0), passed = own;
+    const double step = 1.0 / static_cast<double>(full_coverage);
     for (const Cell& c : cells) {
         if (c.column() >= raster.width_px) continue;
-        own[c.row() * raster.width_px + c.column()] += c.area;
-        passed[c.row() * raster.width_px + c.column()] += c.cover;
+        own[c.row() * raster.width_px + c.column()] += static_cast<double>(c.area) * step;
+        passed[c.row() * raster.width_px + c.column()] += static_cast<double>(c.cover) * step;
     }
     for (int row = 0; row < raster.height_px; ++row) {
         double sum = 0;

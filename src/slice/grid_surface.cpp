@@ -37,8 +37,11 @@ Status check_points(const mesh::TriMesh& surface, std::string_view label) {
 std::vector<int> weld(const std::vector<GridPoint>& points, GridSurface& surface) {
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(),
-              [&](int a, int b) { return points[a] != points[b] ? points[a] < points[b] : a < b; });
+    // By height, so that what one layer needs lies together.
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+        if (points[a].z != points[b].z) return points[a].z < points[b].z;
+        return points[a] != points[b] ? points[a] < points[b] : a < b;
+    });
     std::vector<int> index(points.size());
     for (const int i : order) {
         if (surface.points.empty() || surface.points.back() != points[i]) surface.points.push_back(points[i]);

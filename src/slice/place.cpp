@@ -5,22 +5,14 @@
 namespace pliant::slice {
 namespace {
 
-/// The box of the points that triangles use.
 Result<Box3> box_of(std::span<const Body> bodies) {
     Box3 box;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const mesh::TriMesh& surface = bodies[i].surface_um;
-        const int count = static_cast<int>(surface.points.size());
-        for (const auto& triangle : surface.triangles) {
-            for (const int corner : triangle) {
-                if (corner < 0 || corner >= count)
-                    return input_error("{}: a triangle names point {}, there are {}", describe(bodies[i], i), corner,
-                                       count);
-                if (!is_finite(surface.points[corner]))
-                    return input_error("{}: point {} is not finite", describe(bodies[i], i), corner);
-                box.add(surface.points[corner]);
-            }
-        }
+        const auto own = bounds(bodies[i], describe(bodies[i], i));
+        if (!own) return own;
+        if (own->empty()) continue;
+        box.add(own->low);
+        box.add(own->high);
     }
     if (box.empty()) return input_error("there is no triangle to print");
     return box;
@@ -46,9 +38,7 @@ Result<std::vector<std::string>> place_on_platform(std::span<Body> bodies, const
                         "{:.3g} um; it was moved to the platform as it is",
                         far_um / 1000, spacing_um));
     const Vec3 shift{-box->center().x, -box->center().y, -box->low.z};
-    for (Body& body : bodies) {
-        for (Vec3& p : body.surface_um.points) p += shift;
-    }
+    for (Body& body : bodies) move(body, shift);
     return warnings;
 }
 

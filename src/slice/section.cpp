@@ -5,8 +5,6 @@
 namespace pliant::slice {
 namespace {
 
-constexpr int block_layers = 32;
-
 struct Crossing {
     double x, y;
 };
@@ -21,21 +19,46 @@ Crossing cross_edge(const GridPoint& below, const GridPoint& above, std::int64_t
     return {at(below.x, above.x), at(below.y, above.y)};
 }
 
+/// Calls `visit(node)` for the fewest nodes that together cover leaves [first, end).
+template <class Visit>
+void cover(std::size_t leaves, std::size_t first, std::size_t end, const Visit& visit) {
+    for (first += leaves, end += leaves; first < end; first /= 2, end /= 2) {
+        if (first % 2 == 1) visit(first++);
+        if (end % 2 == 1) visit(--end);
+    }
+}
+
 }  // namespace
 
 Sectioner::Sectioner(GridSurface surface, int layer_um)
     : surface_(std::move(surface)), half_layer_(std::int64_t{layer_um} * grid_per_um / 2) {
-    for (std::size_t i = 0; i < surface_.triangles.size(); ++i) {
-        const auto [a, b, c] = surface_.triangles[i];
-        const auto [low, high] = std::minmax({surface_.points[a].z, surface_.points[b].z, surface_.points[c].z});
-        const int first = layers_below(low), end = layers_below(high);  // planes in (low, high]
-        if (first == end) continue;
-        layer_count_ = std::max(layer_count_, end);
-        const auto last_block = static_cast<std::size_t>((end - 1) / block_layers);
-        if (blocks_.size() <= last_block) blocks_.resize(last_block + 1);
-        for (std::size_t block = static_cast<std::size_t>(first / block_layers); block <= last_block; ++block)
-            blocks_[block].push_back(static_cast<int>(i));
+    for (const Triangle& t : surface_.triangles) {
+        const auto [low, high] = crossed(t);
+        if (low < high) layer_count_ = std::max(layer_count_, high);
     }
+    plant_tree();
+}
+
+/// The layers [low, high) whose planes a triangle crosses.
+std::pair<int, int> Sectioner::crossed(const Triangle& t) const {
+    const auto [low, high] = std::minmax({surface_.points[t[0]].z, surface_.points[t[1]].z, surface_.points[t[2]].z});
+    return {layers_below(low), layers_below(high)};
+}
+
+void Sectioner::plant_tree() {
+    while (leaves_ < static_cast<std::size_t>(layer_count_)) leaves_ *= 2;
+    node_starts_.assign(2 * leaves_ + 1, 0);
+    const auto each_node = [&](std::size_t i, const auto& visit) {
+        const auto [low, high] = crossed(surface_.triangles[i]);
+        cover(leaves_, static_cast<std::size_t>(low), static_cast<std::size_t>(high), visit);
+    };
+    for (std::size_t i = 0; i < surface_.triangles.size(); ++i)
+        each_node(i, [&](std::size_t node) { ++node_starts_[node + 1]; });
+    for (std::size_t n = 1; n < node_starts_.size(); ++n) node_starts_[n] += node_starts_[n - 1];
+    listed_.resize(node_starts_.back());
+    std::vector<std::uint32_t> next(node_starts_.begin(), node_starts_.end() - 1);
+    for (std::size_t i = 0; i < surface_.triangles.size(); ++i)
+        each_node(i, [&](std::size_t node) { listed_[next[node]++] = static_cast<int>(i); });
 }
 
 /// The number of planes at or below height z.
@@ -60,10 +83,12 @@ void Sectioner::cut(const Triangle& t, std::int64_t plane, std::vector<Segment>&
 }
 
 void Sectioner::section(int layer, std::vector<Segment>& segments) const {
-    const auto block = static_cast<std::size_t>(layer / block_layers);
-    if (layer < 0 || block >= blocks_.size()) return;
+    if (layer < 0 || layer >= layer_count_) return;
     const std::int64_t z = plane(layer);
-    for (const int t : blocks_[block]) cut(surface_.triangles[t], z, segments);
+    for (std::size_t node = static_cast<std::size_t>(layer) + leaves_; node > 0; node /= 2) {
+        for (std::uint32_t i = node_starts_[node]; i < node_starts_[node + 1]; ++i)
+            cut(surface_.triangles[listed_[i]], z, segments);
+    }
 }
 
 }  // namespace pliant::slice

@@ -1,6 +1,8 @@
 // Plane sections of a closed surface.
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "slice/grid_surface.hpp"
@@ -18,7 +20,7 @@ struct Segment {
 /// loops to the last bit. A slab between two planes' heights, faces on the planes, appears in exactly one of them.
 class Sectioner {
 public:
-    /// Takes the surface over. Cost: triangles times the blocks of layers that they cross.
+    /// Takes the surface over. Cost: triangles times the logarithm of the layers that each crosses.
     Sectioner(GridSurface surface, int layer_um);
 
     /// Layers [0, layer_count()) may have sections.
@@ -31,11 +33,18 @@ private:
     [[nodiscard]] std::int64_t plane(int layer) const { return (2 * std::int64_t{layer} + 1) * half_layer_; }
     [[nodiscard]] int layers_below(std::int64_t z) const;
     void cut(const Triangle& t, std::int64_t plane, std::vector<Segment>& segments) const;
+    [[nodiscard]] std::pair<int, int> crossed(const Triangle& t) const;
+    void plant_tree();
 
     GridSurface surface_;
     std::int64_t half_layer_;
     int layer_count_ = 0;
-    std::vector<std::vector<int>> blocks_;  ///< triangles that may cross a plane of each block of layers
+    /// A segment tree over layers: node n covers those of nodes 2n and 2n + 1, the leaves are the nodes from leaves_
+    /// on. A triangle is listed at the fewest nodes that together cover the layers that it crosses, so that a layer
+    /// finds all its triangles, and no others, on the way from its leaf to the root.
+    std::size_t leaves_ = 1;
+    std::vector<std::uint32_t> node_starts_;  ///< per node: where its triangles begin in listed_
+    std::vector<int> listed_;
 };
 
 }  // namespace pliant::slice

@@ -101,20 +101,29 @@ bool is_cavity(const std::vector<Piece>& pieces, const Piece& piece) {
 
 }  // namespace
 
+/// By counting into the smaller ends, then within each: an end has a handful of edges.
 std::vector<EdgeUse> edge_uses(const std::vector<Triangle>& triangles) {
-    std::vector<EdgeUse> uses;
-    uses.reserve(3 * triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const int from = triangles[t][i], to = triangles[t][(i + 1) % 3];
-            uses.push_back({std::min(from, to), std::max(from, to), static_cast<int>(t), from < to});
+    int points = 0;
+    for (const Triangle& t : triangles) points = std::max({points, t[0] + 1, t[1] + 1, t[2] + 1});
+    std::vector<std::uint32_t> ends(static_cast<std::size_t>(points) + 1, 0);
+    const auto each = [&](const auto& visit) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) visit(t, triangles[t][i], triangles[t][(i + 1) % 3]);
         }
-    }
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& l, const EdgeUse& r) {
-        if (l.a != r.a) return l.a < r.a;
-        if (l.b != r.b) return l.b < r.b;
-        return l.triangle < r.triangle;
+    };
+    each([&](std::size_t, int from, int to) { ++ends[static_cast<std::size_t>(std::min(from, to)) + 1]; });
+    for (std::size_t p = 1; p < ends.size(); ++p) ends[p] += ends[p - 1];
+    std::vector<EdgeUse> uses(3 * triangles.size());
+    each([&](std::size_t t, int from, int to) {
+        const int a = std::min(from, to);
+        uses[ends[a]++] = {a, std::max(from, to), static_cast<int>(t), from < to};
     });
+    std::uint32_t begin = 0;
+    for (int p = 0; p < points; ++p) {  // each place was moved on to the end of its uses
+        std::sort(uses.begin() + begin, uses.begin() + ends[p],
+                  [](const EdgeUse& l, const EdgeUse& r) { return l.b != r.b ? l.b < r.b : l.triangle < r.triangle; });
+        begin = ends[p];
+    }
     return uses;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
 namespace pliant::slice {
@@ -20,27 +21,37 @@ Status check(const Settings& settings) {
     return {};
 }
 
+/// Where the body's points lie in the image; only x and y mean anything.
+Box3 image_box(const Body& body, const RasterFrame& frame) {
+    Box3 box;
+    const auto add = [&](double x, double y) { box.add({frame.column(x, y), frame.row(x, y), 0}); };
+    for (const OutlineSlice& slice : body.slices) {
+        for (const auto& outline : slice.outlines_um) {
+            for (const auto& [x, y] : outline) add(x, y);
+        }
+    }
+    if (!body.slices.empty()) return box;
+    for (const auto& triangle : body.surface_um.triangles) {
+        for (const int corner : triangle) add(body.surface_um.points[corner].x, body.surface_um.points[corner].y);
+    }
+    return box;
+}
+
 /// Bodies may pass the raster's border by what rounding does to them, no more.
-Status check_place(const Box3& box, const Raster& raster, const std::string& label) {
+Status check_place(const Body& body, const Box3& box, const Raster& raster, const std::string& label) {
     constexpr double rounding_um = 1;
-    const double x = raster.width_um() / 2, y = raster.height_um() / 2;
     if (box.low.z < -rounding_um)
         return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
-    if (box.low.x < -x - rounding_um || box.high.x > x + rounding_um || box.low.y < -y - rounding_um ||
-        box.high.y > y + rounding_um)
+    const double slack = rounding_um / raster.pixel_um;
+    const Box3 image = image_box(body, RasterFrame(raster, 1));
+    if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
+        image.high.y > raster.height_px + slack)
         return input_error(
             "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
             "{:.3f} mm in y to both sides of the centre",
-            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, x / 1000, y / 1000);
+            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, raster.width_um() / 2000,
+            raster.height_um() / 2000);
     return {};
-}
-
-Box3 used_box(const mesh::TriMesh& mesh) {
-    Box3 box;
-    for (const auto& triangle : mesh.triangles) {
-        for (const int corner : triangle) box.add(mesh.points[corner]);
-    }
-    return box;
 }
 
 std::string size_text(const Vec3& size) {
@@ -54,43 +65,62 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
     Slicer slicer;
     slicer.settings_ = settings;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const std::string label = describe(bodies[i], i);
-        auto repaired = repair(bodies[i].surface_um, label, settings.layer_um);
-        if (!repaired) return tl::unexpected(repaired.error());
-        if (auto status = check_place(used_box(bodies[i].surface_um), settings.raster, label); !status)
+        if (auto status = slicer.add_body(bodies[i], describe(bodies[i], i)); !status)
             return tl::unexpected(status.error());
-        std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(slicer.warnings_));
-        slicer.labels_.push_back(label);
-        slicer.measures_.push_back({volume_mm3(repaired->surface), area_mm2(repaired->surface)});
-        slicer.add_body(bodies[i], std::move(repaired->surface));
     }
     if (slicer.layer_count_ == 0)
         return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
     return slicer;
 }
 
-void Slicer::add_body(const Body& body, GridSurface surface) {
+Status Slicer::add_body(const Body& body, const std::string& label) {
+    labels_.push_back(label);
+    const auto box = bounds(body, label);
+    if (!body.slices.empty()) {
+        if (!box) return tl::unexpected(box.error());
+        auto stack = OutlineStack::from(body.slices, settings_.layer_um, label);
+        if (!stack) return tl::unexpected(stack.error());
+        measures_.push_back({stack->volume_mm3(), stack->area_mm2()});
+        shapes_.emplace_back(std::move(*stack));
+    } else {
+        auto repaired = repair(body.surface_um, label, settings_.layer_um);
+        if (!repaired) return tl::unexpected(repaired.error());
+        std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(warnings_));
+        measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
+        shapes_.emplace_back(Sectioner(std::move(repaired->surface), settings_.layer_um));
+    }
+    if (!box) return tl::unexpected(box.error());
+    if (auto status = check_place(body, *box, settings_.raster, label); !status) return status;
+    add_shape(body, box->size());
+    return {};
+}
+
+/// What is noted of the shape that was added last.
+void Slicer::add_shape(const Body& body, const Vec3& size_um) {
     const auto known = std::find(materials_.begin(), materials_.end(), body.material);
     material_of_.push_back(static_cast<int>(known - materials_.begin()));
     if (known == materials_.end()) materials_.push_back(body.material);
-    sectioners_.emplace_back(std::move(surface), settings_.layer_um);
-    layer_count_ = std::max(layer_count_, sectioners_.back().layer_count());
-    const Vec3 size = used_box(body.surface_um).size();
-    if (sectioners_.back().layer_count() == 0) {
+    const int layers = std::visit([](const auto& shape) { return shape.layer_count(); }, shapes_.back());
+    layer_count_ = std::max(layer_count_, layers);
+    if (layers == 0) {
         warnings_.push_back(fmt::format("{}: {} lies between the middles of two layers of {} um and is not printed",
-                                        labels_.back(), size_text(size), settings_.layer_um));
-    } else if (std::fmin(size.x, size.y) < settings_.raster.pixel_um) {
-        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {} um", labels_.back(), size_text(size),
+                                        labels_.back(), size_text(size_um), settings_.layer_um));
+    } else if (std::fmin(size_um.x, size_um.y) < settings_.raster.pixel_um) {
+        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {} um", labels_.back(), size_text(size_um),
                                         settings_.raster.pixel_um));
     }
+}
+
+void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments) const {
+    std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
 SlicedLayer Slicer::layer(int k) const {
     CellBuffer cells(settings_.raster);
     std::vector<Segment> segments;
-    for (std::size_t b = 0; b < sectioners_.size(); ++b) {
+    for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
-        sectioners_[b].section(k, segments);
+        section(b, k, segments);
         cells.add(static_cast<int>(b), segments);
     }
     return compose(cells.sorted(), material_of_, settings_.raster, settings_.rules);
@@ -113,10 +143,11 @@ void Tally::add(int k, const SlicedLayer& layer) {
 
 Summary Tally::summary() const {
     const Settings& settings = slicer_.settings();
-    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings()};
+    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings(), {}};
     const double voxel_mm3 = settings.raster.pixel_um * settings.raster.pixel_um * settings.layer_um / 1e9;
     for (std::size_t b = 0; b < lost_px_.size(); ++b) {
         const double lost_mm3 = lost_px_[b] * voxel_mm3;
+        summary.lost_mm3.push_back(lost_mm3);
         if (lost_mm3 < voxel_mm3) continue;
         summary.overlap_mm3 += lost_mm3;
         summary.warnings.push_back(
@@ -136,18 +167,13 @@ Summary Tally::summary() const {
     return summary;
 }
 
-int batch_size(const Raster& raster) {
-    constexpr double budget_bytes = 64.0 * (1 << 20);
-    const double image_bytes = static_cast<double>(raster.width_px) * raster.height_px;
-    return std::clamp(static_cast<int>(budget_bytes / image_bytes), 2, 64);
-}
-
 Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
-                             const std::function<Status(int, int, const Image&)>& emit, Progress& progress) {
+                             const std::function<Status(int, int, const RunImage&)>& emit, Progress& progress) {
     auto slicer = Slicer::prepare(bodies, settings);
     if (!slicer) return tl::unexpected(slicer.error());
     Tally tally(*slicer);
-    const int batch = batch_size(settings.raster), count = slicer->layer_count();
+    constexpr int batch = layers_at_once;
+    const int count = slicer->layer_count();
     for (int first = 0; first < count; first += batch) {
         if (progress.cancelled()) return cancelled();
         progress.advance("slice", static_cast<double>(first) / count);

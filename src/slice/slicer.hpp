@@ -11,13 +11,15 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "slice/body.hpp"
 #include "slice/compose.hpp"
-#include "slice/image.hpp"
+#include "slice/outline_stack.hpp"
+#include "slice/run_image.hpp"
 #include "slice/section.hpp"
 
 namespace pliant::slice {
@@ -57,17 +59,19 @@ public:
     [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
 
     /// Layer k lies between k and k + 1 times the layer's thickness and is cut in its middle; 0 <= k < layer_count().
-    /// Safe to call from several threads. Cost: the pixels that outlines pass through, plus the images' memory.
+    /// Safe to call from several threads. Cost: the pixels that outlines pass through.
     [[nodiscard]] SlicedLayer layer(int k) const;
 
 private:
     Slicer() = default;
-    void add_body(const Body& body, GridSurface surface);
+    Status add_body(const Body& body, const std::string& label);
+    void add_shape(const Body& body, const Vec3& size_um);
+    void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
 
     Settings settings_;
-    std::vector<Sectioner> sectioners_;  ///< per body
-    std::vector<int> material_of_;       ///< per body
-    std::vector<Measures> measures_;     ///< per body
+    std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
+    std::vector<int> material_of_;                               ///< per body
+    std::vector<Measures> measures_;                             ///< per body
     std::vector<std::string> materials_, labels_, warnings_;
     int layer_count_ = 0;
 };
@@ -78,6 +82,7 @@ struct Summary {
     double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
     std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
     std::vector<std::string> warnings;
+    std::vector<double> lost_mm3{};  ///< per body: its share of overlap_mm3, which a later body keeps
 };
 
 /// Collects the remarks of all layers, added in order.
@@ -94,14 +99,14 @@ private:
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };
 
-/// How many layers to work on at once: enough for all cores, few enough for their images to stay within 64 MB.
-[[nodiscard]] int batch_size(const Raster& raster);
+/// Enough layers for all cores to work on, few enough for their runs to stay small.
+inline constexpr int layers_at_once = 64;
 
 /// Calls `emit(layer, material, image)` for every image that is not blank, by layer and then by material, from the
 /// calling thread; layers are made in parallel batches, never all in memory. Stops at the first error of `emit`, or
 /// when `progress` is cancelled.
 [[nodiscard]] Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
-                                           const std::function<Status(int layer, int material, const Image&)>& emit,
+                                           const std::function<Status(int layer, int material, const RunImage&)>& emit,
                                            Progress& progress);
 
 }  // namespace pliant::slice

@@ -46,7 +46,8 @@ Result<Outcome> slice_file(const std::string& name) {
     Progress progress;
     const auto summary = slice_bodies(
         bodies, settings,
-        [&](int layer, int, const Image& image) {
+        [&](int layer, int, const RunImage& runs) {
+            const Image image = runs.to_image();
             outcome.full_pixels.resize(static_cast<std::size_t>(layer) + 1, 0);
             long grey = 0;
             for (const auto p : image.pixels) {

@@ -27,8 +27,8 @@ Sliced slice_all(const std::vector<Body>& bodies, const Settings& settings) {
     Progress progress;
     auto summary = slice_bodies(
         bodies, settings,
-        [&](int layer, int material, const Image& image) {
-            sliced.shots.push_back({layer, material, image});
+        [&](int layer, int material, const RunImage& image) {
+            sliced.shots.push_back({layer, material, image.to_image()});
             return Status{};
         },
         progress);
@@ -44,7 +44,7 @@ Sliced slice_all(const std::vector<Body>& bodies) {
 std::string refused(const std::vector<Body>& bodies, const Settings& settings) {
     Progress progress;
     const auto summary = slice_bodies(
-        bodies, settings, [](int, int, const Image&) { return Status{}; }, progress);
+        bodies, settings, [](int, int, const RunImage&) { return Status{}; }, progress);
     REQUIRE(!summary.has_value());
     return summary.error().message;
 }
@@ -85,6 +85,27 @@ TEST_CASE("a box lights its pixels and no other, whichever way the image is mirr
             CHECK(s.summary.warnings.empty());
         }
     }
+}
+
+TEST_CASE("a turned and moved image shows the part turned and moved") {
+    const std::vector<Body> bodies{{"soft", box({-1000, 500, 0}, {2000, 1500, 50}), ""}};
+    Settings settings{raster, 50, {}};
+    settings.raster.rotation_deg = 90;  // x becomes y: rows 20 up to 10 down, columns 15 to 5 left of the middle
+    settings.raster.offset_x_um = 300;
+    settings.raster.offset_y_um = -200;
+    const Image image = slice_all(bodies, settings).shots.at(0).image;
+    CHECK(value_sum(image) == 300 * 255);
+    CHECK(int{image.at(24 - 20 + 2, 32 - 15 + 3)} == 255);
+    CHECK(int{image.at(24 + 9 + 2, 32 - 6 + 3)} == 255);
+    CHECK(int{image.at(24 - 21 + 2, 32 - 15 + 3)} == 0);
+    CHECK(int{image.at(24 - 20 + 2, 32 - 16 + 3)} == 0);
+    settings.raster.rotation_deg = 33;
+    settings.raster.offset_x_um = settings.raster.offset_y_um = 0;
+    CHECK(std::fabs(value_sum(slice_all(bodies, settings).shots.at(0).image) - 300 * 255) < 60);
+    CHECK(refused(bodies, {{64, 48, 100, false, false, 0, 2000, 0}, 50, {}}).find("lies outside the image") !=
+          std::string::npos);
+    CHECK(refused(bodies, {{64, 48, 100, false, false, 400}, 50, {}}).find("turned by 400 degrees") !=
+          std::string::npos);
 }
 
 TEST_CASE("grey values are the exact coverage") {
@@ -277,14 +298,14 @@ TEST_CASE("emit's error and cancellation stop the work") {
     const std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), ""}};
     Progress progress;
     const auto stopped = slice_bodies(
-        bodies, {raster, 50, {}}, [](int layer, int, const Image&) -> Status { return failure("stop at {}", layer); },
-        progress);
+        bodies, {raster, 50, {}},
+        [](int layer, int, const RunImage&) -> Status { return failure("stop at {}", layer); }, progress);
     CHECK(stopped.error().message == "stop at 0");
     struct Cancel : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } cancel;
     CHECK(slice_bodies(
-              bodies, {raster, 50, {}}, [](int, int, const Image&) { return Status{}; }, cancel)
+              bodies, {raster, 50, {}}, [](int, int, const RunImage&) { return Status{}; }, cancel)
               .error()
               .cause == Cause::cancelled);
 }
@@ -313,7 +334,7 @@ TEST_CASE("any tangle of triangles is refused or printed inside its box") {
                 for (int row = 24 - 5; row < 24 + 5; ++row) {
                     for (int column = 32 - 5; column < 32 + 5; ++column) inside += m.image.at(row, column);
                 }
-                CHECK(inside == value_sum(m.image));
+                CHECK(inside == m.value_sum);
             }
         }
     }

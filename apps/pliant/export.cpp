@@ -1,0 +1,46 @@
+// pliant export: a job's images as other programs take them.
+#include "job/export.hpp"
+
+#include <fmt/core.h>
+
+#include "command.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string job, format, folder;
+    Output output;
+};
+
+Status run(const Options& options) {
+    const Result<job::Format> format = job::format_from(options.format);
+    if (!format) return input_error("--as: {}", format.error().message);
+    const Result<job::Archive> archive = job::Archive::open(options.job);
+    if (!archive) return tl::unexpected(archive.error());
+    const auto written = job::export_job(*archive, *format, options.folder);
+    if (!written) return tl::unexpected(written.error());
+    if (!options.output.quiet) {
+        for (const auto& path : *written) fmt::print("{}\n", path.string());
+    }
+    return {};
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("export", "write a job's images as other programs take them");
+    command->add_option("job", options->job, "job file (.zip)")->required();
+    command->add_option("--as", options->format, "sl1, nanodlp, zip or vats")->required();
+    command->add_option("-o,--output", options->folder, "folder for a file per material, or for the vats' folders")
+        ->required();
+    add_output_options(*command, options->output, false);
+    command->footer("Example: pliant export gripper.zip --as sl1 -o stacks");
+    command->callback([options, &status] {
+        const Status result = run(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,153 @@
+#include "slice_input.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/tet_file.hpp"
+#include "robot/build.hpp"
+#include "threemf/read_3mf.hpp"
+
+namespace pliant::app {
+namespace {
+
+constexpr double um_per_mm = 1e3;
+
+void add_resin(Drawing& drawing, const std::string& material, const std::string& resin) {
+    const auto known = [&](const auto& pair) { return pair.first == material; };
+    if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
+        drawing.resin_of_material.emplace_back(material, resin);
+}
+
+Result<Drawing> read_robot(const std::string& path, const std::vector<std::string>& assignments, Progress& progress) {
+    const Result<robot::Robot> robot = robot::load_robot(path, assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(*robot, progress);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    Drawing drawing;
+    drawing.name = robot->name;
+    for (robot::BodySurface& body : *surfaces) {
+        const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
+        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+    }
+    for (const robot::MaterialSpec& material : robot->materials) add_resin(drawing, material.name, material.resin);
+    return drawing;
+}
+
+std::vector<slice::OutlineSlice> in_um(const std::vector<threemf::Slice>& slices) {
+    std::vector<slice::OutlineSlice> result;
+    for (const threemf::Slice& s : slices) {
+        result.push_back({s.bottom_mm * um_per_mm, s.top_mm * um_per_mm, s.contours});
+        for (auto& outline : result.back().outlines_um) {
+            for (auto& [x, y] : outline) {
+                x *= um_per_mm;
+                y *= um_per_mm;
+            }
+        }
+    }
+    return result;
+}
+
+/// `material`: of all bodies; where empty, the file's own.
+Status add_3mf(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    Result<threemf::ThreeMf> file = threemf::read_3mf(path);
+    if (!file) return tl::unexpected(file.error());
+    drawing.warnings.insert(drawing.warnings.end(), file->warnings.begin(), file->warnings.end());
+    for (threemf::Body& body : file->bodies)
+        drawing.bodies.push_back({material.empty() ? body.material : material,
+                                  mesh::scaled(std::move(body.mesh_mm), um_per_mm), body.name, in_um(body.slices)});
+    return {};
+}
+
+Status add_tets(std::string_view bytes, const std::string& name, const std::string& material, Drawing& drawing) {
+    const Result<mesh::TetMesh> tets = mesh::parse_tet_mesh(bytes, name);
+    if (!tets) return tl::unexpected(tets.error());
+    for (std::size_t r = 0; r < tets->region_names.size(); ++r) {
+        mesh::TriMesh surface = mesh::region_surface(*tets, static_cast<int>(r));
+        if (surface.triangles.empty()) continue;
+        const std::string& region = tets->region_names[r];
+        drawing.bodies.push_back(
+            {material.empty() ? region : material, mesh::scaled(std::move(surface), um_per_mm), region});
+    }
+    return {};
+}
+
+Status add_surface(std::string_view bytes, const std::filesystem::path& path, const std::string& material,
+                   Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    Result<mesh::SurfaceFile> surface = mesh::parse_surface(bytes, path.string());
+    if (!surface) return tl::unexpected(surface.error());
+    drawing.warnings.insert(drawing.warnings.end(), surface->warnings.begin(), surface->warnings.end());
+    drawing.bodies.push_back({material, mesh::scaled(std::move(surface->mesh), um_per_mm), path.stem().string()});
+    return {};
+}
+
+Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
+                           path.string());
+    const auto same = [&](const job::MaterialStack& s) { return s.material == material; };
+    if (std::any_of(drawing.stacks.begin(), drawing.stacks.end(), same))
+        return input_error("{}: material \"{}\" has layer images already", path.string(), material);
+    Result<job::ImageStack> stack = job::ImageStack::open(path);
+    if (!stack) return tl::unexpected(stack.error());
+    drawing.stacks.push_back({material, std::move(*stack)});
+    add_resin(drawing, material, material);
+    return {};
+}
+
+Status add_file(const std::string& input, Drawing& drawing) {
+    const std::size_t equals = input.find('=');
+    if (equals == 0) return input_error("{}: write MATERIAL=FILE with a material in front", input);
+    const bool whole = equals == std::string::npos || std::filesystem::exists(input);
+    const std::string material = whole ? "" : input.substr(0, equals);
+    const std::filesystem::path path = whole ? input : input.substr(equals + 1);
+    if (drawing.name.empty()) drawing.name = path.stem().string();
+    if (job::is_image_stack(path)) return add_stack(path, material, drawing);
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
+    if (mesh::looks_like_tet_mesh(*bytes)) return add_tets(*bytes, path.string(), material, drawing);
+    return add_surface(*bytes, path, material, drawing);
+}
+
+}  // namespace
+
+Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::vector<std::string>& assignments,
+                             Progress& progress) {
+    if (inputs.size() == 1 && std::filesystem::path(inputs.front()).extension() == ".toml")
+        return read_robot(inputs.front(), assignments, progress);
+    Drawing drawing;
+    for (const std::string& input : inputs) {
+        if (std::filesystem::path(input).extension() == ".toml")
+            return input_error("{}: a robot file stands alone; for other files write MATERIAL=FILE", input);
+        if (auto status = add_file(input, drawing); !status) return tl::unexpected(status.error());
+    }
+    if (!drawing.stacks.empty() && !drawing.bodies.empty())
+        return input_error("layer images and bodies cannot be printed together: slice the bodies first");
+    for (const slice::Body& body : drawing.bodies) add_resin(drawing, body.material, body.material);
+    return drawing;
+}
+
+Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
+    for (const std::string& choice : choices) {
+        const std::size_t equals = choice.find('=');
+        const std::string material = choice.substr(0, equals);
+        const auto found = std::find_if(drawing.resin_of_material.begin(), drawing.resin_of_material.end(),
+                                        [&](const auto& pair) { return pair.first == material; });
+        if (equals == std::string::npos || equals + 1 == choice.size())
+            return input_error("--resin {}: write MATERIAL=RESIN", choice);
+        if (found == drawing.resin_of_material.end()) {
+            std::vector<std::string> names;
+            for (const auto& pair : drawing.resin_of_material) names.push_back(pair.first);
+            return input_error("--resin {}: there is no material \"{}\", only {}", choice, material, join_names(names));
+        }
+        found->second = choice.substr(equals + 1);
+    }
+    return {};
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,10 @@
+// Which format is it? The readers have targets of their own.
+#include "input.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/tet_file.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes = as_text(data, size);
+    if (!pliant::mesh::looks_like_tet_mesh(bytes)) (void)pliant::mesh::looks_like_surface(bytes);
+    return 0;
+}

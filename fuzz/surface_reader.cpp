@@ -1,0 +1,13 @@
+// One target per reader of surfaces: PLIANT_PARSER is parse_stl, parse_obj or parse_ply.
+#include "input.hpp"
+#include "mesh/surface_check.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/surface_slivers.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    auto surface = pliant::mesh::PLIANT_PARSER(as_text(data, size), "fuzz.surface");
+    if (!surface) return 0;
+    (void)pliant::mesh::check_closed(surface->mesh);
+    (void)pliant::mesh::remove_slivers(surface->mesh);
+    return 0;
+}

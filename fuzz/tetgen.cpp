@@ -1,0 +1,15 @@
+// TetGen's two files, divided by the first byte 0.
+#include <algorithm>
+
+#include "input.hpp"
+#include "mesh/mesh_report.hpp"
+#include "mesh/tet_file.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view both = as_text(data, size);
+    const std::size_t cut = std::min(both.find('\0'), both.size());
+    const std::string_view tets = both.substr(std::min(cut + 1, both.size()));
+    const auto mesh = pliant::mesh::parse_tetgen(both.substr(0, cut), "fuzz.node", tets, "fuzz.ele");
+    if (mesh) (void)pliant::mesh::report_on(*mesh);
+    return 0;
+}

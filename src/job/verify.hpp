@@ -1,0 +1,13 @@
+// What opening a job does not check: its pixels.
+#pragma once
+
+#include "job/job.hpp"
+
+namespace pliant::job {
+
+/// Decodes every image: its area must be the manifest's, where `corrected` does not say that images hold greys
+/// calibrated for a projector, and no two images of a layer may light the same pixel. Errors name archive, layer and
+/// image.
+[[nodiscard]] Status verify_images(const Archive& archive, bool corrected, const std::string& path);
+
+}  // namespace pliant::job

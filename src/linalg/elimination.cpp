@@ -1,0 +1,215 @@
+#include "linalg/elimination.hpp"
+
+#include <metis.h>
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+namespace pliant::linalg {
+namespace {
+
+/// Who is next to whom, compressed.
+struct Graph {
+    std::vector<int> start;  ///< (nodes + 1)
+    std::vector<int> other;
+};
+
+/// Both triangles without the diagonal, as METIS wants a graph.
+Graph neighbours(const SymmetricPattern& pattern) {
+    Graph graph;
+    graph.start.assign(static_cast<std::size_t>(pattern.nodes) + 1, 0);
+    const auto visit = [&](const auto& use) {
+        for (int j = 0; j < pattern.nodes; ++j) {
+            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
+                use(j, pattern.node_row[k]);
+                use(pattern.node_row[k], j);
+            }
+        }
+    };
+    visit([&](int i, int) { ++graph.start[i + 1]; });
+    std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
+    graph.other.resize(graph.start.back());
+    std::vector<int> next(graph.start.begin(), graph.start.end() - 1);
+    visit([&](int i, int j) { graph.other[next[i]++] = j; });
+    return graph;
+}
+
+/// Where each node comes in the order of a nested dissection.
+std::vector<int> dissect(const SymmetricPattern& pattern) {
+    static_assert(std::is_same_v<idx_t, int>);
+    Graph graph = neighbours(pattern);
+    std::vector<int> order(static_cast<std::size_t>(pattern.nodes));
+    std::vector<int> position(order.size());
+    std::iota(position.begin(), position.end(), 0);
+    int nodes = pattern.nodes;
+    if (graph.other.empty()) return position;
+    if (METIS_NodeND(&nodes, graph.start.data(), graph.other.data(), nullptr, nullptr, order.data(), position.data()) !=
+        METIS_OK)
+        std::iota(position.begin(), position.end(), 0);
+    return position;
+}
+
+/// The rows i < j of each column j in another order; `position` says where each node goes.
+Graph upper_part(const SymmetricPattern& pattern, const std::vector<int>& position) {
+    Graph upper;
+    upper.start.assign(position.size() + 1, 0);
+    const auto visit = [&](const auto& use) {
+        for (int j = 0; j < pattern.nodes; ++j) {
+            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
+                const auto [low, high] = std::minmax(position[j], position[pattern.node_row[k]]);
+                use(low, high);
+            }
+        }
+    };
+    visit([&](int, int high) { ++upper.start[high + 1]; });
+    std::partial_sum(upper.start.begin(), upper.start.end(), upper.start.begin());
+    upper.other.resize(upper.start.back());
+    std::vector<int> next(upper.start.begin(), upper.start.end() - 1);
+    visit([&](int low, int high) { upper.other[next[high]++] = low; });
+    return upper;
+}
+
+/// Liu's elimination tree, with the paths compressed.
+std::vector<int> elimination_tree(const Graph& upper) {
+    const int n = static_cast<int>(upper.start.size()) - 1;
+    std::vector<int> parent(n, -1);
+    std::vector<int> ancestor(n, -1);
+    for (int j = 0; j < n; ++j) {
+        for (int k = upper.start[j]; k < upper.start[j + 1]; ++k) {
+            int i = upper.other[k];
+            while (ancestor[i] != -1 && ancestor[i] != j) i = std::exchange(ancestor[i], j);
+            if (ancestor[i] == -1) parent[i] = ancestor[i] = j;
+        }
+    }
+    return parent;
+}
+
+/// Nodes so that each one follows all of its descendants, and they directly precede it.
+std::vector<int> post_order(const std::vector<int>& parent) {
+    const int n = static_cast<int>(parent.size());
+    std::vector<int> child(n, -1);
+    std::vector<int> sibling(n, -1);
+    for (int j = n - 1; j >= 0; --j) {
+        if (parent[j] >= 0) sibling[j] = std::exchange(child[parent[j]], j);
+    }
+    std::vector<int> order;
+    order.reserve(n);
+    std::vector<int> stack;
+    for (int root = 0; root < n; ++root) {
+        if (parent[root] >= 0) continue;
+        stack.push_back(root);
+        while (!stack.empty()) {
+            const int j = stack.back();
+            if (child[j] >= 0) {
+                stack.push_back(std::exchange(child[j], sibling[child[j]]));
+            } else {
+                order.push_back(j);
+                stack.pop_back();
+            }
+        }
+    }
+    return order;
+}
+
+/// Entries of each column of the factor, without the diagonal: row i reaches up the tree from each of its entries.
+std::vector<int> column_counts(const Graph& upper, const std::vector<int>& parent) {
+    const int n = static_cast<int>(parent.size());
+    std::vector<int> count(n, 0);
+    std::vector<int> seen(n, -1);
+    for (int i = 0; i < n; ++i) {
+        seen[i] = i;
+        for (int k = upper.start[i]; k < upper.start[i + 1]; ++k) {
+            for (int j = upper.other[k]; seen[j] != i; j = parent[j]) {
+                seen[j] = i;
+                ++count[j];
+            }
+        }
+    }
+    return count;
+}
+
+/// A run of columns that are stored together.
+struct Run {
+    int first, last;   ///< columns first .. last
+    int below;         ///< rows below
+    double zeros = 0;  ///< stored for nothing, in entries of the nodes' matrix
+};
+
+/// Merged if the share of zeros is below what its width allows; narrow ones cost more by their number than by zeros.
+bool worth_merging(const Run& run, int block) {
+    const double columns = run.last - run.first;
+    const double stored = columns * (columns + 1) / 2 + columns * run.below;
+    const double unknowns = columns * block;
+    const double allowed = unknowns <= 24 ? 0.6 : unknowns <= 64 ? 0.3 : unknowns <= 128 ? 0.15 : 0.05;
+    return run.zeros <= allowed * stored;
+}
+
+/// Columns that are directly below one another in the tree, merged from the leaves up.
+std::vector<Run> supernodes(const std::vector<int>& parent, const std::vector<int>& count, int block) {
+    std::vector<Run> runs;
+    for (int j = 0; j < static_cast<int>(parent.size()); ++j) {
+        Run run{j, j + 1, count[j]};
+        while (!runs.empty() && parent[runs.back().last - 1] >= 0 && parent[runs.back().last - 1] < run.last) {
+            const Run& child = runs.back();
+            Run merged{child.first, run.last, run.below, child.zeros + run.zeros};
+            merged.zeros +=
+                static_cast<double>(child.last - child.first) * (run.last - run.first + run.below - child.below);
+            if (!worth_merging(merged, block)) break;
+            run = merged;
+            runs.pop_back();
+        }
+        runs.push_back(run);
+    }
+    return runs;
+}
+
+/// Fills the rows below each supernode: those of its columns and of its children.
+void fill_rows(const Graph& upper, const std::vector<int>& tree, Elimination& e) {
+    const int count = static_cast<int>(e.first.size()) - 1;
+    std::vector<int> supernode_of(tree.size());
+    for (int s = 0; s < count; ++s) std::fill_n(supernode_of.begin() + e.first[s], e.columns(s), s);
+    std::vector<std::vector<int>> rows(count);
+    for (int i = 0; i < static_cast<int>(tree.size()); ++i) {
+        for (int k = upper.start[i]; k < upper.start[i + 1]; ++k) {
+            const int s = supernode_of[upper.other[k]];
+            if (i >= e.first[s + 1] && (rows[s].empty() || rows[s].back() != i)) rows[s].push_back(i);
+        }
+    }
+    e.parent.assign(count, -1);
+    e.row_start.assign(1, 0);
+    std::vector<int> together;
+    for (int s = 0; s < count; ++s) {
+        // Complete by now: all children came before.
+        e.row.insert(e.row.end(), rows[s].begin(), rows[s].end());
+        e.row_start.push_back(static_cast<int>(e.row.size()));
+        if (rows[s].empty()) continue;
+        const int p = e.parent[s] = supernode_of[rows[s].front()];
+        const auto passed_on = std::lower_bound(rows[s].begin(), rows[s].end(), e.first[p + 1]);
+        together.clear();
+        std::set_union(rows[p].begin(), rows[p].end(), passed_on, rows[s].end(), std::back_inserter(together));
+        rows[p].swap(together);
+        std::vector<int>().swap(rows[s]);
+    }
+}
+
+}  // namespace
+
+Elimination eliminate(const SymmetricPattern& pattern) {
+    Elimination e;
+    e.position = dissect(pattern);
+    const std::vector<int> order = post_order(elimination_tree(upper_part(pattern, e.position)));
+    std::vector<int> moved(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) moved[order[k]] = static_cast<int>(k);
+    for (int& p : e.position) p = moved[p];
+
+    const Graph upper = upper_part(pattern, e.position);
+    const std::vector<int> tree = elimination_tree(upper);
+    e.first.push_back(0);
+    for (const Run& run : supernodes(tree, column_counts(upper, tree), pattern.block)) e.first.push_back(run.last);
+    fill_rows(upper, tree, e);
+    return e;
+}
+
+}  // namespace pliant::linalg

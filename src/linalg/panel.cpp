@@ -1,0 +1,415 @@
+// Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "linalg/panel.cpp"
+#include "linalg/panel.hpp"
+
+#include <hwy/foreach_target.h>
+// After foreach_target, as it asks.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "core/parallel.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace pliant::linalg::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Columns that are made together: what is to their left is subtracted in one go.
+constexpr int slab = 16;
+/// Tiles that are kept in registers: this many packets by this many columns.
+constexpr int tile_packets = HWY_TARGET <= HWY_AVX3 ? 2 : 1;
+constexpr int tile_columns = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
+/// Products are cut here, so that what they read stays in the cache.
+constexpr int product_depth = 256;
+/// Work for which another core is called, in multiply-adds.
+constexpr double work_to_share = 4e6;
+
+enum class To { store, subtract };
+
+/// c (packets, columns) -= (or = -) sum over k < depth of a (packets, k) b (columns, k)^T. Packets of a are `a_stride`
+/// apart, those of c `c_packet`, its columns `c_column`. Only `columns` <= tile_columns are written.
+template <int packets, To to, class Real>
+HWY_INLINE void subtract_tile(const Real* a, std::size_t a_stride, const Real* b, int depth, Real* c,
+                              std::size_t c_packet, std::size_t c_column, int columns) {
+    const hn::CappedTag<Real, packet<Real>> d;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int P = packet<Real>;
+    constexpr int N = static_cast<int>(hn::MaxLanes(d));
+    constexpr int vectors = packets * P / N;
+    V sum[vectors][tile_columns];
+    for (auto& row : sum) {
+        for (V& s : row) s = hn::Zero(d);
+    }
+    for (int k = 0; k < depth; ++k) {
+        V av[vectors];
+        for (int v = 0; v < vectors; ++v) av[v] = hn::Load(d, a + (v * N / P) * a_stride + k * P + v * N % P);
+        for (int j = 0; j < tile_columns; ++j) {
+            const V bj = hn::Set(d, b[k * P + j]);
+            for (int v = 0; v < vectors; ++v) sum[v][j] = hn::MulAdd(av[v], bj, sum[v][j]);
+        }
+    }
+    for (int j = 0; j < tile_columns; ++j) {
+        if (j >= columns) return;
+        for (int v = 0; v < vectors; ++v) {
+            Real* entry = c + (v * N / P) * c_packet + j * c_column + v * N % P;
+            const V before = to == To::store ? hn::Zero(d) : hn::Load(d, entry);
+            hn::Store(hn::Sub(before, sum[v][j]), d, entry);
+        }
+    }
+}
+
+/// The tiles of `columns` columns and of all packets from `begin` to `end`.
+template <To to, class Real>
+HWY_INLINE void subtract_strip(const Real* a, std::size_t a_stride, const Real* b, int depth, Real* c,
+                               std::size_t c_packet, std::size_t c_column, int columns, int begin, int end) {
+    int p = begin;
+    for (; p + tile_packets <= end; p += tile_packets)
+        subtract_tile<tile_packets, to>(a + p * a_stride, a_stride, b, depth, c + p * c_packet, c_packet, c_column,
+                                        columns);
+    for (; p < end; ++p)
+        subtract_tile<1, to>(a + p * a_stride, a_stride, b, depth, c + p * c_packet, c_packet, c_column, columns);
+}
+
+/// Columns first .. first + width of the packets begin .. end, less what the columns before them say.
+template <class Real>
+void subtract_left(const Panel<Real>& panel, int first, int width, int begin, int end) {
+    constexpr int P = packet<Real>;
+    const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
+    for (int j = 0; j < width; j += tile_columns) {
+        const int row = first + j;
+        const Real* b = panel.values + static_cast<std::size_t>(row / P) * stride + row % P;
+        subtract_strip<To::subtract>(panel.values, stride, b, first, panel.at(0, row), stride,
+                                     static_cast<std::size_t>(P), std::min(tile_columns, width - j), begin, end);
+    }
+}
+
+/// Cholesky of the block on the diagonal at `first`; its inverse diagonal goes to `inverse`.
+template <class Real>
+bool factorise_block(const Panel<Real>& panel, int first, int width, Real (*L)[slab], Real* inverse) {
+    for (int r = 0; r < width; ++r) {
+        for (int c = 0; c <= r; ++c) L[c][r] = *panel.at(first + r, first + c);
+    }
+    for (int j = 0; j < width; ++j) {
+        if (!(L[j][j] > 0) || !std::isfinite(L[j][j])) return false;
+        const Real root = std::sqrt(L[j][j]);
+        L[j][j] = root;
+        inverse[j] = 1 / root;
+        for (int r = j + 1; r < width; ++r) L[j][r] *= inverse[j];
+        for (int c = j + 1; c < width; ++c) {
+            for (int r = c; r < width; ++r) L[c][r] -= L[j][r] * L[j][c];
+        }
+    }
+    for (int r = 0; r < width; ++r) {
+        for (int c = 0; c < width; ++c) *panel.at(first + r, first + c) = c <= r ? L[c][r] : 0;
+    }
+    return true;
+}
+
+/// The packets begin .. end of these columns times L^-T.
+template <int whole, class Real>
+void divide_packets(const Panel<Real>& panel, int first, int width, const Real (*L)[slab], const Real* inverse,
+                    int begin, int end) {
+    const hn::CappedTag<Real, packet<Real>> d;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int P = packet<Real>;
+    constexpr int N = static_cast<int>(hn::MaxLanes(d));
+    const int n = whole > 0 ? whole : width;
+    for (int p = begin; p < end; ++p) {
+        for (int part = 0; part < P; part += N) {
+            Real* x = panel.at(p * P, first) + part;
+            V column[slab];
+            for (int j = 0; j < n; ++j) column[j] = hn::Load(d, x + j * P);
+            for (int i = 0; i < n; ++i) {
+                column[i] = hn::Mul(column[i], hn::Set(d, inverse[i]));
+                for (int j = i + 1; j < n; ++j) column[j] = hn::NegMulAdd(column[i], hn::Set(d, L[i][j]), column[j]);
+            }
+            for (int j = 0; j < n; ++j) hn::Store(column[j], d, x + j * P);
+        }
+    }
+}
+
+/// Calls work(begin, end) on packets, on all cores if they have enough to do.
+template <class Work>
+void share(int begin, int end, double work_of_each, const Work& work) {
+    if (end <= begin) return;
+    const int grain = std::max(static_cast<int>(work_to_share / work_of_each), tile_packets) / tile_packets;
+    parallel_for(static_cast<std::size_t>(end - begin), static_cast<std::size_t>(grain) * tile_packets,
+                 [&](std::size_t b, std::size_t e) { work(begin + static_cast<int>(b), begin + static_cast<int>(e)); });
+}
+
+template <class Real>
+bool factorise_panel(const Panel<Real>& panel) {
+    constexpr int P = packet<Real>;
+    const int packets = panel.rows() / P;
+    for (int first = 0; first < panel.columns; first += slab) {
+        const int width = std::min(slab, panel.columns - first);
+        const int below = (first + width + P - 1) / P;
+        Real L[slab][slab];
+        Real inverse[slab];
+        if (first > 0) subtract_left(panel, first, width, first / P, below);
+        if (!factorise_block(panel, first, width, L, inverse)) return false;
+        share(below, packets, static_cast<double>(P) * width * (first + width), [&](int begin, int end) {
+            if (first > 0) subtract_left(panel, first, width, begin, end);
+            if (width == slab)
+                divide_packets<slab>(panel, first, width, L, inverse, begin, end);
+            else
+                divide_packets<0>(panel, first, width, L, inverse, begin, end);
+        });
+    }
+    return true;
+}
+
+template <class Real>
+void negative_panel_product(const Panel<Real>& panel, Real* update) {
+    constexpr int P = packet<Real>;
+    const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
+    const Real* rows = panel.values + static_cast<std::size_t>(panel.first_below() / P) * stride;
+    const int packets = whole_packets<Real>(panel.below) / P;
+    const std::size_t leading = static_cast<std::size_t>(packets) * P;
+    const auto strip = [&](int column, int from, int depth) {
+        const Real* b = rows + static_cast<std::size_t>(column / P) * stride + static_cast<std::size_t>(from) * P;
+        const auto run = [&](auto to) {
+            subtract_strip<decltype(to)::value>(rows + static_cast<std::size_t>(from) * P, stride, b + column % P,
+                                                depth, update + static_cast<std::size_t>(column) * leading,
+                                                static_cast<std::size_t>(P), leading,
+                                                std::min(tile_columns, panel.below - column), column / P, packets);
+        };
+        if (from == 0)
+            run(std::integral_constant<To, To::store>{});
+        else
+            run(std::integral_constant<To, To::subtract>{});
+    };
+    const double work_of_each = 0.5 * P * panel.below * static_cast<double>(panel.columns);
+    share(0, packets, work_of_each, [&](int begin, int end) {
+        for (int from = 0; from < panel.columns; from += product_depth) {
+            const int depth = std::min(product_depth, panel.columns - from);
+            for (int column = begin * P; column < std::min(end * P, panel.below); column += tile_columns)
+                strip(column, from, depth);
+        }
+    });
+}
+
+/// y (packets of rows from `begin` to `end`, count vectors) = L x over the first `depth` columns; handed to `use`.
+template <int count, class Real, class Use>
+HWY_INLINE void multiply_packets(const Panel<Real>& panel, int depth, const Real* x, std::size_t x_stride, int begin,
+                                 int end, const Use& use) {
+    const hn::CappedTag<Real, packet<Real>> d;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int P = packet<Real>;
+    constexpr int N = static_cast<int>(hn::MaxLanes(d));
+    constexpr int together = 4;  // chains of sums, so that none waits for itself
+    const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
+    const auto run = [&](auto chains, int p, int part) {
+        constexpr int many = decltype(chains)::value;
+        V sum[many][count];
+        for (auto& row : sum) {
+            for (V& s : row) s = hn::Zero(d);
+        }
+        const Real* a = panel.values + static_cast<std::size_t>(p) * stride + part;
+        for (int k = 0; k < depth; ++k) {
+            for (int c = 0; c < count; ++c) {
+                const V xk = hn::Set(d, x[static_cast<std::size_t>(c) * x_stride + k]);
+                for (int q = 0; q < many; ++q)
+                    sum[q][c] = hn::MulAdd(hn::Load(d, a + q * stride + k * P), xk, sum[q][c]);
+            }
+        }
+        for (int q = 0; q < many; ++q) {
+            for (int c = 0; c < count; ++c) use(d, (p + q) * P + part, c, sum[q][c]);
+        }
+    };
+    for (int part = 0; part < P; part += N) {
+        int p = begin;
+        for (; p + together <= end; p += together) run(std::integral_constant<int, together>{}, p, part);
+        for (; p < end; ++p) run(std::integral_constant<int, 1>{}, p, part);
+    }
+}
+
+template <int count, class Real>
+void solve_lower_of(const Panel<Real>& panel, Real* x, Real* y) {
+    constexpr int P = packet<Real>;
+    const auto n = static_cast<std::size_t>(panel.columns);
+    for (int first = 0; first < panel.columns; first += P) {
+        const int last = std::min(first + P, panel.columns);
+        HWY_ALIGN Real before[count][P];
+        multiply_packets<count>(panel, first, x, n, first / P, first / P + 1,
+                                [&](auto d, int r, int c, auto sum) { hn::Store(sum, d, before[c] + (r - first)); });
+        for (int c = 0; c < count; ++c) {
+            Real* xc = x + static_cast<std::size_t>(c) * n;
+            for (int j = first; j < last; ++j) {
+                Real value = xc[j] - before[c][j - first];
+                for (int i = first; i < j; ++i) value -= *panel.at(j, i) * xc[i];
+                xc[j] = value / *panel.at(j, j);
+            }
+        }
+    }
+    const int begin = panel.first_below() / P;
+    const auto below = static_cast<std::size_t>(whole_packets<Real>(panel.below));
+    multiply_packets<count>(panel, panel.columns, x, n, begin, panel.rows() / P, [&](auto d, int r, int c, auto sum) {
+        hn::StoreU(sum, d, y + static_cast<std::size_t>(c) * below + static_cast<std::size_t>(r - begin * P));
+    });
+}
+
+/// x (columns before `depth`) -= L^T y over the packets begin .. end; y belongs to packet `begin` on.
+template <int count, class Real>
+HWY_INLINE void subtract_transposed(const Panel<Real>& panel, int depth, const Real* y, std::size_t y_stride, int begin,
+                                    int end, Real* x) {
+    const hn::CappedTag<Real, packet<Real>> d;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int P = packet<Real>;
+    constexpr int N = static_cast<int>(hn::MaxLanes(d));
+    constexpr int together = 4;  // columns at a time
+    const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
+    const auto run = [&](auto chains, int k) {
+        constexpr int many = decltype(chains)::value;
+        V sum[many][count];
+        for (auto& row : sum) {
+            for (V& s : row) s = hn::Zero(d);
+        }
+        const Real* a = panel.values + static_cast<std::size_t>(begin) * stride + static_cast<std::size_t>(k) * P;
+        for (int p = begin; p < end; ++p, a += stride) {
+            for (int part = 0; part < P; part += N) {
+                for (int c = 0; c < count; ++c) {
+                    const V yp = hn::LoadU(d, y + static_cast<std::size_t>(c) * y_stride + (p - begin) * P + part);
+                    for (int q = 0; q < many; ++q) sum[q][c] = hn::MulAdd(hn::Load(d, a + q * P + part), yp, sum[q][c]);
+                }
+            }
+        }
+        for (int q = 0; q < many; ++q) {
+            for (int c = 0; c < count; ++c)
+                x[static_cast<std::size_t>(c) * panel.columns + k + q] -= hn::GetLane(hn::SumOfLanes(d, sum[q][c]));
+        }
+    };
+    int k = 0;
+    for (; k + together <= depth; k += together) run(std::integral_constant<int, together>{}, k);
+    for (; k < depth; ++k) run(std::integral_constant<int, 1>{}, k);
+}
+
+template <int count, class Real>
+void solve_upper_of(const Panel<Real>& panel, Real* x, const Real* y) {
+    constexpr int P = packet<Real>;
+    const auto n = static_cast<std::size_t>(panel.columns);
+    const auto below = static_cast<std::size_t>(whole_packets<Real>(panel.below));
+    subtract_transposed<count>(panel, panel.columns, y, below, panel.first_below() / P, panel.rows() / P, x);
+    for (int first = (panel.columns - 1) / P * P; first >= 0; first -= P) {
+        const int last = std::min(first + P, panel.columns);
+        HWY_ALIGN Real solved[count][P] = {};
+        for (int c = 0; c < count; ++c) {
+            Real* xc = x + static_cast<std::size_t>(c) * n;
+            for (int j = last - 1; j >= first; --j) {
+                Real value = xc[j];
+                for (int i = j + 1; i < last; ++i) value -= *panel.at(i, j) * xc[i];
+                xc[j] = solved[c][j - first] = value / *panel.at(j, j);
+            }
+        }
+        subtract_transposed<count>(panel, first, solved[0], static_cast<std::size_t>(P), first / P, first / P + 1, x);
+    }
+}
+
+template <class Real>
+void solve_lower_any(const Panel<Real>& panel, int count, Real* x, Real* y) {
+    switch (count) {
+        case 1:
+            return solve_lower_of<1>(panel, x, y);
+        case 2:
+            return solve_lower_of<2>(panel, x, y);
+        case 3:
+            return solve_lower_of<3>(panel, x, y);
+        default:
+            return solve_lower_of<4>(panel, x, y);
+    }
+}
+
+template <class Real>
+void solve_upper_any(const Panel<Real>& panel, int count, Real* x, const Real* y) {
+    switch (count) {
+        case 1:
+            return solve_upper_of<1>(panel, x, y);
+        case 2:
+            return solve_upper_of<2>(panel, x, y);
+        case 3:
+            return solve_upper_of<3>(panel, x, y);
+        default:
+            return solve_upper_of<4>(panel, x, y);
+    }
+}
+
+// What the table below can name.
+bool factorise_double(const Panel<double>& p) {
+    return factorise_panel(p);
+}
+bool factorise_float(const Panel<float>& p) {
+    return factorise_panel(p);
+}
+void product_double(const Panel<double>& p, double* u) {
+    negative_panel_product(p, u);
+}
+void product_float(const Panel<float>& p, float* u) {
+    negative_panel_product(p, u);
+}
+void lower_double(const Panel<double>& p, int n, double* x, double* y) {
+    solve_lower_any(p, n, x, y);
+}
+void lower_float(const Panel<float>& p, int n, float* x, float* y) {
+    solve_lower_any(p, n, x, y);
+}
+void upper_double(const Panel<double>& p, int n, double* x, const double* y) {
+    solve_upper_any(p, n, x, y);
+}
+void upper_float(const Panel<float>& p, int n, float* x, const float* y) {
+    solve_upper_any(p, n, x, y);
+}
+
+}  // namespace pliant::linalg::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pliant::linalg {
+
+HWY_EXPORT(factorise_double);
+HWY_EXPORT(factorise_float);
+HWY_EXPORT(product_double);
+HWY_EXPORT(product_float);
+HWY_EXPORT(lower_double);
+HWY_EXPORT(lower_float);
+HWY_EXPORT(upper_double);
+HWY_EXPORT(upper_float);
+
+template <>
+bool factorise(const Panel<double>& panel) {
+    return HWY_DYNAMIC_DISPATCH(factorise_double)(panel);
+}
+template <>
+bool factorise(const Panel<float>& panel) {
+    return HWY_DYNAMIC_DISPATCH(factorise_float)(panel);
+}
+template <>
+void negative_product(const Panel<double>& panel, double* update) {
+    HWY_DYNAMIC_DISPATCH(product_double)(panel, update);
+}
+template <>
+void negative_product(const Panel<float>& panel, float* update) {
+    HWY_DYNAMIC_DISPATCH(product_float)(panel, update);
+}
+template <>
+void solve_lower(const Panel<double>& panel, int count, double* x, double* y) {
+    HWY_DYNAMIC_DISPATCH(lower_double)(panel, count, x, y);
+}
+template <>
+void solve_lower(const Panel<float>& panel, int count, float* x, float* y) {
+    HWY_DYNAMIC_DISPATCH(lower_float)(panel, count, x, y);
+}
+template <>
+void solve_upper(const Panel<double>& panel, int count, double* x, const double* y) {
+    HWY_DYNAMIC_DISPATCH(upper_double)(panel, count, x, y);
+}
+template <>
+void solve_upper(const Panel<float>& panel, int count, float* x, const float* y) {
+    HWY_DYNAMIC_DISPATCH(upper_float)(panel, count, x, y);
+}
+
+}  // namespace pliant::linalg
+#endif

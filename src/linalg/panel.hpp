@@ -1,0 +1,52 @@
+// The dense work of a sparse factorisation, in SIMD: panels of a supernode and what they subtract from the rest.
+#pragma once
+
+#include <cstddef>
+
+namespace pliant::linalg {
+
+/// Rows that are stored next to one another: one cache line.
+template <class Real>
+inline constexpr int packet = static_cast<int>(64 / sizeof(Real));
+
+template <class Real>
+[[nodiscard]] constexpr int whole_packets(int rows) {
+    return (rows + packet<Real> - 1) / packet<Real> * packet<Real>;
+}
+
+/// The columns of one supernode, in packets of rows: entry (r, c) is values[(r / P * columns + c) * P + r % P] with
+/// P = packet<Real>. First come the rows of the columns themselves, then zeros up to a whole packet, then the rows
+/// below. `values` is aligned to 64 bytes.
+template <class Real>
+struct Panel {
+    Real* values;
+    int columns;
+    int below;  ///< rows below
+
+    [[nodiscard]] int first_below() const { return whole_packets<Real>(columns); }
+    [[nodiscard]] int rows() const { return first_below() + whole_packets<Real>(below); }
+    [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(rows()) * columns; }
+    [[nodiscard]] Real* at(int r, int c) const {
+        constexpr int P = packet<Real>;
+        return values + (static_cast<std::size_t>(r / P) * columns + c) * P + r % P;
+    }
+};
+
+/// Replaces A = L L^T (its lower triangle) and the rows B below by L and B L^-T. False if A is not positive definite.
+/// Wide panels use all cores; the bits do not depend on how many.
+template <class Real>
+[[nodiscard]] bool factorise(const Panel<Real>& panel);
+
+/// What the panel adds to the matrix of its rows below: update = -L L^T, (below, below) by columns with leading
+/// dimension whole_packets(below). Only the lower triangle counts; a little more is written.
+template <class Real>
+void negative_product(const Panel<Real>& panel, Real* update);
+
+/// x (columns, count) <- L^-1 x, and y (rows below, padded to packets, count) = L_below x. Vectors one after the other.
+template <class Real>
+void solve_lower(const Panel<Real>& panel, int count, Real* x, Real* y);
+/// x <- L^-T (x - L_below^T y).
+template <class Real>
+void solve_upper(const Panel<Real>& panel, int count, Real* x, const Real* y);
+
+}  // namespace pliant::linalg

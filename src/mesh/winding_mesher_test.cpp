@@ -1,0 +1,111 @@
+#include "mesh/winding_mesher.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "mesh/mesh_report.hpp"
+#include "mesh/surface_orientation.hpp"
+#include "mesh/triangle_tree.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+/// A cube of side 10 from `low`, 12 triangles.
+TriMesh cube(const Vec3& low = {0, 0, 0}, double side = 10) {
+    TriMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.points.push_back(low + side * Vec3{double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
+TriMesh joined(TriMesh a, const TriMesh& b) {
+    const int offset = static_cast<int>(a.points.size());
+    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
+    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+    return a;
+}
+
+/// The mesh's volume, and that its shapes are usable.
+double meshed_volume(const TriMesh& surface, double size) {
+    const Result<TetMesh> mesh = mesh_by_winding(surface, size, 30);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(report_on(*mesh).min_dihedral_deg > 5);
+    CHECK(mesh->notes.size() == 1);
+    return volume(*mesh);
+}
+
+}  // namespace
+
+TEST_CASE("winding number: 1 inside, 0 outside, the solid angle of a single triangle, and twice where it overlaps") {
+    const TriangleTree tree(cube());
+    CHECK(tree.winding_number({5, 5, 5}) == doctest::Approx(1).scale(0));
+    CHECK(tree.winding_number({1e-3, 9, 1}) == doctest::Approx(1).scale(0));
+    CHECK(std::fabs(tree.winding_number({11, 5, 5})) < 1e-12);
+    CHECK(std::fabs(tree.winding_number({500, 5, 5})) < 1e-6);
+    const TriangleTree twice(joined(cube(), cube({5, 0, 0})));
+    CHECK(twice.winding_number({7, 5, 5}) == doctest::Approx(2).scale(0));
+    TriMesh octant{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};
+    CHECK(TriangleTree(octant).winding_number({0, 0, 0}) == doctest::Approx(1.0 / 8).scale(0));
+}
+
+TEST_CASE("rays meet the nearest triangle") {
+    const TriangleTree tree(joined(cube(), cube({20, 0, 0})));
+    const auto hit = tree.first_hit({-3, 5, 4}, {1, 0, 0}, 0);
+    REQUIRE(hit);
+    CHECK(hit->distance == doctest::Approx(3).scale(0));
+    CHECK(tree.first_hit({-3, 5, 4}, {1, 0, 0}, 3.5)->distance == doctest::Approx(13).scale(0));
+    CHECK_FALSE(tree.first_hit({-3, 5, 40}, {1, 0, 0}, 0));
+}
+
+TEST_CASE("orientation: single triangles, everything, repeated and flat ones") {
+    TriMesh flipped = cube();
+    std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
+    flipped.triangles.push_back(flipped.triangles[5]);
+    flipped.triangles.push_back({1, 1, 2});
+    SurfaceDamage damage = orient(flipped);
+    CHECK(damage.turned == 1);
+    CHECK(damage.repeated == 1);
+    CHECK(damage.flat == 1);
+    CHECK(damage.open_edges + damage.crowded_edges == 0);
+    CHECK(signed_volume(flipped) == doctest::Approx(1000).scale(0));
+    TriMesh inwards = cube();
+    for (auto& t : inwards.triangles) std::swap(t[0], t[1]);
+    CHECK(orient(inwards).inside_out);
+    CHECK(signed_volume(inwards) == doctest::Approx(1000).scale(0));
+}
+
+TEST_CASE("holes, flipped facets, overlaps and crowded edges are meshed with their volume, sharp edges kept") {
+    TriMesh hole = cube();
+    hole.triangles.pop_back();
+    CHECK(meshed_volume(hole, 2) == doctest::Approx(1000).scale(0).epsilon(0.02));
+    TriMesh flipped = cube();
+    std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
+    CHECK(meshed_volume(flipped, 2) == doctest::Approx(1000).scale(0).epsilon(1e-3));
+    CHECK(meshed_volume(joined(cube(), cube({5, 5, 5})), 2) == doctest::Approx(1875).scale(0).epsilon(0.02));
+    TriMesh rooms = cube();
+    TriMesh room = cube({3, 3, 3}, 4);
+    for (auto& t : room.triangles) std::swap(t[0], t[1]);
+    CHECK(meshed_volume(joined(rooms, room), 2) == doctest::Approx(936).scale(0).epsilon(0.01));
+    CHECK(meshed_volume(cube({1e6, 0, 0}), 2) == doctest::Approx(1000).scale(0).epsilon(1e-3));
+}
+
+TEST_CASE("the same surface gives the same mesh; one that encloses nothing is refused") {
+    TriMesh hole = cube();
+    hole.triangles.pop_back();
+    const Result<TetMesh> first = mesh_by_winding(hole, 3, 30);
+    const Result<TetMesh> second = mesh_by_winding(hole, 3, 30);
+    REQUIRE(first);
+    REQUIRE(second);
+    CHECK(first->points == second->points);
+    CHECK(first->nodes == second->nodes);
+    CHECK(first->notes[0].find("3 open edges") != std::string::npos);
+    const TriMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    CHECK(mesh_by_winding(sheet, 0.1, 30).error().message.find("encloses nothing") != std::string::npos);
+    CHECK(mesh_by_winding({}, 0.1, 30).error().message.find("encloses nothing") != std::string::npos);
+    CHECK(mesh_by_winding(hole, 1e-3, 30).error().message.find("more than the") != std::string::npos);
+}

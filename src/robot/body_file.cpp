@@ -1,0 +1,142 @@
+#include "robot/body_file.hpp"
+
+#include <fmt/format.h>
+
+#include "core/text.hpp"
+#include "robot/material_file.hpp"
+#include "robot/material_library.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+
+MaterialSpec read_one_material(Reader& reader, const std::string& name) {
+    MaterialSpec material = read_material(reader, name);
+    reader.finish();
+    return material;
+}
+
+void read_materials(Reader& root, Context& context) {
+    const config::Value* tables = root.raw("material");
+    for (auto& [name, reader] : root.named_tables("material")) {
+        if (!reader.has("base")) {
+            context.robot.materials.push_back(read_one_material(reader, name));
+            (void)reader.raw("base");
+            continue;
+        }
+        const std::string base = reader.text("base");
+        if (const Result<LibraryMaterial> found = library_material(base); !found) {
+            if (!base.empty()) reader.problem("base", found.error().message);
+            context.robot.materials.emplace_back().name = name;
+            continue;
+        }
+        for (const auto& [key, own] : std::get<config::Table>(tables->data)) {
+            if (key != name) continue;
+            const config::Value merged = with_base(own, base);
+            Reader whole(merged, context.problems, reader.path());
+            context.robot.materials.push_back(read_one_material(whole, name));
+        }
+    }
+}
+
+/// A length above zero, in length units; 0 where the key is missing.
+double read_size(Reader& reader, std::string_view key, const Context& context) {
+    if (!reader.has(key)) {
+        (void)reader.raw(key);
+        return 0;
+    }
+    const double size = reader.quantity(key, Dimension::length, 1) / context.robot.unit_m;
+    if (!(size > 0)) reader.problem(key, "must be above zero");
+    if (context.robot.mesh.file) reader.problem(key, "has no meaning beside a mesh file");
+    return size;
+}
+
+void read_mesh(Reader& root, Context& context) {
+    Reader reader = root.table("mesh", false);
+    MeshSpec& mesh = context.robot.mesh;
+    mesh.line = reader.line();
+    mesh.order = static_cast<int>(reader.integer("order", 2));
+    if (mesh.order != 1 && mesh.order != 2)
+        reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
+    if (reader.has("file")) {
+        mesh.file = need_file(reader, "file", reader.text("file"), context);
+    }
+    mesh.size = read_size(reader, "size", context);
+    mesh.size_near_cables = read_size(reader, "size_near_cables", context);
+    if (reader.has("elements_through_wall")) {
+        mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
+        if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)
+            reader.problem("elements_through_wall", "is a whole number from 0 to 20");
+        if (mesh.file) reader.problem("elements_through_wall", "has no meaning beside a mesh file");
+    }
+    (void)reader.raw("elements_through_wall");
+    reader.finish();
+}
+
+/// A material of the robot file, or else of the library.
+int find_material(Reader& reader, Context& context) {
+    const std::string wanted = reader.text("material");
+    std::vector<MaterialSpec>& materials = context.robot.materials;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        names.push_back(materials[i].name);
+        if (names.back() == wanted) return static_cast<int>(i);
+    }
+    if (wanted.empty()) return 0;
+    if (Result<LibraryMaterial> found = library_material(wanted)) {
+        materials.push_back(std::move(found->spec));
+        return static_cast<int>(materials.size()) - 1;
+    }
+    const std::string near = nearest_name(wanted, names);
+    if (!near.empty())
+        reader.problem("material", fmt::format("no material \"{}\"; did you mean \"{}\"?", wanted, near));
+    else if (names.empty())
+        reader.problem("material", fmt::format("no material \"{}\" in the library{}", wanted, library_hint(wanted)));
+    else
+        reader.problem("material", fmt::format("no material \"{}\"; there is {}, and the library{}", wanted,
+                                               join_names(names), library_hint(wanted)));
+    return 0;
+}
+
+Geometry read_geometry(Reader& reader, Context& context) {
+    const bool has_mesh_file = context.robot.mesh.file.has_value();
+    if (reader.has("region")) {
+        const std::string region = reader.text("region");
+        if (!has_mesh_file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
+        if (reader.has("box")) return MeshRegion{region, read_box(reader)};
+        return MeshRegion{region, {}};
+    }
+    if (has_mesh_file) {
+        reader.problem("", "with a mesh file a body names its region: region = \"...\" or region = \"all\"");
+        (void)reader.raw("geometry");
+        return MeshRegion{"all", {}};
+    }
+    const config::Value* geometry = reader.raw("geometry");
+    if (geometry == nullptr) {
+        reader.problem("",
+                       "\"geometry\" is missing; it is a file such as \"finger.stl\" or a shape such as { box = "
+                       "[[0,0,0],[1,1,1]] }");
+        return MeshRegion{"all", {}};
+    }
+    if (const auto* file = std::get_if<std::string>(&geometry->data))
+        return SurfaceFile{need_file(reader, "geometry", *file, context)};
+    return read_shape(reader, context);
+}
+
+void read_body(Reader& reader, Context& context, BodySpec& body) {
+    body.material = find_material(reader, context);
+    body.geometry = read_geometry(reader, context);
+    body.size = read_size(reader, "size", context);
+}
+
+}  // namespace
+
+void read_bodies(Reader& root, Context& context) {
+    read_materials(root, context);
+    read_mesh(root, context);
+    read_each(root, context, "body", "bodies", context.robot.bodies, read_body);
+    if (context.robot.bodies.empty()) root.problem("", "there is no body; add [[body]]");
+}
+
+}  // namespace pliant::robot

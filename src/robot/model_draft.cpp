@@ -1,0 +1,72 @@
+#include "robot/model_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant::robot {
+namespace {
+
+/// Points this far outside, as a share of the robot's size, still count as on its surface.
+constexpr double surface_share = 1e-3;
+
+/// The tets that carry material, on the nodes of the mesh.
+mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
+    mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};
+    for (std::size_t t = 0; t < all.tet_count(); ++t) {
+        if (all.region[t] >= static_cast<int>(robot.bodies.size())) continue;
+        bodies.region.push_back(all.region[t]);
+        bodies.nodes.insert(bodies.nodes.end(), all.tet(t).begin(), all.tet(t).end());
+    }
+    return bodies;
+}
+
+}  // namespace
+
+ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_robot), whole(std::move(mesh)) {
+    std::vector<bool> keep;
+    for (const Region& region : regions_of(robot)) keep.push_back(region.has_elements);
+    mesh::Extract kept = mesh::extract_regions(whole, keep);
+    description.mesh = std::move(kept.mesh);
+    node_of_whole = std::move(kept.node);
+    bodies = tets_of_bodies(robot, description.mesh);
+    for (const Vec3& p : description.mesh.points) box.add(p);
+    tolerance = surface_share * box.diagonal();
+    // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
+    box_margin = robot.mesh.file ? 0 : 1e-9 * box.diagonal();
+}
+
+void ModelDraft::problem(int line, std::string_view kind, std::string_view name, const std::string& text) {
+    if (!problems.empty()) problems += '\n';
+    problems += fmt::format("{}:{}: {} \"{}\": {}", robot.file.string(), line, kind, name, text);
+}
+
+std::string ModelDraft::show(const Vec3& p_m) const {
+    const Vec3 p = p_m / robot.unit_m;
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+}
+
+std::string ModelDraft::show_bounds() const {
+    return fmt::format("the robot reaches from {} to {}", show(box.low), show(box.high));
+}
+
+Box3 ModelDraft::box_of(const BoxSelector& selector) const {
+    return {robot.unit_m * selector.low, robot.unit_m * selector.high};
+}
+
+std::size_t ModelDraft::region_of(Region::Use use, std::string_view name) const {
+    const auto regions = regions_of(robot);
+    const auto found =
+        std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.use == use && r.name == name; });
+    return static_cast<std::size_t>(found - regions.begin());
+}
+
+int ModelDraft::material_of(std::size_t region) const {
+    const auto regions = regions_of(robot);
+    std::size_t kept = 0;
+    for (std::size_t r = 0; r < region; ++r) kept += regions[r].has_elements ? 1 : 0;
+    return description.material_of_region[kept];
+}
+
+}  // namespace pliant::robot

@@ -1,0 +1,45 @@
+// A model in the making: the mesh, what has been tied to it so far, and what went wrong.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh/tet_mesh.hpp"
+#include "robot/regions.hpp"
+#include "robot/robot.hpp"
+#include "sim/model.hpp"
+
+namespace pliant::robot {
+
+/// Metres throughout. The robot must outlive it.
+struct ModelDraft {
+    /// Sets the meshes and the tolerances; `mesh` is that of build_mesh().
+    ModelDraft(const Robot& robot, mesh::TetMesh mesh);
+
+    /// Adds a line "FILE:LINE: KIND "NAME": TEXT" to the problems.
+    void problem(int line, std::string_view kind, std::string_view name, const std::string& text);
+
+    /// A point in the robot file's unit, for messages.
+    [[nodiscard]] std::string show(const Vec3& p_m) const;
+    /// "the robot reaches from ... to ...".
+    [[nodiscard]] std::string show_bounds() const;
+
+    [[nodiscard]] Box3 box_of(const BoxSelector& selector) const;
+    /// Index of a region of `whole`. Precondition: it is there.
+    [[nodiscard]] std::size_t region_of(Region::Use use, std::string_view name) const;
+    /// The material of a region of `whole`. Precondition: the region has elements, and materials have been added.
+    [[nodiscard]] int material_of(std::size_t region) const;
+
+    const Robot& robot;
+    mesh::TetMesh whole;             ///< regions as in regions_of()
+    std::vector<int> node_of_whole;  ///< (nodes of whole) index in the description's mesh, or -1
+    sim::Description description;    ///< its mesh: the regions with elements
+    mesh::TetMesh bodies;            ///< the description's mesh without actuated space
+    Box3 box;                        ///< of the description's mesh
+    double tolerance = 0;            ///< for what should lie on the surface
+    double box_margin = 0;           ///< for what should lie in a box
+    std::string problems;            ///< one a line
+};
+
+}  // namespace pliant::robot

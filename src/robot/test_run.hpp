@@ -1,0 +1,40 @@
+// From a robot file to its run, for tests: what goes wrong on the way ends the test.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <utility>
+
+#include "robot/build.hpp"
+
+namespace pliant::robot::testing {
+
+/// A robot and its model.
+struct Built {
+    Robot robot;
+    sim::Model model;
+};
+
+inline Built build(Result<Robot> robot) {
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    return {std::move(*robot), std::move(*model)};
+}
+
+/// Whether it converged is for the test to check.
+inline sim::Trajectory run(const Built& built) {
+    Progress silent;
+    return sim::run(built.model, built.robot.program, silent);
+}
+
+inline sim::Trajectory run_to_the_end(const Built& built) {
+    sim::Trajectory result = run(built);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    return result;
+}
+
+}  // namespace pliant::robot::testing

@@ -1,0 +1,107 @@
+// Tangent stiffness of the elastic body: blocks of the tets, and where they go.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.hpp"
+#include "sim/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+using linalg::Matrix9;
+using linalg::Vector3;
+
+/// Batches bound the memory of the blocks, and keep them in the cache until they are added.
+constexpr std::size_t batches_at_once = 64;
+constexpr std::size_t batches_per_piece = 4;
+
+/// A slot says which block of the pattern, and whether it is the transposed one of the pair; held nodes have none.
+constexpr int no_slot = -1;
+
+}  // namespace
+
+std::vector<int> Elements::stiffness_slots(const std::vector<int>& free_index,
+                                           const linalg::SymmetricPattern& pattern) const {
+    std::vector<int> slots(batches() * pairs() * lanes, no_slot);
+    for (std::size_t place = 0; place < tet_.size(); ++place) {
+        if (tet_[place] == no_tet) continue;
+        int* slot = slots.data() + place / lanes * pairs() * lanes + place % lanes;
+        for (int b = 0; b < nodes_per_tet_; ++b) {
+            for (int a = 0; a <= b; ++a, slot += lanes) {
+                const int i = free_index[node(tet_[place], a)];
+                const int j = free_index[node(tet_[place], b)];
+                if (i >= 0 && j >= 0) *slot = 2 * pattern.find(std::max(i, j), std::min(i, j)) + (i < j ? 1 : 0);
+            }
+        }
+    }
+    return slots;
+}
+
+void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
+                                  double* blocks) const {
+    std::fill_n(blocks, pairs() * 9 * lanes, 0.0);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t tet = tet_[batch * lanes + lane];
+        for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
+            Matrix9 H = material::tangent(law, deformation_gradient(tet, q, x));
+            H = project ? linalg::project_to_positive(H) : Matrix9(0.5 * (H + H.transpose()));
+            H *= point_volume(tet, q);
+            double* block = blocks + lane;
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const double* gb = gradient(tet, q, b);
+                Eigen::Matrix<double, 9, 3> change = gb[0] * H.leftCols<3>();  // of P with the motion of b
+                for (int l = 1; l < 3; ++l) change += gb[static_cast<std::size_t>(l) * lanes] * H.middleCols<3>(3 * l);
+                for (int a = 0; a <= b; ++a, block += 9 * lanes) {
+                    const double* ga = gradient(tet, q, a);
+                    Matrix3 K = ga[0] * change.topRows<3>();
+                    for (int l = 1; l < 3; ++l)
+                        K += ga[static_cast<std::size_t>(l) * lanes] * change.middleRows<3>(3 * l);
+                    for (std::size_t k = 0; k < 9; ++k) block[k * lanes] += K.data()[k];
+                }
+            }
+        }
+    }
+}
+
+void Elements::add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
+                          std::span<double> values) const {
+    const int* slot = slots.data() + batch * pairs() * lanes;
+    for (std::size_t pair = 0; pair < pairs(); ++pair, blocks += 9 * lanes, slot += lanes) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            if (slot[lane] == no_slot) continue;
+            double* to = values.data() + static_cast<std::size_t>(slot[lane] / 2) * 9;
+            const double* from = blocks + lane;
+            if (slot[lane] % 2 == 0) {
+                for (std::size_t k = 0; k < 9; ++k) to[k] += from[k * lanes];
+            } else {
+                for (std::size_t k = 0; k < 9; ++k) to[k] += from[(k % 3 * 3 + k / 3) * lanes];
+            }
+        }
+    }
+}
+
+void Elements::add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values,
+                           bool project, std::span<const material::Law> laws) const {
+    const std::size_t size = pairs() * 9 * lanes;
+    const AlignedArray<double> blocks(std::min(batches_at_once, batches()) * size);
+    for (std::size_t first = 0; first < batches(); first += batches_at_once) {
+        const std::size_t count = std::min(batches_at_once, batches() - first);
+        parallel_for(count, batches_per_piece, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const material::Law& law = law_among(laws, first + k);
+                const auto form = material::invariant_form(law);
+                double* to = blocks.data() + k * size;
+                if (form && !project)
+                    batch_tangent(batch(first + k), *form, x.data(), to);
+                else
+                    tangent_one_by_one(first + k, x, law, project, to);
+            }
+        });
+        // In order, so that the sums are the same on any number of threads.
+        for (std::size_t k = 0; k < count; ++k) add_blocks(first + k, blocks.data() + k * size, slots, values);
+    }
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,56 @@
+// What the last steps taught about the stiffness, on top of a matrix that is at hand.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <vector>
+
+namespace pliant::sim {
+
+/// L-BFGS: the inverse of a matrix H, sharpened by the last steps and the changes of force that they made (two-loop
+/// recursion: Nocedal and Wright, Numerical Optimization, algorithm 7.4).
+class StepMemory {
+public:
+    explicit StepMemory(std::size_t most) : most_(most) {}
+
+    void clear() { pairs_.clear(); }
+    [[nodiscard]] bool empty() const { return pairs_.empty(); }
+
+    /// `scale` multiplies H^-1 from here on. A step along which the force did not rise is left out: it would make the
+    /// matrix indefinite.
+    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change, double scale = 1) {
+        const double curvature = step.dot(change);
+        if (!(curvature > 1e-10 * step.norm() * change.norm())) return;
+        pairs_.push_back({step, change, 1 / curvature, scale});
+        if (pairs_.size() > most_) pairs_.pop_front();
+    }
+
+    /// columns <- sharpened H^-1 columns, where `solve` does H^-1 on all of them in place.
+    template <class Solve>
+    void apply(Eigen::MatrixXd& columns, const Solve& solve) const {
+        Eigen::MatrixXd alpha(static_cast<Eigen::Index>(pairs_.size()), columns.cols());
+        for (std::size_t i = pairs_.size(); i-- > 0;) {
+            const auto row = static_cast<Eigen::Index>(i);
+            alpha.row(row) = pairs_[i].rho * (pairs_[i].step.transpose() * columns);
+            columns.noalias() -= pairs_[i].change * alpha.row(row);
+        }
+        solve(columns);
+        if (!pairs_.empty() && pairs_.back().scale != 1) columns *= pairs_.back().scale;
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            const Eigen::RowVectorXd beta = pairs_[i].rho * (pairs_[i].change.transpose() * columns);
+            columns.noalias() += pairs_[i].step * (alpha.row(static_cast<Eigen::Index>(i)) - beta);
+        }
+    }
+
+private:
+    struct Pair {
+        Eigen::VectorXd step;
+        Eigen::VectorXd change;
+        double rho;  ///< 1 / (step . change)
+        double scale;
+    };
+    std::size_t most_;
+    std::deque<Pair> pairs_;
+};
+
+}  // namespace pliant::sim

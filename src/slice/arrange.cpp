@@ -1,0 +1,89 @@
+#include "slice/arrange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pliant::slice {
+namespace {
+
+/// Turns (a, b) counter-clockwise.
+void turn_pair(double& a, double& b, double degrees) {
+    const double turned = std::remainder(degrees, 360.0);
+    double c = std::cos(turned * std::numbers::pi / 180), s = std::sin(turned * std::numbers::pi / 180);
+    if (std::remainder(turned, 90.0) == 0) {
+        c = std::round(c);
+        s = std::round(s);
+    }
+    const double x = a;
+    a = c * x - s * b;
+    b = s * x + c * b;
+}
+
+Result<Box3> bounds_of_all(const std::vector<Body>& bodies) {
+    Box3 box;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto own = bounds(bodies[i], describe(bodies[i], i));
+        if (!own) return own;
+        if (own->empty()) continue;
+        box.add(own->low);
+        box.add(own->high);
+    }
+    return box;
+}
+
+int fitting(double room, double size, double spacing) {
+    return std::max(0, static_cast<int>(std::floor((room + spacing + 1) / (size + spacing))));
+}
+
+}  // namespace
+
+Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
+    if (!is_finite(degrees))
+        return input_error("a turn by {}, {}, {} degrees is no turn", degrees.x, degrees.y, degrees.z);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (!bodies[i].slices.empty() && (degrees.x != 0 || degrees.y != 0))
+            return input_error("{}: consists of slices, which can be turned about z only", describe(bodies[i], i));
+        for (Vec3& p : bodies[i].surface_um.points) {
+            turn_pair(p.y, p.z, degrees.x);
+            turn_pair(p.z, p.x, degrees.y);
+            turn_pair(p.x, p.y, degrees.z);
+        }
+        for (OutlineSlice& slice : bodies[i].slices) {
+            for (auto& outline : slice.outlines_um) {
+                for (auto& [x, y] : outline) turn_pair(x, y, degrees.z);
+            }
+        }
+    }
+    return {};
+}
+
+Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster) {
+    constexpr int most = 10000;
+    if (count < 1 || count > most) return input_error("{} copies: must be 1 to {}", count, most);
+    if (!(spacing_um >= 0)) return input_error("copies {} um apart: must not be negative", spacing_um);
+    if (count == 1) return {};
+    const auto box = bounds_of_all(bodies);
+    if (!box) return tl::unexpected(box.error());
+    if (box->empty()) return {};
+    const Vec3 size = box->size();
+    const int columns = std::min(count, fitting(raster.width_um(), size.x, spacing_um));
+    const int rows = fitting(raster.height_um(), size.y, spacing_um);
+    if (static_cast<long long>(columns) * rows < count)
+        return input_error(
+            "{} copies of {:.3f} x {:.3f} mm, {:.3f} mm apart, do not fit an image of {:.3f} x {:.3f} mm: {} do", count,
+            size.x / 1000, size.y / 1000, spacing_um / 1000, raster.width_um() / 1000, raster.height_um() / 1000,
+            static_cast<long long>(fitting(raster.width_um(), size.x, spacing_um)) * rows);
+    const std::vector<Body> part = bodies;
+    for (int n = 1; n < count; ++n) {
+        const Vec3 shift{n % columns * (size.x + spacing_um), n / columns * (size.y + spacing_um), 0};
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            bodies.push_back(part[i]);
+            if (!part[i].name.empty()) bodies.back().name += fmt::format(" #{}", n + 1);
+            move(bodies.back(), shift);
+        }
+    }
+    return {};
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,71 @@
+// What will not print well: islands, cavities, pieces that hang together nowhere.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "slice/layer_shape.hpp"
+
+namespace pliant::slice {
+
+/// Solid that begins in a layer with nothing below it.
+struct Island {
+    int layer = 0;
+    int row = 0, column = 0;  ///< of one of its pixels
+    std::int64_t pixels = 0;
+};
+
+/// Void that solid closes off from the outside while layers [first_layer, last_layer] are made.
+struct Cavity {
+    enum class End { closed, opened, last_layer };
+    int first_layer = 0, last_layer = 0;
+    std::int64_t voxels = 0;
+    End end = End::closed;  ///< closed for good: a resin trap; opened later, or open at the part's last layer only: a
+                            ///< suction cup until then
+};
+
+/// Solid that hangs together, through all layers.
+struct Piece {
+    int first_layer = 0, last_layer = 0;
+    std::int64_t voxels = 0;
+};
+
+struct Findings {
+    std::vector<Island> islands;
+    std::vector<Cavity> cavities;
+    std::vector<Piece> pieces;
+    std::vector<int> faint_layers;  ///< with light, but no pixel of half light
+};
+
+/// Follows solid and void from layer to layer. Layers come in order, from 0; cost: their stretches.
+class Inspector {
+public:
+    void add(LayerShape shape);
+    /// After the last layer. Cavities below `least_voxels` are left out: surfaces that touch each other obliquely make
+    /// many of a pixel or two.
+    [[nodiscard]] Findings finish(std::int64_t least_voxels = 8);
+
+private:
+    struct Thing {
+        std::uint32_t parent = 0;
+        int first_layer = 0, last_layer = 0;
+        std::int64_t voxels = 0;
+    };
+    static std::uint32_t root(std::vector<Thing>& things, std::uint32_t i);
+    static std::uint32_t join(std::vector<Thing>& things, std::uint32_t a, std::uint32_t b);
+    void link_solid(const LayerShape& shape, const std::vector<std::uint32_t>& ids);
+    void link_voids(const LayerShape& shape, const std::vector<std::uint32_t>& ids);
+    void join_voids(std::uint32_t a, std::uint32_t b);
+
+    int layer_ = 0;
+    LayerShape below_;
+    std::vector<std::uint32_t> solid_below_, voids_below_;  ///< per piece of the layer below: its thing
+    std::vector<Thing> solids_, voids_{Thing{}};            ///< voids_[0] is the outside
+    Findings findings_;
+};
+
+/// One line per kind of finding, with layers, places in millimetres on the platform and volumes.
+[[nodiscard]] std::vector<std::string> describe(const Findings& findings, const Raster& raster, int layer_um);
+
+}  // namespace pliant::slice
