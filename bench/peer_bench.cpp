@@ -14,8 +14,8 @@
 #include "bumpy_ball.hpp"
 #include "core/files.hpp"
 #include "job/png.hpp"
-#include "zip/zip_file.hpp"
 #include "mesh/surface_file.hpp"
+#include "zip/zip_file.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;

@@ -84,9 +84,9 @@ TEST_CASE("property: whatever the interlocks let somebody do by hand can be ende
             for (int step = 0; step < 60; ++step) {
                 machine::Position to = state.position();
                 const int slot = 1 + static_cast<int>(random() % static_cast<unsigned>(p.slot_count()));
-                const int x[] = {p.carriage.print_um, p.carriage.print_um + p.carriage.shear_um, p.drain_begin_um(),
-                                 p.carriage.tower_um - p.carriage.back_off_um, p.carriage.tower_um,
-                                 static_cast<int>(random() % 300000)};
+                const int x[] = {p.carriage.print_um, p.carriage.print_um + p.carriage.shear_um,
+                                 p.drain_begin_um(),  p.carriage.tower_um - p.carriage.back_off_um,
+                                 p.carriage.tower_um, static_cast<int>(random() % 300000)};
                 const int z[] = {100, p.clear_um(0), p.axis(machine::Axis::platform).home_um()};
                 switch (random() % 6) {
                     case 0:
