@@ -224,6 +224,9 @@ Status Interlock::light_on(bool moving) {
         if (printer_->axis(axis).present() && !homed(axis)) return failure("light before the machine is homed");
     }
     if (!vat_under_platform()) return failure("light with no vat under the platform");
+    if (position_[Axis::platform] > printer_->platform.build_height_um) {
+        return failure("light with the platform at {:.3f} mm, above all that it builds", mm(position_[Axis::platform]));
+    }
     light_ = true;
     part_height_um_ = std::max(part_height_um_, position_[Axis::platform]);
     return {};

@@ -9,7 +9,8 @@
 //   - push a vat into a slot that is taken
 //   - turn or shift the table unless the platform is clear of everything on it, and no vat is hooked or half in a tower
 //   - lower the platform with the table between two stations
-//   - light with no vat under the platform, while something moves, or move while the light is on
+//   - light with no vat under the platform, or with the platform above the tallest part, while something moves, or move
+//   while the light is on
 //   - run the pump anywhere but over the drain of the cleaning vat, or move away from there while it runs
 #pragma once
 

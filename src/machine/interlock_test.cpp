@@ -140,6 +140,8 @@ TEST_CASE("light needs a vat under the platform and stillness, and nothing moves
     CHECK_FALSE(b.lock.light_on(false));
     b.load();
     CHECK_FALSE(b.lock.light_on(true));
+    CHECK_FALSE(b.lock.light_on(false));  // the platform is still at its home
+    b.must(Axis::platform, 50);
     b.must(Axis::carriage, 1000);
     CHECK_FALSE(b.lock.light_on(false));
     b.must(Axis::carriage, 0);

@@ -171,8 +171,8 @@ TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, ch
 TEST_CASE("resin that is washed off and solution that is used follow from the number of cleanings") {
     const machine::Printer printer = test::tower();
     const Plan plan = make_plan(test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"}), printer).value();
-    // Two swaps and the cleaning at the end: 250 ml each; 200 mm^2 under a film of 60 um each.
-    CHECK(plan.solvent_ml == doctest::Approx(3 * 250));
+    // Two swaps and the cleaning at the end: 20 ml each; 200 mm^2 under a film of 60 um each.
+    CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
     CHECK(plan.waste_ml == doctest::Approx(3 * 200 * 0.06 / 1000));
 }
 

@@ -176,8 +176,8 @@ TEST_CASE("the models of known swap counts: naive and best, as their table gives
     std::vector<std::vector<int>> stack, bands;
     for (int m = 0; m < 4; ++m) stack.insert(stack.end(), 40, {m});
     for (int band = 0; band < 10; ++band) bands.insert(bands.end(), 20, {band % 2});
-    CHECK(counts(repeated({0, 1}, 200)) == std::pair(399, 200));                       // two_halves
-    CHECK(counts(stack) == std::pair(3, 3));                                           // stack4
-    CHECK(counts(bands) == std::pair(9, 9));                                           // alternating_bands
+    CHECK(counts(repeated({0, 1}, 200)) == std::pair(399, 200));                      // two_halves
+    CHECK(counts(stack) == std::pair(3, 3));                                          // stack4
+    CHECK(counts(bands) == std::pair(9, 9));                                          // alternating_bands
     CHECK(counts(repeated({0, 1, 2, 3, 4, 5, 6, 7}, 200)) == std::pair(1599, 1400));  // checker8
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 
+#include "machine/gcode.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
 #include "plan/test_jobs.hpp"
@@ -69,6 +71,61 @@ TEST_CASE("property: a print can pause after any line and goes on to its end as 
             const std::string all = begun + pause.begin + pause.end + p.text.substr(begun.size());
             const Status status = check_gcode(all, p.printer);
             REQUIRE_MESSAGE(status, (status ? "" : status.error().message));
+        }
+    }
+}
+
+TEST_CASE("property: whatever the interlocks let somebody do by hand can be ended safely") {
+    std::mt19937 random(77);
+    for (const machine::Printer& p : test::machines()) {
+        for (int walk = 0; walk < 60; ++walk) {
+            machine::Interlock state(p);
+            for (const machine::Axis axis : machine::homing_order(p)) REQUIRE(state.home(axis));
+            for (int step = 0; step < 60; ++step) {
+                machine::Position to = state.position();
+                const int slot = 1 + static_cast<int>(random() % static_cast<unsigned>(p.slot_count()));
+                const int x[] = {p.carriage.print_um, p.carriage.print_um + p.carriage.shear_um,
+                                 p.drain_begin_um(),  p.carriage.tower_um - p.carriage.back_off_um,
+                                 p.carriage.tower_um, static_cast<int>(random() % 300000)};
+                const int z[] = {100, p.clear_um(0), p.axis(machine::Axis::platform).home_um()};
+                switch (random() % 6) {
+                    case 0:
+                        to[machine::Axis::platform] = z[random() % 3];
+                        break;
+                    case 1:
+                        if (p.tower.slots > 0) to[machine::Axis::carriage] = x[random() % 6];
+                        break;
+                    case 2:
+                        if (p.tower.slots > 0) to[machine::Axis::tower] = p.level_um(slot) - p.hooks.travel_um;
+                        break;
+                    case 3:
+                        if (p.tower.slots > 0) to[machine::Axis::tower] = p.level_um(slot);
+                        break;
+                    case 4:
+                        if (!p.table.stations_um.empty()) to[machine::Axis::table] = p.station_um(slot);
+                        break;
+                    default:
+                        (void)state.pump(random() % 2 == 0);
+                }
+                (void)state.move(to);
+            }
+            const std::string end = cancel_program(state, p);
+            CAPTURE(end);
+            // The program continues from here: its moves are made on a copy of the state.
+            machine::Interlock copy = state;
+            for (std::size_t begin = 0; begin < end.size();) {
+                const std::size_t stop = end.find('\n', begin);
+                const std::string line(machine::strip_comment(end.substr(begin, stop - begin)));
+                begin = stop + 1;
+                if (line.empty()) continue;
+                const auto command = machine::parse_command(line).value();
+                if (const auto pump = machine::switched(p.pump, command)) REQUIRE(copy.pump(*pump));
+                if (!command.is('G', 1)) continue;
+                const Status moved = copy.move(machine::move_target(p, command, copy.position()).value());
+                REQUIRE_MESSAGE(moved, (moved ? "" : moved.error().message));
+            }
+            if (p.store() != machine::Store::tower) continue;
+            for (const machine::Vat& vat : p.vats) CHECK(copy.vat_in_slot(vat.slot));
         }
     }
 }
