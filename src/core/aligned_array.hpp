@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 namespace pliant {
 
@@ -20,6 +21,13 @@ class AlignedArray {
 public:
     AlignedArray() = default;
     explicit AlignedArray(std::size_t size) { resize(size); }
+    AlignedArray(AlignedArray&& other) noexcept
+        : values_(std::move(other.values_)), size_(std::exchange(other.size_, 0)) {}
+    AlignedArray& operator=(AlignedArray&& other) noexcept {
+        values_ = std::move(other.values_);
+        size_ = std::exchange(other.size_, 0);
+        return *this;
+    }
 
     /// Content is lost where the size changes. Throws std::bad_alloc.
     void resize(std::size_t size) {

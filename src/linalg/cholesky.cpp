@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "core/aligned_array.hpp"
+#include "core/array_pool.hpp"
 #include "core/parallel.hpp"
 #include "linalg/elimination.hpp"
 #include "linalg/multifrontal.hpp"
@@ -34,6 +35,7 @@ struct Cholesky::State {
     std::vector<std::vector<int>> children;  ///< (supernodes)
     AlignedArray<Real> factor;
     AlignedArray<Real> work;
+    mutable ArrayPool<Real> scratch;  ///< of solve()
 
     [[nodiscard]] Panel<Real> panel(int s) const {
         return {factor.data() + layout.panel[s], e.columns(s) * pattern.block, e.rows_below(s) * pattern.block};
@@ -176,7 +178,7 @@ void Cholesky::State::solve(double* x, int count) const {
     const int b = pattern.block;
     const auto size = static_cast<std::size_t>(pattern.size());
     // In the order of elimination, and one supernode's part of it.
-    std::vector<Real> permuted(size * static_cast<std::size_t>(count));
+    const auto permuted = scratch.lend(size * static_cast<std::size_t>(count));
     const auto permute = [&](const auto& move) {
         for (int c = 0; c < count; ++c) {
             Real* to = permuted.data() + static_cast<std::size_t>(c) * size;

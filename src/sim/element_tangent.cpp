@@ -85,7 +85,7 @@ void Elements::add_blocks(std::size_t batch, const double* blocks, std::span<con
 void Elements::add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values,
                            bool project, std::span<const material::Law> laws) const {
     const std::size_t size = pairs() * 9 * lanes;
-    const AlignedArray<double> blocks(std::min(batches_at_once, batches()) * size);
+    const auto blocks = scratch_.lend(std::min(batches_at_once, batches()) * size);
     for (std::size_t first = 0; first < batches(); first += batches_at_once) {
         const std::size_t count = std::min(batches_at_once, batches() - first);
         parallel_for(count, batches_per_piece, [&](std::size_t begin, std::size_t end) {

@@ -230,11 +230,11 @@ BatchResult Elements::forces_one_by_one(std::size_t batch, std::span<const doubl
     return result;
 }
 
-void Elements::gather_forces(const AlignedArray<double>& buffer, std::span<double> forces) const {
+void Elements::gather_forces(const double* buffer, std::span<double> forces) const {
     parallel_for(use_start_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t node = begin; node < end; ++node) {
             for (int k = use_start_[node]; k < use_start_[node + 1]; ++k) {
-                const double* f = buffer.data() + use_[k];
+                const double* f = buffer + use_[k];
                 for (std::size_t i = 0; i < 3; ++i) forces[3 * node + i] += f[i * lanes];
             }
         }
@@ -246,7 +246,7 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
     const std::size_t pieces = (batches() + batches_per_piece - 1) / batches_per_piece;
     std::vector<Evaluation> partial(pieces);
     const std::size_t stride = 3 * width() * lanes;
-    const AlignedArray<double> buffer(forces.empty() ? 0 : batches() * stride);
+    const auto buffer = scratch_.lend(forces.empty() ? 0 : batches() * stride);
     const auto forms = forms_of(laws.empty() ? laws_ : laws);
     parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
         Evaluation& sum = partial[begin / batches_per_piece];
@@ -267,7 +267,7 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
         total.min_J = std::min(total.min_J, one.min_J);
     }
     if (!(total.min_J > 0) || forces.empty()) return total;
-    gather_forces(buffer, forces);
+    gather_forces(buffer.data(), forces);
     return total;
 }
 
@@ -309,14 +309,14 @@ void Elements::apply_laplacian(std::span<const double> u, std::span<double> resu
 
 void Elements::add_turning(const Turning& turning, std::span<double> result) const {
     const std::size_t stride = 3 * width() * lanes;
-    const AlignedArray<double> buffer(batches() * stride);
+    const auto buffer = scratch_.lend(batches() * stride);
     parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
             batch_turning(batch(b), turning, stiffness, buffer.data() + b * stride);
         }
     });
-    gather_forces(buffer, result);
+    gather_forces(buffer.data(), result);
 }
 
 void Elements::add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,

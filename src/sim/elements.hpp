@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/aligned_array.hpp"
+#include "core/array_pool.hpp"
 #include "core/error.hpp"
 #include "linalg/small.hpp"
 #include "linalg/sparse.hpp"
@@ -108,7 +109,7 @@ private:
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
     /// Adds what each batch wrote for its nodes, (batches, nodes_per_tet, 3, lanes), in the order of the batches.
-    void gather_forces(const AlignedArray<double>& buffer, std::span<double> forces) const;
+    void gather_forces(const double* buffer, std::span<double> forces) const;
     void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
                     std::span<double> values) const;
 
@@ -129,6 +130,7 @@ private:
     // order of the batches; y and z follow x at steps of `lanes`.
     std::vector<int> use_start_;
     std::vector<int> use_;
+    mutable ArrayPool<double> scratch_;  ///< force buffers and blocks of batches
 };
 
 }  // namespace pliant::sim

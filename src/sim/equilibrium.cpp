@@ -175,13 +175,15 @@ void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, double time, d
     }
 }
 
-double Equilibrium::cable_friction_error(const Eigen::VectorXd& x, double time) const {
+double Equilibrium::cable_friction_error(const State& state, double time) const {
     const auto& cables = model_->description().cables;
     double error = 0;
     for (std::size_t c = 0; c < cables.size(); ++c) {
         const Drive wanted = drive_at(c, time);
         if (!(cables[c].friction > 0) || wanted.kind != Drive::Kind::measure) continue;
-        error = std::max(error, (actuators_[c].measure(view(x)) - wanted.value) / actuators_[c].rest_measure());
+        const double excess = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
+        const bool pulls = state.multiplier[static_cast<Eigen::Index>(c)] > 0;
+        error = std::max(error, pulls ? std::fabs(excess) : excess);  // a slack cable may be shorter than asked for
     }
     return error;
 }

@@ -60,11 +60,11 @@ public:
 
     /// `stretch` (actuators): scale of the target shapes that each one drives, 1 at rest.
     [[nodiscard]] Controls controls(double time, std::span<const double> stretch = {}) const;
-    /// The shares of all cables with friction at positions x, while `before` (if any) leads to these controls; and, for
+    /// The shares of all cables with friction at positions x, while `time_before` leads to these controls; and, for
     /// those driven by length, the weighted length that x would have if the true one were as wanted.
     void freeze_cable_friction(const Eigen::VectorXd& x, double time, double time_before, Controls& controls) const;
     /// Largest error of the true lengths of cables with friction, relative to rest.
-    [[nodiscard]] double cable_friction_error(const Eigen::VectorXd& x, double time) const;
+    [[nodiscard]] double cable_friction_error(const State& state, double time) const;
     [[nodiscard]] bool has_cable_friction() const;
     /// Where an actuator is driven by its measure: what it shall be, relative to rest.
     [[nodiscard]] double wanted_ratio(std::size_t actuator, double time) const;

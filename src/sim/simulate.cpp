@@ -20,7 +20,10 @@ namespace {
 
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 
-constexpr double worst_start = 0.2;  // error of a state that is worth starting from
+// Errors of states to start from. Beyond the worst the body buckles or something new begins to act: from where it is,
+// at least its tangent is sound.
+constexpr double worst_start = 0.2;
+constexpr double good_start = 0.03;
 
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
@@ -278,19 +281,17 @@ private:
         return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
     }
 
-    /// On from the last two states and from the last three, whichever ends nearer to equilibrium.
+    /// On from the last three states or, if that ends far from equilibrium, from the last two, whichever is nearer.
     [[nodiscard]] std::optional<State> extrapolate(double time, const Controls& controls) const {
         std::optional<State> best;
-        double least = 0;
-        for (std::size_t count = 2; count <= past_.size() + 1; ++count) {
+        double least = worst_start;
+        for (std::size_t count = past_.size() + 1; count >= 2 && least > good_start; --count) {
             State state = onward(time, count, controls);
             const Evaluation e = system_.evaluate(state, controls);
-            if (!(e.min_J > 0) || (best && !(e.error() < least)) || !passes(state, controls)) continue;
+            if (!(e.min_J > 0) || !(e.error() < least) || !passes(state, controls)) continue;
             best = std::move(state);
             least = e.error();
         }
-        // Beyond this the body buckles or something new begins to act: where it is, at least its tangent is sound.
-        if (least > worst_start) best.reset();
         return best;
     }
 
@@ -346,7 +347,7 @@ private:
             controls.friction = system_.freeze_friction(next, state_, controls, controls_);
             if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
             total.evaluation = system_.evaluate(next, controls);
-            const double length_error = system_.cable_friction_error(next.x, controls.time);
+            const double length_error = system_.cable_friction_error(next, controls.time);
             if (total.evaluation.residual <= program_.tolerance &&
                 length_error <= cable_friction_share * program_.tolerance)
                 break;

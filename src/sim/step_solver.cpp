@@ -204,7 +204,7 @@ private:
             const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
             if (!lower && !nearer) continue;
-            accept(std::move(next), std::move(evaluation), direction, alpha);
+            accept(std::move(next), std::move(evaluation), alpha);
             return true;
         }
         return false;
@@ -235,7 +235,7 @@ private:
         }
     }
 
-    void accept(State next, Evaluation evaluation, const Direction& direction, double alpha) {
+    void accept(State next, Evaluation evaluation, double alpha) {
         // The quasi-Newton pair needs both forces at the same multipliers.
         next.multiplier = evaluation.multiplier;
         const Eigen::VectorXd old_force = solved_.empty() ? evaluation_.out_of_balance : force_at(next.multiplier);
