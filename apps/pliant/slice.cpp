@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,18 @@ Result<int> layer_height_um(const Options& options, const machine::Printer& prin
     if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
         return input_error("--layer {}: a whole number of micrometres from 1 to 1000 is needed", options.layer);
     return static_cast<int>(um);
+}
+
+/// Of every material, as the resin that it is printed in asks for.
+std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
+    std::map<std::string, slice::Compensation> result;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr || (resin->xy_compensation_um == 0 && resin->elephant_foot_um == 0)) continue;
+        result[material] = {static_cast<double>(resin->xy_compensation_um),
+                            static_cast<double>(resin->elephant_foot_um), resin->elephant_foot_layers};
+    }
+    return result;
 }
 
 int bottom_layers(const machine::Printer& printer) {
@@ -158,6 +171,11 @@ Status slice(const Options& options) {
     settings.copies = options.copies;
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
+    settings.slicing.compensation = compensations(*drawing, *printer);
+    if (!drawing->stacks.empty() && !settings.slicing.compensation.empty()) {
+        settings.slicing.compensation.clear();
+        drawing->warnings.push_back("xy_compensation and elephant_foot: layer images are printed as they are");
+    }
     settings.slicing.rules.anti_alias = !options.no_anti_alias;
     settings.slicing.rules.threshold = options.threshold;
     if (drawing->stacks.empty()) {

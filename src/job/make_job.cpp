@@ -137,8 +137,9 @@ void note_rare_materials(Manifest& manifest) {
     }
 }
 
-/// The images must hold the volume that was drawn.
-void note_volume(Manifest& manifest) {
+/// The images must hold the volume that was drawn, unless outlines were moved on purpose.
+void note_volume(const slice::Settings& slicing, Manifest& manifest) {
+    if (!slicing.compensation.empty()) return;
     double drawn = 0, lit = 0;
     for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
     for (const Layer& layer : manifest.layers) {
@@ -157,7 +158,7 @@ void note_findings(const slice::Findings& findings, const JobSettings& settings,
         manifest.warnings.push_back(
             fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
     note_rare_materials(manifest);
-    note_volume(manifest);
+    note_volume(settings.slicing, manifest);
 }
 
 }  // namespace

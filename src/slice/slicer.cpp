@@ -18,6 +18,9 @@ Status check(const Settings& settings) {
         return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
     if (!(settings.rules.close_gap_um >= 0))
         return input_error("gap of {} um to close: must not be negative", settings.rules.close_gap_um);
+    for (const auto& [material, compensation] : settings.compensation) {
+        if (auto status = check(compensation, "material '" + material + "'"); !status) return status;
+    }
     return {};
 }
 
@@ -115,15 +118,34 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
-SlicedLayer Slicer::layer(int k) const {
-    CellBuffer cells(settings_.raster);
+ComposedLayer Slicer::composed(int layer, const Raster& raster, const ComposeRules& rules) const {
+    CellBuffer cells(raster);
     std::vector<Segment> segments;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
-        section(b, k, segments);
+        section(b, layer, segments);
         cells.add(static_cast<int>(b), segments);
     }
-    return compose(cells.sorted(), material_of_, settings_.raster, settings_.rules);
+    return compose(cells.sorted(), material_of_, raster, rules);
+}
+
+/// Per material; empty where no border of the layer moves.
+std::vector<double> Slicer::offsets_um(int layer) const {
+    std::vector<double> offsets;
+    for (const std::string& material : materials_) {
+        const auto known = settings_.compensation.find(material);
+        offsets.push_back(known == settings_.compensation.end() ? 0 : known->second.offset_um(layer));
+    }
+    if (std::all_of(offsets.begin(), offsets.end(), [](double um) { return um == 0; })) offsets.clear();
+    return offsets;
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    const std::vector<double> offsets = offsets_um(k);
+    if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
+    const int factor = fine_factor(settings_.raster);
+    const ComposedLayer fine = composed(k, refined(settings_.raster, factor), {false, 0.5, 0});
+    return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
 }
 
 Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}

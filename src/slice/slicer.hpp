@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "slice/body.hpp"
+#include "slice/compensate.hpp"
 #include "slice/compose.hpp"
 #include "slice/outline_stack.hpp"
 #include "slice/run_image.hpp"
@@ -28,6 +30,7 @@ struct Settings {
     Raster raster;
     int layer_um = 50;
     ComposeRules rules;
+    std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
 };
 
 /// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
@@ -67,6 +70,8 @@ private:
     Status add_body(const Body& body, const std::string& label);
     void add_shape(const Body& body, const Vec3& size_um);
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
+    [[nodiscard]] std::vector<double> offsets_um(int layer) const;
+    [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
     std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
