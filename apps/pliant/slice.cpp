@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -30,7 +31,7 @@ struct Options {
     std::string layer;
     std::string job;
     std::string picture;
-    std::vector<std::string> assignments, resins;
+    std::vector<std::string> assignments, resins, interlocks;
     int copies = 1;
     std::string spacing = "2 mm";
     std::vector<double> turn;
@@ -86,6 +87,39 @@ std::map<std::string, slice::Compensation> compensations(const Drawing& drawing,
                             static_cast<double>(resin->elephant_foot_um), resin->elephant_foot_layers};
     }
     return result;
+}
+
+/// A whole number without anything around it; -1 for anything else.
+int plain_number(const std::string& text) {
+    int number = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? number : -1;
+}
+
+/// FIRST+SECOND=DEPTH or FIRST+SECOND=DEPTH,LAYERS.
+Result<slice::Teeth> read_teeth(const std::string& text) {
+    const std::size_t equals = text.rfind('='), plus = text.find('+');
+    if (equals == std::string::npos || plus == std::string::npos || plus > equals)
+        return input_error("--interlock {}: write MATERIAL+MATERIAL=PIXELS or MATERIAL+MATERIAL=PIXELS,LAYERS", text);
+    const std::string numbers = text.substr(equals + 1);
+    const std::size_t comma = std::min(numbers.find(','), numbers.size());
+    slice::Teeth teeth{text.substr(0, plus), text.substr(plus + 1, equals - plus - 1), 0, 1};
+    teeth.depth_px = plain_number(numbers.substr(0, comma));
+    if (comma < numbers.size()) teeth.layers = plain_number(numbers.substr(comma + 1));
+    if (teeth.depth_px < 0 || teeth.layers < 0)
+        return input_error("--interlock {}: \"{}\" must be whole numbers, as in 4 or 4,2", text, numbers);
+    return teeth;
+}
+
+Status set_teeth(const Options& options, const Drawing& drawing, slice::Settings& slicing) {
+    if (!options.interlocks.empty() && !drawing.stacks.empty())
+        return input_error("--interlock: layer images are printed as they are");
+    for (const std::string& text : options.interlocks) {
+        Result<slice::Teeth> teeth = read_teeth(text);
+        if (!teeth) return tl::unexpected(teeth.error());
+        slicing.teeth.push_back(std::move(*teeth));
+    }
+    return {};
 }
 
 int bottom_layers(const machine::Printer& printer) {
@@ -176,6 +210,7 @@ Status slice(const Options& options) {
         settings.slicing.compensation.clear();
         drawing->warnings.push_back("xy_compensation and elephant_foot: layer images are printed as they are");
     }
+    if (Status status = set_teeth(options, *drawing, settings.slicing); !status) return status;
     settings.slicing.rules.anti_alias = !options.no_anti_alias;
     settings.slicing.rules.threshold = options.threshold;
     if (drawing->stacks.empty()) {
@@ -220,6 +255,11 @@ void add_slice(CLI::App& app, int& status) {
     command->add_option("--layer", options->layer, "layer height, as in \"50 um\"; the printer file's where not given");
     command->add_option("--resin", options->resins, "MATERIAL=RESIN: what a material is printed in")
         ->type_name("MATERIAL=RESIN")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--interlock", options->interlocks,
+                     "MATERIAL+MATERIAL=PIXELS[,LAYERS]: teeth so deep, changing sides every so many layers")
+        ->type_name("A+B=PIXELS[,LAYERS]")
         ->allow_extra_args(false);
     command->add_option("--copies", options->copies, "how many of the part, side by side");
     command->add_option("--spacing", options->spacing, "between copies, as in \"2 mm\"")->capture_default_str();

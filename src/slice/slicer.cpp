@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.hpp"
+#include "core/text.hpp"
 #include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
@@ -71,6 +73,7 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
         if (auto status = slicer.add_body(bodies[i], describe(bodies[i], i)); !status)
             return tl::unexpected(status.error());
     }
+    if (auto status = slicer.check_teeth(); !status) return tl::unexpected(status.error());
     if (slicer.layer_count_ == 0)
         return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
     return slicer;
@@ -140,12 +143,41 @@ std::vector<double> Slicer::offsets_um(int layer) const {
     return offsets;
 }
 
-SlicedLayer Slicer::layer(int k) const {
+/// With outer borders moved.
+ComposedLayer Slicer::outlined(int k) const {
     const std::vector<double> offsets = offsets_um(k);
     if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
     const int factor = fine_factor(settings_.raster);
     const ComposedLayer fine = composed(k, refined(settings_.raster, factor), {false, 0.5, 0});
     return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    SlicedLayer layer = outlined(k);
+    for (const Teeth& teeth : settings_.teeth) {
+        int taker = material(teeth.first), giver = material(teeth.second);
+        if (k / teeth.layers % 2 == 1) std::swap(taker, giver);
+        take_teeth(layer, taker, giver, teeth.depth_px);
+    }
+    return layer;
+}
+
+/// Its index; -1 if no body names it.
+int Slicer::material(const std::string& name) const {
+    const auto found = std::find(materials_.begin(), materials_.end(), name);
+    return found == materials_.end() ? -1 : static_cast<int>(found - materials_.begin());
+}
+
+Status Slicer::check_teeth() const {
+    for (const Teeth& teeth : settings_.teeth) {
+        if (auto status = check(teeth); !status) return status;
+        for (const std::string& name : {teeth.first, teeth.second}) {
+            if (material(name) < 0)
+                return input_error("interlock '{}' with '{}': there is no material '{}', only {}", teeth.first,
+                                   teeth.second, name, join_names(materials_));
+        }
+    }
+    return {};
 }
 
 Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}

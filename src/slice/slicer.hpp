@@ -23,6 +23,7 @@
 #include "slice/outline_stack.hpp"
 #include "slice/run_image.hpp"
 #include "slice/section.hpp"
+#include "slice/teeth.hpp"
 
 namespace pliant::slice {
 
@@ -31,6 +32,7 @@ struct Settings {
     int layer_um = 50;
     ComposeRules rules;
     std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
+    std::vector<Teeth> teeth{};                          ///< cut one after the other, after compensation
 };
 
 /// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
@@ -71,6 +73,9 @@ private:
     void add_shape(const Body& body, const Vec3& size_um);
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
     [[nodiscard]] std::vector<double> offsets_um(int layer) const;
+    [[nodiscard]] int material(const std::string& name) const;
+    [[nodiscard]] Status check_teeth() const;
+    [[nodiscard]] ComposedLayer outlined(int layer) const;
     [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
