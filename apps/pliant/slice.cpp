@@ -35,6 +35,7 @@ struct Options {
     int copies = 1;
     std::string spacing = "2 mm";
     std::vector<double> turn;
+    std::string least_feature;
     bool no_anti_alias = false;
     double threshold = 0.5;
     Output output;
@@ -182,6 +183,17 @@ Status draw_picture(const Options& options) {
     return write_file(options.picture, *png);
 }
 
+Status set_least_feature(const Options& options, job::JobSettings& settings) {
+    constexpr double most_m = 0.01;
+    if (options.least_feature.empty()) return {};
+    const Result<double> least = parse_quantity(options.least_feature, Dimension::length);
+    if (!least) return input_error("--least-feature: {}", least.error().message);
+    if (!(*least > 0 && *least <= most_m))
+        return input_error("--least-feature {}: must be above 0 and at most 10 mm", options.least_feature);
+    settings.least_feature_um = *least * 1e6;
+    return {};
+}
+
 Status slice(const Options& options) {
     const auto progress = terminal_progress(options.output);
     const Result<machine::Printer> printer = machine::load_printer(options.printer);
@@ -211,6 +223,7 @@ Status slice(const Options& options) {
         drawing->warnings.push_back("xy_compensation and elephant_foot: layer images are printed as they are");
     }
     if (Status status = set_teeth(options, *drawing, settings.slicing); !status) return status;
+    if (Status status = set_least_feature(options, settings); !status) return status;
     settings.slicing.rules.anti_alias = !options.no_anti_alias;
     settings.slicing.rules.threshold = options.threshold;
     if (drawing->stacks.empty()) {
@@ -261,6 +274,8 @@ void add_slice(CLI::App& app, int& status) {
                      "MATERIAL+MATERIAL=PIXELS[,LAYERS]: teeth so deep, changing sides every so many layers")
         ->type_name("A+B=PIXELS[,LAYERS]")
         ->allow_extra_args(false);
+    command->add_option("--least-feature", options->least_feature,
+                        "warn of walls and tips narrower than this, as in \"0.3 mm\"");
     command->add_option("--copies", options->copies, "how many of the part, side by side");
     command->add_option("--spacing", options->spacing, "between copies, as in \"2 mm\"")->capture_default_str();
     command->add_option("--turn", options->turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
