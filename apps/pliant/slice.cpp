@@ -14,6 +14,7 @@
 #include "core/units.hpp"
 #include "job/make_job.hpp"
 #include "job/png.hpp"
+#include "job/settings_record.hpp"
 #include "machine/printer.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -244,6 +245,8 @@ Status slice(const Options& options) {
     const std::string gcode = plan::write_gcode(*plan, made->manifest, *printer);
     Status status = plan::check_gcode(gcode, *printer);
     if (status) status = writer->add_file("printer.toml", *printer_text);
+    const job::Request request{options.inputs, options.assignments, options.turn, options.spacing};
+    if (status) status = writer->add_file("settings.json", job::settings_json(settings, request));
     if (status) status = writer->add_file("plan.json", plan::plan_json(*plan));
     if (status) status = writer->add_file("job.gcode", gcode);
     if (status) status = writer->finish(made->manifest);
