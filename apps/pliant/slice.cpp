@@ -2,8 +2,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "core/units.hpp"
 #include "job/make_job.hpp"
 #include "job/png.hpp"
+#include "job/settings_record.hpp"
 #include "machine/printer.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -29,10 +32,11 @@ struct Options {
     std::string layer;
     std::string job;
     std::string picture;
-    std::vector<std::string> assignments, resins;
+    std::vector<std::string> assignments, resins, interlocks;
     int copies = 1;
     std::string spacing = "2 mm";
     std::vector<double> turn;
+    std::string least_feature;
     bool no_anti_alias = false;
     double threshold = 0.5;
     Output output;
@@ -73,6 +77,51 @@ Result<int> layer_height_um(const Options& options, const machine::Printer& prin
     if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
         return input_error("--layer {}: a whole number of micrometres from 1 to 1000 is needed", options.layer);
     return static_cast<int>(um);
+}
+
+/// Of every material, as the resin that it is printed in asks for.
+std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
+    std::map<std::string, slice::Compensation> result;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr || (resin->xy_compensation_um == 0 && resin->elephant_foot_um == 0)) continue;
+        result[material] = {static_cast<double>(resin->xy_compensation_um),
+                            static_cast<double>(resin->elephant_foot_um), resin->elephant_foot_layers};
+    }
+    return result;
+}
+
+/// A whole number without anything around it; -1 for anything else.
+int plain_number(const std::string& text) {
+    int number = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? number : -1;
+}
+
+/// FIRST+SECOND=DEPTH or FIRST+SECOND=DEPTH,LAYERS.
+Result<slice::Teeth> read_teeth(const std::string& text) {
+    const std::size_t equals = text.rfind('='), plus = text.find('+');
+    if (equals == std::string::npos || plus == std::string::npos || plus > equals)
+        return input_error("--interlock {}: write MATERIAL+MATERIAL=PIXELS or MATERIAL+MATERIAL=PIXELS,LAYERS", text);
+    const std::string numbers = text.substr(equals + 1);
+    const std::size_t comma = std::min(numbers.find(','), numbers.size());
+    slice::Teeth teeth{text.substr(0, plus), text.substr(plus + 1, equals - plus - 1), 0, 1};
+    teeth.depth_px = plain_number(numbers.substr(0, comma));
+    if (comma < numbers.size()) teeth.layers = plain_number(numbers.substr(comma + 1));
+    if (teeth.depth_px < 0 || teeth.layers < 0)
+        return input_error("--interlock {}: \"{}\" must be whole numbers, as in 4 or 4,2", text, numbers);
+    return teeth;
+}
+
+Status set_teeth(const Options& options, const Drawing& drawing, slice::Settings& slicing) {
+    if (!options.interlocks.empty() && !drawing.stacks.empty())
+        return input_error("--interlock: layer images are printed as they are");
+    for (const std::string& text : options.interlocks) {
+        Result<slice::Teeth> teeth = read_teeth(text);
+        if (!teeth) return tl::unexpected(teeth.error());
+        slicing.teeth.push_back(std::move(*teeth));
+    }
+    return {};
 }
 
 int bottom_layers(const machine::Printer& printer) {
@@ -135,6 +184,17 @@ Status draw_picture(const Options& options) {
     return write_file(options.picture, *png);
 }
 
+Status set_least_feature(const Options& options, job::JobSettings& settings) {
+    constexpr double most_m = 0.01;
+    if (options.least_feature.empty()) return {};
+    const Result<double> least = parse_quantity(options.least_feature, Dimension::length);
+    if (!least) return input_error("--least-feature: {}", least.error().message);
+    if (!(*least > 0 && *least <= most_m))
+        return input_error("--least-feature {}: must be above 0 and at most 10 mm", options.least_feature);
+    settings.least_feature_um = *least * 1e6;
+    return {};
+}
+
 Status slice(const Options& options) {
     const auto progress = terminal_progress(options.output);
     const Result<machine::Printer> printer = machine::load_printer(options.printer);
@@ -158,6 +218,13 @@ Status slice(const Options& options) {
     settings.copies = options.copies;
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(*drawing, *printer, drawing->warnings);
+    settings.slicing.compensation = compensations(*drawing, *printer);
+    if (!drawing->stacks.empty() && !settings.slicing.compensation.empty()) {
+        settings.slicing.compensation.clear();
+        drawing->warnings.push_back("xy_compensation and elephant_foot: layer images are printed as they are");
+    }
+    if (Status status = set_teeth(options, *drawing, settings.slicing); !status) return status;
+    if (Status status = set_least_feature(options, settings); !status) return status;
     settings.slicing.rules.anti_alias = !options.no_anti_alias;
     settings.slicing.rules.threshold = options.threshold;
     if (drawing->stacks.empty()) {
@@ -178,6 +245,8 @@ Status slice(const Options& options) {
     const std::string gcode = plan::write_gcode(*plan, made->manifest, *printer);
     Status status = plan::check_gcode(gcode, *printer);
     if (status) status = writer->add_file("printer.toml", *printer_text);
+    const job::Request request{options.inputs, options.assignments, options.turn, options.spacing};
+    if (status) status = writer->add_file("settings.json", job::settings_json(settings, request));
     if (status) status = writer->add_file("plan.json", plan::plan_json(*plan));
     if (status) status = writer->add_file("job.gcode", gcode);
     if (status) status = writer->finish(made->manifest);
@@ -203,6 +272,13 @@ void add_slice(CLI::App& app, int& status) {
     command->add_option("--resin", options->resins, "MATERIAL=RESIN: what a material is printed in")
         ->type_name("MATERIAL=RESIN")
         ->allow_extra_args(false);
+    command
+        ->add_option("--interlock", options->interlocks,
+                     "MATERIAL+MATERIAL=PIXELS[,LAYERS]: teeth so deep, changing sides every so many layers")
+        ->type_name("A+B=PIXELS[,LAYERS]")
+        ->allow_extra_args(false);
+    command->add_option("--least-feature", options->least_feature,
+                        "warn of walls and tips narrower than this, as in \"0.3 mm\"");
     command->add_option("--copies", options->copies, "how many of the part, side by side");
     command->add_option("--spacing", options->spacing, "between copies, as in \"2 mm\"")->capture_default_str();
     command->add_option("--turn", options->turn, "X Y Z: degrees about each axis, one after the other")->expected(3);

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "slice/inspect.hpp"
+#include "slice/thin.hpp"
 
 namespace pliant::job {
 namespace {
@@ -17,6 +18,7 @@ struct Prepared {
     slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
     slice::LayerShape shape;
+    std::vector<slice::ThinSpot> thin;
 };
 
 /// Where layers come from. `layer` is called from any thread; layers in [0, count).
@@ -29,8 +31,9 @@ struct LayerSource {
 Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, int k) {
     auto sliced = source.layer(k);
     if (!sliced) return tl::unexpected(sliced.error());
-    Prepared prepared{std::move(*sliced), {}, {}};
+    Prepared prepared{std::move(*sliced), {}, {}, {}};
     prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
+    prepared.thin = thin_spots(prepared.sliced, k, settings.least_feature_um, settings.slicing.raster);
     for (slice::MaterialImage& m : prepared.sliced.images) {
         prepared.images.push_back(encode(settings.light.none() ? m.image : corrected(m.image, settings.light)));
         m.image = {};
@@ -137,8 +140,9 @@ void note_rare_materials(Manifest& manifest) {
     }
 }
 
-/// The images must hold the volume that was drawn.
-void note_volume(Manifest& manifest) {
+/// The images must hold the volume that was drawn, unless outlines were moved on purpose.
+void note_volume(const slice::Settings& slicing, Manifest& manifest) {
+    if (!slicing.compensation.empty()) return;
     double drawn = 0, lit = 0;
     for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
     for (const Layer& layer : manifest.layers) {
@@ -150,14 +154,23 @@ void note_volume(Manifest& manifest) {
                                                 drawn, 100 * (lit / drawn - 1)));
 }
 
-void note_findings(const slice::Findings& findings, const JobSettings& settings, Manifest& manifest) {
+void note_thin(const std::vector<slice::ThinSpot>& thin, const JobSettings& settings, Manifest& manifest) {
+    std::vector<std::string> names;
+    for (const Material& m : manifest.materials) names.push_back(m.name);
+    for (std::string& line : describe(thin, names, settings.least_feature_um, settings.slicing.raster))
+        manifest.warnings.push_back(std::move(line));
+}
+
+void note_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
+                   const JobSettings& settings, Manifest& manifest) {
+    note_thin(thin, settings, manifest);
     for (std::string& line : describe(findings, settings.slicing.raster, settings.slicing.layer_um))
         manifest.warnings.push_back(std::move(line));
     if (static_cast<int>(findings.pieces.size()) > settings.copies)
         manifest.warnings.push_back(
             fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
     note_rare_materials(manifest);
-    note_volume(manifest);
+    note_volume(settings.slicing, manifest);
 }
 
 }  // namespace
@@ -215,11 +228,13 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     MadeJob job{empty_manifest(settings, std::move(*materials)), {}};
     slice::Tally tally(*slicer);
     slice::Inspector inspector;
+    std::vector<slice::ThinSpot> thin;
     const LayerSource source{slicer->layer_count(),
                              [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); }};
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
         tally.add(k, prepared.sliced);
         inspector.add(std::move(prepared.shape));
+        thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
     });
     if (!made) return tl::unexpected(made.error());
     job.summary = tally.summary();
@@ -230,7 +245,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
         }
     }
     job.manifest.warnings = job.summary.warnings;
-    note_findings(inspector.finish(), settings, job.manifest);
+    note_findings(inspector.finish(), thin, settings, job.manifest);
     return job;
 }
 
@@ -253,9 +268,11 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     source.layer = [&](int k) { return stacked_layer(stacks, k); };
     MadeJob job{empty_manifest(settings, std::move(materials)), {}};
     slice::Inspector inspector;
+    std::vector<slice::ThinSpot> thin;
     std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int, Prepared& prepared) {
         inspector.add(std::move(prepared.shape));
+        thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
         for (std::size_t i = 0; i < lost_px.size(); ++i) lost_px[i] += prepared.sliced.lost_px[i];
         for (const auto& m : prepared.sliced.images) lit[m.material] += static_cast<double>(m.value_sum) / 255;
     });
@@ -271,7 +288,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
                             stacks[i].material, lost_px[i] * voxel_mm3));
     }
     job.summary.layer_count = source.count;
-    note_findings(inspector.finish(), settings, job.manifest);
+    note_findings(inspector.finish(), thin, settings, job.manifest);
     return job;
 }
 

@@ -22,6 +22,7 @@ struct JobSettings {
     std::vector<Material> materials;
     int copies = 1;                  ///< of the part: how many pieces may touch each other nowhere
     slice::LightCorrection light{};  ///< of the stored images; areas and volumes are those before it
+    double least_feature_um = 0;     ///< a warning tells what is narrower; 0: none
 };
 
 struct MadeJob {

@@ -107,3 +107,20 @@ TEST_CASE("a material without settings, a bad body and cancellation stop the job
     } cancel;
     CHECK(slice_to_job(halves, settings(), *writer, cancel).error().cause == Cause::cancelled);
 }
+
+TEST_CASE("features narrower than asked for are named with material, layers and place") {
+    const TemporaryFolder folder;
+    auto writer = Writer::create(folder.path / "job.zip");
+    REQUIRE(writer.has_value());
+    JobSettings asked = settings();
+    asked.least_feature_um = 600;
+    const std::vector<slice::Body> fin{{"soft one", box({-1000, -1000, 0}, {1000, 1000, 500}), ""},
+                                       {"soft one", box({-100, -1000, 500}, {100, 1000, 700}), ""}};
+    Progress progress;
+    const auto made = slice_to_job(fin, asked, *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(made->manifest.warnings.size() == 1);
+    CHECK(made->manifest.warnings.front() ==
+          "material \"soft one\": features narrower than 0.6 mm in 4 layers from 10 to 13; most, 0.4 mm^2, in layer 10 "
+          "from row 14, column 31 on");
+}

@@ -120,10 +120,13 @@ struct Resin {
     double exposure_s = 0;
     double bottom_exposure_s = 0;  ///< of the first `bottom_layers` layers
     int bottom_layers = 0;
-    int cure_depth_um = 0;      ///< thickest layer that still holds on to the one before
-    double critical_share = 0;  ///< share of `exposure_s` below which a pixel stays liquid
-    double penetration_um = 0;  ///< Dp of the working curve (Jacobs); 0: from cure_depth and critical_share
-    double critical_J_m2 = 0;   ///< Ec of the working curve
+    int cure_depth_um = 0;       ///< thickest layer that still holds on to the one before
+    double critical_share = 0;   ///< share of `exposure_s` below which a pixel stays liquid
+    double penetration_um = 0;   ///< Dp of the working curve (Jacobs); 0: from cure_depth and critical_share
+    double critical_J_m2 = 0;    ///< Ec of the working curve
+    int xy_compensation_um = 0;  ///< outer borders of what is printed in it move outwards; negative: inwards
+    int elephant_foot_um = 0;    ///< and inwards in the first layer, evenly less up to `elephant_foot_layers`
+    int elephant_foot_layers = 0;
 };
 
 struct Projector {

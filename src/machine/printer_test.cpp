@@ -57,6 +57,22 @@ TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
     CHECK(printer->pump.on == "M106 P1 S255");
 }
 
+TEST_CASE("offsets of outlines belong to a resin") {
+    std::string text = tower_text();
+    const std::string table = "[resin.semi-flex]\n";
+    REQUIRE(text.find(table) != std::string::npos);
+    text.insert(text.find(table) + table.size(), "xy_compensation = \"-40 um\"\nelephant_foot = \"0.1 mm\"\n");
+    const auto printer = parse_printer(text, "p.toml");
+    REQUIRE_MESSAGE(printer, (printer ? "" : printer.error().message));
+    const Resin& resin = *printer->find_resin("semi-flex");
+    CHECK(resin.xy_compensation_um == -40);
+    CHECK(resin.elephant_foot_um == 100);
+    CHECK(resin.elephant_foot_layers == resin.bottom_layers);
+    CHECK(printer->find_resin("tough")->xy_compensation_um == 0);
+    CHECK(holds(message_with(table, table + "xy_compensation = \"2 cm\"\n"),
+                "resin.semi-flex.xy_compensation: must be -10 mm to 10 mm"));
+}
+
 TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:30: axis.tower.letter"));

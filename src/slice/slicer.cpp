@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.hpp"
+#include "core/text.hpp"
 #include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
@@ -18,6 +20,9 @@ Status check(const Settings& settings) {
         return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
     if (!(settings.rules.close_gap_um >= 0))
         return input_error("gap of {} um to close: must not be negative", settings.rules.close_gap_um);
+    for (const auto& [material, compensation] : settings.compensation) {
+        if (auto status = check(compensation, "material '" + material + "'"); !status) return status;
+    }
     return {};
 }
 
@@ -68,6 +73,7 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
         if (auto status = slicer.add_body(bodies[i], describe(bodies[i], i)); !status)
             return tl::unexpected(status.error());
     }
+    if (auto status = slicer.check_teeth(); !status) return tl::unexpected(status.error());
     if (slicer.layer_count_ == 0)
         return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
     return slicer;
@@ -115,15 +121,63 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
-SlicedLayer Slicer::layer(int k) const {
-    CellBuffer cells(settings_.raster);
+ComposedLayer Slicer::composed(int layer, const Raster& raster, const ComposeRules& rules) const {
+    CellBuffer cells(raster);
     std::vector<Segment> segments;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
-        section(b, k, segments);
+        section(b, layer, segments);
         cells.add(static_cast<int>(b), segments);
     }
-    return compose(cells.sorted(), material_of_, settings_.raster, settings_.rules);
+    return compose(cells.sorted(), material_of_, raster, rules);
+}
+
+/// Per material; empty where no border of the layer moves.
+std::vector<double> Slicer::offsets_um(int layer) const {
+    std::vector<double> offsets;
+    for (const std::string& material : materials_) {
+        const auto known = settings_.compensation.find(material);
+        offsets.push_back(known == settings_.compensation.end() ? 0 : known->second.offset_um(layer));
+    }
+    if (std::all_of(offsets.begin(), offsets.end(), [](double um) { return um == 0; })) offsets.clear();
+    return offsets;
+}
+
+/// With outer borders moved.
+ComposedLayer Slicer::outlined(int k) const {
+    const std::vector<double> offsets = offsets_um(k);
+    if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
+    const int factor = fine_factor(settings_.raster);
+    const ComposedLayer fine = composed(k, refined(settings_.raster, factor), {false, 0.5, 0});
+    return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    SlicedLayer layer = outlined(k);
+    for (const Teeth& teeth : settings_.teeth) {
+        int taker = material(teeth.first), giver = material(teeth.second);
+        if (k / teeth.layers % 2 == 1) std::swap(taker, giver);
+        take_teeth(layer, taker, giver, teeth.depth_px);
+    }
+    return layer;
+}
+
+/// Its index; -1 if no body names it.
+int Slicer::material(const std::string& name) const {
+    const auto found = std::find(materials_.begin(), materials_.end(), name);
+    return found == materials_.end() ? -1 : static_cast<int>(found - materials_.begin());
+}
+
+Status Slicer::check_teeth() const {
+    for (const Teeth& teeth : settings_.teeth) {
+        if (auto status = check(teeth); !status) return status;
+        for (const std::string& name : {teeth.first, teeth.second}) {
+            if (material(name) < 0)
+                return input_error("interlock '{}' with '{}': there is no material '{}', only {}", teeth.first,
+                                   teeth.second, name, join_names(materials_));
+        }
+    }
+    return {};
 }
 
 Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <variant>
@@ -17,10 +18,12 @@
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "slice/body.hpp"
+#include "slice/compensate.hpp"
 #include "slice/compose.hpp"
 #include "slice/outline_stack.hpp"
 #include "slice/run_image.hpp"
 #include "slice/section.hpp"
+#include "slice/teeth.hpp"
 
 namespace pliant::slice {
 
@@ -28,6 +31,8 @@ struct Settings {
     Raster raster;
     int layer_um = 50;
     ComposeRules rules;
+    std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
+    std::vector<Teeth> teeth{};                          ///< cut one after the other, after compensation
 };
 
 /// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
@@ -67,6 +72,11 @@ private:
     Status add_body(const Body& body, const std::string& label);
     void add_shape(const Body& body, const Vec3& size_um);
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
+    [[nodiscard]] std::vector<double> offsets_um(int layer) const;
+    [[nodiscard]] int material(const std::string& name) const;
+    [[nodiscard]] Status check_teeth() const;
+    [[nodiscard]] ComposedLayer outlined(int layer) const;
+    [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
     std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
