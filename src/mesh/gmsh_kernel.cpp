@@ -329,8 +329,9 @@ double surface_area(const Entities& volumes) {
     return sum;
 }
 
-/// Joins the solids where they touch, so that the pieces share their common faces; gives the solid of every volume.
-std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
+/// Joins the solids where they touch or stand at most `within` apart, so that the pieces share their common faces;
+/// gives the solid of every volume.
+std::map<int, int> join_volumes(const std::vector<Entities>& volumes, double within) {
     Entities all;
     std::vector<int> owner;
     for (std::size_t s = 0; s < volumes.size(); ++s) {
@@ -340,6 +341,7 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
     if (all.size() == 1) return {{all.front().second, 0}};
     Entities out;
     std::vector<Entities> parts;
+    gmsh::option::setNumber("Geometry.ToleranceBoolean", within);
     occ::fragment({all.front()}, Entities(all.begin() + 1, all.end()), out, parts);
     std::map<int, int> solid_of_volume;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -483,7 +485,7 @@ tl::unexpected<Error> nothing_left(const NamedSolid& named) {
 }
 
 Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
-                                int refinement) {
+                                double join_within, int refinement) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
         double volume = 0;
@@ -494,7 +496,7 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
             volume += one;
         }
         std::vector<std::string> notes = overlaps(solids, volumes);
-        const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        const std::map<int, int> solid_of_volume = join_volumes(volumes, join_within);
         for (std::size_t i = 0; i < solids.size(); ++i) {
             const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
             if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
@@ -536,11 +538,12 @@ Status check_tet_count(double volume, double area, double size) {
         estimate(size), most, enough);
 }
 
-Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at) {
-    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, 1);
+Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
+                            double join_within) {
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, join_within, 1);
     // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
     for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
-        mesh = try_mesh_solids(solids, size, order, size_at, refinement);
+        mesh = try_mesh_solids(solids, size, order, size_at, join_within, refinement);
     return mesh;
 }
 
