@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/mesh_report.hpp"
 #include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
@@ -547,7 +548,13 @@ Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int
     return mesh;
 }
 
-Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
+namespace {
+
+/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+constexpr double sliver_deg = 5;
+
+/// One attempt of mesh_surface().
+Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(surface);
         gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
@@ -571,6 +578,26 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);
+}
+
+}  // namespace
+
+Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
+    Result<TetMesh> best = try_mesh_surface(surface, size, angle_deg, size_at);
+    if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
+    double angle = smallest_dihedral_deg(*best);
+    // Slivers come by chance: a slightly smaller size gives other points, and as a rule none.
+    for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
+        SizeAt smaller;
+        if (size_at) smaller = [&](std::size_t solid, const Vec3& p) { return factor * size_at(solid, p); };
+        Result<TetMesh> other = try_mesh_surface(surface, factor * size, angle_deg, smaller);
+        if (!other || !other->notes.empty()) continue;
+        const double its = smallest_dihedral_deg(*other);
+        if (its <= angle) continue;
+        angle = its;
+        best = std::move(other);
+    }
+    return best;
 }
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance) {

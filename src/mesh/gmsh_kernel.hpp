@@ -28,8 +28,8 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
                                           const SizeAt& size_at = {}, double join_within = 0);
 
 /// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
-/// than `angle_deg` stay. A surface that cannot be parametrised keeps its own triangles,
-/// and a note says so.
+/// than `angle_deg` stay. Where a dihedral angle is under 5 degrees edges get up to a fifth shorter. A surface that
+/// cannot be parametrised keeps its own triangles, and a note says so.
 [[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg,
                                            const SizeAt& size_at = {});
 
