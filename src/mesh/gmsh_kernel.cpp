@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/mesh_report.hpp"
 #include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
@@ -329,8 +330,9 @@ double surface_area(const Entities& volumes) {
     return sum;
 }
 
-/// Joins the solids where they touch, so that the pieces share their common faces; gives the solid of every volume.
-std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
+/// Joins the solids where they touch or stand at most `within` apart, so that the pieces share their common faces;
+/// gives the solid of every volume.
+std::map<int, int> join_volumes(const std::vector<Entities>& volumes, double within) {
     Entities all;
     std::vector<int> owner;
     for (std::size_t s = 0; s < volumes.size(); ++s) {
@@ -340,6 +342,7 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes) {
     if (all.size() == 1) return {{all.front().second, 0}};
     Entities out;
     std::vector<Entities> parts;
+    gmsh::option::setNumber("Geometry.ToleranceBoolean", within);
     occ::fragment({all.front()}, Entities(all.begin() + 1, all.end()), out, parts);
     std::map<int, int> solid_of_volume;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -483,7 +486,7 @@ tl::unexpected<Error> nothing_left(const NamedSolid& named) {
 }
 
 Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
-                                int refinement) {
+                                double join_within, int refinement) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
         double volume = 0;
@@ -494,7 +497,7 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
             volume += one;
         }
         std::vector<std::string> notes = overlaps(solids, volumes);
-        const std::map<int, int> solid_of_volume = join_volumes(volumes);
+        const std::map<int, int> solid_of_volume = join_volumes(volumes, join_within);
         for (std::size_t i = 0; i < solids.size(); ++i) {
             const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
             if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
@@ -536,15 +539,22 @@ Status check_tet_count(double volume, double area, double size) {
         estimate(size), most, enough);
 }
 
-Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at) {
-    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, 1);
+Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
+                            double join_within) {
+    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, join_within, 1);
     // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
     for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
-        mesh = try_mesh_solids(solids, size, order, size_at, refinement);
+        mesh = try_mesh_solids(solids, size, order, size_at, join_within, refinement);
     return mesh;
 }
 
-Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
+namespace {
+
+/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+constexpr double sliver_deg = 5;
+
+/// One attempt of mesh_surface().
+Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(surface);
         gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
@@ -568,6 +578,26 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);
+}
+
+}  // namespace
+
+Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
+    Result<TetMesh> best = try_mesh_surface(surface, size, angle_deg, size_at);
+    if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
+    double angle = smallest_dihedral_deg(*best);
+    // Slivers come by chance: a slightly smaller size gives other points, and as a rule none.
+    for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
+        SizeAt smaller;
+        if (size_at) smaller = [&](std::size_t solid, const Vec3& p) { return factor * size_at(solid, p); };
+        Result<TetMesh> other = try_mesh_surface(surface, factor * size, angle_deg, smaller);
+        if (!other || !other->notes.empty()) continue;
+        const double its = smallest_dihedral_deg(*other);
+        if (its <= angle) continue;
+        angle = its;
+        best = std::move(other);
+    }
+    return best;
 }
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance) {

@@ -115,3 +115,25 @@ TEST_CASE("broken STL files are meshed from their winding number, or refused wit
         CHECK(notes.find(row.told) != std::string::npos);
     }
 }
+
+TEST_CASE("closed clean surfaces of real robots: no dihedral angle under 5 degrees") {
+    for (const char* file :
+         {"cable_finger/finger.stl", "pneunet_finger/pneunetCut.stl", "pneunet_finger/pneunetCavityCut.stl",
+          "tripod/tripod_low.stl", "tripod/tripod_mid.stl", "tripod/tripod_high.stl"}) {
+        const Result<SurfaceFile> surface = read_surface(folder("softrobots/") + file);
+        REQUIRE_MESSAGE(surface, (surface ? "" : surface.error().message));
+        REQUIRE(check_closed(surface->mesh));
+        const Vec3 d = bounds(surface->mesh).size();
+        for (const double divisions : {12, 20, 24}) {
+            CAPTURE(file);
+            CAPTURE(divisions);
+            Progress silent;
+            const Result<TetMesh> mesh =
+                mesh_bodies(std::vector<BodyGeometry>{{"robot", surface->mesh}},
+                            {.size = std::max({d.x, d.y, d.z}) / divisions, .order = 1}, silent);
+            REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+            CHECK(smallest_dihedral_deg(*mesh) >= 5);
+            CHECK(volume(*mesh) == doctest::Approx(signed_volume(surface->mesh)).epsilon(0.02));
+        }
+    }
+}

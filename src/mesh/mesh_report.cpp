@@ -96,6 +96,14 @@ std::string surface_text(const SurfaceFile& surface) {
 
 }  // namespace
 
+double smallest_dihedral_deg(const TetMesh& mesh) {
+    double smallest = 180;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        for (const double angle : dihedral_angles(mesh, t)) smallest = std::min(smallest, angle);
+    }
+    return smallest;
+}
+
 MeshReport report_on(const TetMesh& mesh) {
     MeshReport report;
     report.order = mesh.order;

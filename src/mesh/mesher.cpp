@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/narrow_gaps.hpp"
 #include "mesh/size_field.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_shells.hpp"
@@ -61,7 +62,7 @@ kernel::SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of
 }
 
 Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
-                               const SizeField& field) {
+                               const SizeField& field, double join_within) {
     std::vector<kernel::NamedSolid> solids;
     std::vector<int> body_of_solid;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -72,7 +73,7 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
     }
     if (solids.empty()) return Part{};
     const kernel::SizeAt size_at = sizes_of(field, {body_of_solid.begin(), body_of_solid.end()});
-    Result<TetMesh> mesh = kernel::mesh_solids(solids, settings.size, settings.order, size_at);
+    Result<TetMesh> mesh = kernel::mesh_solids(solids, settings.size, settings.order, size_at, join_within);
     if (!mesh) return tl::unexpected(mesh.error());
     for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
     return Part{std::move(*mesh), false};
@@ -159,10 +160,11 @@ Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& 
     return {};
 }
 
+/// Solids that stand at most `join_within` apart are joined.
 Result<TetMesh> mesh_once(std::span<const BodyGeometry> bodies, const MeshSettings& settings, const SizeField& field,
-                          Progress& progress) {
+                          Progress& progress, double join_within = 0) {
     progress.advance("mesh", 0);
-    Result<Part> solids = mesh_drawn_solids(bodies, settings, field);
+    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within);
     if (!solids) return tl::unexpected(solids.error());
     std::vector<Part> parts;
     if (solids->mesh.tet_count() > 0) parts.push_back(std::move(*solids));
@@ -183,6 +185,46 @@ Result<TetMesh> mesh_once(std::span<const BodyGeometry> bodies, const MeshSettin
     TetMesh mesh = joined(parts, settings.order);
     for (const BodyGeometry& body : bodies) mesh.region_names.push_back(body.name);
     progress.advance("mesh", 1);
+    return mesh;
+}
+
+std::string told(const NarrowGap& gap, std::span<const BodyGeometry> bodies) {
+    return fmt::format("a gap of {:.3g} between \"{}\" and \"{}\" at ({:.4g}, {:.4g}, {:.4g})", gap.width,
+                       bodies[static_cast<std::size_t>(gap.first)].name,
+                       bodies[static_cast<std::size_t>(gap.second)].name, gap.at.x, gap.at.y, gap.at.z);
+}
+
+/// A line for each gap that was there: closed, or else still open.
+std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const std::vector<NarrowGap>& before,
+                                   const std::vector<NarrowGap>& after) {
+    std::vector<std::string> notes;
+    for (const NarrowGap& gap : before) {
+        const bool open = std::any_of(after.begin(), after.end(), [&](const NarrowGap& other) {
+            return other.first == gap.first && other.second == gap.second;
+        });
+        notes.push_back(told(gap, bodies) +
+                        (open ? " could not be closed: they are not joined there; draw them so that they touch or "
+                                "overlap"
+                              : " was closed; close_gaps says up to which width"));
+    }
+    return notes;
+}
+
+/// The mesh, made anew with bodies joined where a narrow gap keeps them apart.
+Result<TetMesh> close_gaps(std::span<const BodyGeometry> bodies, const MeshSettings& settings, const SizeField& field,
+                           TetMesh mesh, Progress& progress) {
+    if (!(settings.close_gaps > 0)) return mesh;
+    const std::vector<NarrowGap> gaps = narrow_gaps(mesh, settings.close_gaps);
+    if (gaps.empty()) return mesh;
+    constexpr double room = 1.05;  // for rounding
+    double widest = 0;
+    for (const NarrowGap& gap : gaps) widest = std::max(widest, gap.width);
+    Result<TetMesh> closed = mesh_once(bodies, settings, field, progress, room * widest);
+    if (!closed && closed.error().cause != Cause::failed) return closed;
+    const std::vector<NarrowGap> left = closed ? narrow_gaps(*closed, settings.close_gaps) : gaps;
+    if (closed) mesh = std::move(*closed);
+    const std::vector<std::string> notes = gap_notes(bodies, gaps, left);
+    mesh.notes.insert(mesh.notes.end(), notes.begin(), notes.end());
     return mesh;
 }
 
@@ -255,6 +297,7 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
     SizeField field(bodies, settings);
     if (Status status = follow_walls(bodies, settings, field, progress); !status) return tl::unexpected(status.error());
     Result<TetMesh> mesh = mesh_once(bodies, settings, field, progress);
+    if (mesh) mesh = close_gaps(bodies, settings, field, std::move(*mesh), progress);
     if (!mesh) return mesh;
     if (field.too_thin())
         mesh->notes.push_back(

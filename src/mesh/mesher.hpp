@@ -29,15 +29,17 @@ struct MeshSettings {
     double angle_deg = 30;        ///< edges of a surface file sharper than this are kept
     int through_wall = 0;         ///< elements through every wall, at least; 0: as the size gives
     bool judge_walls = false;     ///< a note names the thinnest wall that has fewer than three elements through it
+    double close_gaps = 0;        ///< gaps between solids up to this width are closed; 0: none
     double size_near_cables = 0;  ///< within twice this length of a cable; 0: no wish
     std::vector<std::vector<Vec3>> cables = {};  ///< their points
 };
 
 /// One mesh of all bodies; region i is body i. Solid expressions that touch share the nodes of the common face; of
-/// those that overlap the later one has what they share, and a note tells the volume. A surface may have several shells
-/// and cavities; it is meshed anew, its sharp edges kept (or, where that fails, it keeps its triangles, and a note says
-/// so), and must stand apart from every other body. The same input gives the same mesh. A mesh of more than 20 million
-/// tets is refused.
+/// those that overlap the later one has what they share, and a note tells the volume. A gap of at most `close_gaps`
+/// between two is closed, and a note tells its width; one that cannot be closed is told likewise. A surface may have
+/// several shells and cavities; it is meshed anew, its sharp edges kept (or, where that fails, it keeps its triangles,
+/// and a note says so), and must stand apart from every other body. The same input gives the same mesh. A mesh of more
+/// than 20 million tets is refused.
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
                                           Progress& progress);
 

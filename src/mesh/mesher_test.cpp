@@ -258,6 +258,47 @@ TEST_CASE("enclosed space is a region of its own, with a cap where it has a mout
     CHECK(volume(capped, 1) == doctest::Approx(7 * 16).scale(0));
 }
 
+TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
+    const std::vector<BodyGeometry> bars = {{"left", box({0, 0, 0}, {10, 10, 10})},
+                                            {"right", box({10.004, 2, 2}, {20, 8, 8})}};
+    const Solid hole = solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 2});
+    const std::vector<BodyGeometry> pin = {{"block", without(box({0, 0, 0}, {10, 10, 4}), hole)},
+                                           {"pin", solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 1.996})}};
+    const auto mesh_with = [](const std::vector<BodyGeometry>& bodies, double close_gaps) {
+        Progress silent;
+        Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 2, .order = 1, .close_gaps = close_gaps}, silent);
+        REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        return *mesh;
+    };
+    struct Row {
+        const std::vector<BodyGeometry>* bodies;
+        double whole, between;  ///< areas of the surface: of both bodies, of the face between them
+    };
+    const double pi = std::numbers::pi;
+    for (const Row& row :
+         {Row{&bars, 6 * 100 + 2 * 36 + 4 * 60, 36}, Row{&pin, 2 * 100 + 4 * 40 + 2 * 16 * pi, 16 * pi}}) {
+        const auto area = [](const TetMesh& mesh) {
+            double sum = 0;
+            for (const Face& f : boundary_faces(mesh)) {
+                const Vec3& p = mesh.points[f.nodes[0]];
+                sum += norm(cross(mesh.points[f.nodes[1]] - p, mesh.points[f.nodes[2]] - p)) / 2;
+            }
+            return sum;
+        };
+        const TetMesh open = mesh_with(*row.bodies, 0.003);
+        CHECK(open.notes.empty());
+        CHECK(area(open) == doctest::Approx(row.whole).epsilon(0.02));
+        const TetMesh closed = mesh_with(*row.bodies, 0.01);
+        CHECK(area(closed) == doctest::Approx(row.whole - 2 * row.between).epsilon(0.02));
+        CHECK(volume(closed) == doctest::Approx(volume(open)).epsilon(0.01));
+        REQUIRE(closed.notes.size() == 1);
+        CAPTURE(closed.notes.front());
+        CHECK(closed.notes.front().find("between \"" + row.bodies->front().name) != std::string::npos);
+        if (row.bodies == &bars) CHECK(closed.notes.front().starts_with("a gap of 0.004 between"));
+        CHECK(closed.notes.front().find("was closed") != std::string::npos);
+    }
+}
+
 TEST_CASE("what cannot be meshed is refused with a reason") {
     CHECK(problem({{"a", box({1, 1, 1}, {2, 2, 2})}, {"b", box({0, 0, 0}, {5, 5, 5})}}, 3)
               .find("body \"a\" is empty: all of it belongs to later ones") != std::string::npos);

@@ -93,6 +93,33 @@ TEST_CASE("every format gives back what was written into it, linear and quadrati
     }
 }
 
+TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shares its mid-edge nodes") {
+    const std::string text =
+        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1\n"
+        "12, .5, 0, 0\n23, .6, .6, 0\n13, 0, .5, 0\n14, 0, 0, .5\n24, .5, 0, .5\n34, 0, .5, .5\n"
+        "*ELEMENT, TYPE=C3D4, ELSET=plain\n1, 2, 3, 4, 5\n"
+        "*ELEMENT, TYPE=C3D10, ELSET=round\n2, 1, 2, 3, 4, 12, 23, 13, 14, 24, 34\n";
+    const Result<TetMesh> mesh = parse_tet_mesh(text, "a");
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(mesh->order == 2);
+    CHECK(mesh->tet_count() == 2);
+    CHECK(mesh->points.size() == 5 + 9);  // of 12 edges the two tets have three in common
+    REQUIRE(mesh->notes.size() == 1);
+    CHECK(mesh->notes.front() == "1 of 2 tets have 4 nodes and the others 10: all were given 10");
+    for (std::size_t t = 0; t < 2; ++t) {
+        const auto n = mesh->tet(t);
+        const std::string& name = mesh->region_names[static_cast<std::size_t>(mesh->region[t])];
+        CHECK(name == (t == 0 ? "plain" : "round"));
+        for (std::size_t e = 0; e < 6; ++e) {
+            const Vec3 a = mesh->points[n[edge_corners[e][0]]];
+            const Vec3 b = mesh->points[n[edge_corners[e][1]]];
+            const bool bent = norm(a + b - Vec3{1, 1, 0}) < 1e-12 && a.z == 0;
+            CHECK(mesh->points[n[4 + e]] == (bent ? Vec3{.6, .6, 0} : 0.5 * (a + b)));
+        }
+    }
+    CHECK(boundary_faces(*mesh).size() == 6);
+}
+
 TEST_CASE("files are written by their extension and read by their content") {
     const auto folder = std::filesystem::temp_directory_path() / fmt::format("pliant_formats_{}", getpid());
     std::filesystem::create_directories(folder);

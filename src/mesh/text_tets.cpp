@@ -29,11 +29,17 @@ Result<TenNodes> read_tet_nodes(TextScanner& scan, const NumberedPoints& points,
 Result<TetMesh> finish(TextTets&& read, const std::string& name) {
     const auto width = [](const TenNodes& tet) { return tet.back() < 0 ? std::size_t{4} : std::size_t{10}; };
     const std::vector<Vec3> points = read.points.take();
-    bool quadratic = !read.tets.empty();
-    for (const TenNodes& tet : read.tets) quadratic = quadratic && width(tet) == 10;
-    if (quadratic) {
-        if (Status status = order_mid_edge_nodes(points, read.tets); !status)
+    std::vector<TenNodes> quadratic;
+    for (const TenNodes& tet : read.tets) {
+        if (width(tet) == 10) quadratic.push_back(tet);
+    }
+    if (!quadratic.empty()) {
+        if (Status status = order_mid_edge_nodes(points, quadratic); !status)
             return input_error("{}: {}", name, status.error().message);
+        std::size_t next = 0;
+        for (TenNodes& tet : read.tets) {
+            if (width(tet) == 10) tet = quadratic[next++];
+        }
     }
     TetCollector collector(points);
     for (std::size_t t = 0; t < read.tets.size(); ++t) {

@@ -250,14 +250,13 @@ private:
     void add_robot() {
         std::vector<Pose> poses;
         for (const std::size_t step : steps_) poses.push_back(pose(surface_, s_.result.steps[step].positions));
-        Json primitives = Json::array();
         for (int m = 0; m < static_cast<int>(s_.materials.size()); ++m) {
             const Motion motion = material_motion(surface_, poses, m);
             if (motion.triangles.empty()) continue;
-            materials_.push_back(material_json(s_.materials[static_cast<std::size_t>(m)].name, colour_of(s_, m), 0.6));
-            primitives.push_back(primitive_json(buffer_, motion, static_cast<int>(materials_.size()) - 1));
+            const std::string& name = s_.materials[static_cast<std::size_t>(m)].name;
+            materials_.push_back(material_json(name, colour_of(s_, m), 0.6));
+            add_mesh(name, Json::array({primitive_json(buffer_, motion, static_cast<int>(materials_.size()) - 1)}));
         }
-        add_mesh("robot", std::move(primitives));
     }
 
     void add_cables() {
@@ -286,7 +285,7 @@ private:
         }
     }
 
-    void add_mesh(const char* name, Json primitives) {
+    void add_mesh(const std::string& name, Json primitives) {
         Json mesh = {{"name", name}, {"primitives", std::move(primitives)}};
         if (steps_.size() > 1) mesh["weights"] = std::vector<double>(steps_.size() - 1, 0.0);
         meshes_.push_back(std::move(mesh));

@@ -10,7 +10,7 @@
 
 namespace pliant::report {
 
-/// The file's bytes: mesh "robot" with one primitive per material that the outer surface shows, mesh "cables" with one
+/// The file's bytes: one mesh per material that the outer surface shows, by its name, mesh "cables" with one
 /// tube per cable, and an animation of `animation_s` seconds that runs through morph targets (positions and normals).
 /// The steps are thinned out evenly to at most `target_limit` targets, the last always among them; fewer where the
 /// targets would take more than about 24 MB.

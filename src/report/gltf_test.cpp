@@ -71,15 +71,19 @@ TEST_CASE("views are aligned and inside the buffer, and every accessor with boun
     }
 }
 
-TEST_CASE("there is a primitive per material, in its colour, and a tube for the cable") {
+TEST_CASE("there is a mesh per material, in its colour, and a tube for the cable") {
     const Glb glb = glb_of(test::bent_bar(4, 1), 40);
     const json& meshes = glb.document["meshes"];
-    REQUIRE(meshes.size() == 2);
-    CHECK(meshes[0]["name"] == "robot");
-    REQUIRE(meshes[0]["primitives"].size() == 2);
-    CHECK(meshes[0]["primitives"][0]["targets"].size() == 4);
-    CHECK(meshes[0]["weights"].size() == 4);
-    CHECK(meshes[1]["primitives"].size() == 1);
+    REQUIRE(meshes.size() == 3);
+    for (std::size_t m = 0; m < 2; ++m) {
+        CHECK(meshes[m]["name"] == glb.document["materials"][m]["name"]);
+        REQUIRE(meshes[m]["primitives"].size() == 1);
+        CHECK(meshes[m]["primitives"][0]["material"] == m);
+        CHECK(meshes[m]["primitives"][0]["targets"].size() == 4);
+        CHECK(meshes[m]["weights"].size() == 4);
+    }
+    CHECK(meshes[2]["name"] == "cables");
+    CHECK(meshes[2]["primitives"].size() == 1);
     const json& materials = glb.document["materials"];
     CHECK(materials[0]["name"] == "ninjaflex");
     CHECK(materials[1]["name"] == "cheetah");
@@ -90,7 +94,7 @@ TEST_CASE("there is a primitive per material, in its colour, and a tube for the 
 TEST_CASE("rest plus the last target is the last step, Y up") {
     const auto robot = test::bent_bar(4, 1);
     const Glb glb = glb_of(robot, 40);
-    const json& primitive = glb.document["meshes"][0]["primitives"][1];
+    const json& primitive = glb.document["meshes"][1]["primitives"][0];
     const auto rest = glb.floats(primitive["attributes"]["POSITION"].get<std::size_t>());
     const auto delta = glb.floats(primitive["targets"][3]["POSITION"].get<std::size_t>());
     REQUIRE(rest.size() == delta.size());
@@ -106,8 +110,8 @@ TEST_CASE("rest plus the last target is the last step, Y up") {
 TEST_CASE("the animation runs through one target after the other in three seconds") {
     const Glb glb = glb_of(test::bent_bar(30, 1), 4);
     const json& animation = glb.document["animations"][0];
-    CHECK(animation["channels"].size() == 2);
-    CHECK(animation["channels"][1]["target"] == json({{"node", 1}, {"path", "weights"}}));
+    CHECK(animation["channels"].size() == 3);
+    CHECK(animation["channels"][2]["target"] == json({{"node", 2}, {"path", "weights"}}));
     const auto times = glb.floats(animation["samplers"][0]["input"].get<std::size_t>());
     const auto weights = glb.floats(animation["samplers"][0]["output"].get<std::size_t>());
     REQUIRE(times.size() == 5);
@@ -123,14 +127,14 @@ TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
     s.obstacles = {{"floor", disc({0, 0, -0.01}, {0, 0, 1}, 0.1), true, {}}};
     for (int i = 0; i <= 4; ++i) s.obstacles[0].offset_m.push_back({0.001 * i, 0.002 * i, 0.003 * i});
     const Glb glb = parsed(robot_glb(s, outer_surface(s.mesh, s.region_material), 40));
-    REQUIRE(glb.document["meshes"].size() == 3);
-    CHECK(glb.document["meshes"][2]["name"] == "floor");
-    CHECK_FALSE(glb.document["meshes"][2].contains("weights"));
+    REQUIRE(glb.document["meshes"].size() == 4);
+    CHECK(glb.document["meshes"][3]["name"] == "floor");
+    CHECK_FALSE(glb.document["meshes"][3].contains("weights"));
     CHECK(glb.document["materials"].back()["doubleSided"] == true);
     const json& animation = glb.document["animations"][0];
-    REQUIRE(animation["channels"].size() == 3);
-    CHECK(animation["channels"][2]["target"] == json({{"node", 2}, {"path", "translation"}}));
-    const std::size_t sampler = animation["channels"][2]["sampler"].get<std::size_t>();
+    REQUIRE(animation["channels"].size() == 4);
+    CHECK(animation["channels"][3]["target"] == json({{"node", 3}, {"path", "translation"}}));
+    const std::size_t sampler = animation["channels"][3]["sampler"].get<std::size_t>();
     const auto places = glb.floats(animation["samplers"][sampler]["output"].get<std::size_t>());
     REQUIRE(places.size() == 15);
     CHECK(std::vector<float>(places.end() - 3, places.end()) == std::vector<float>{0.004F, 0.012F, -0.008F});

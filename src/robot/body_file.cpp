@@ -52,6 +52,18 @@ double read_size(Reader& reader, std::string_view key, const Context& context) {
     return size;
 }
 
+/// Up to which width gaps between bodies are closed.
+void read_close_gaps(Reader& reader, Context& context) {
+    if (!reader.has("close_gaps")) {
+        (void)reader.raw("close_gaps");
+        return;
+    }
+    const double width = reader.quantity("close_gaps", Dimension::length, 0) / context.robot.unit_m;
+    if (!(width >= 0)) reader.problem("close_gaps", "must not be below zero; \"0 mm\" closes none");
+    if (context.robot.mesh.file) reader.problem("close_gaps", "has no meaning beside a mesh file");
+    context.robot.mesh.close_gaps = width;
+}
+
 void read_mesh(Reader& root, Context& context) {
     Reader reader = root.table("mesh", false);
     MeshSpec& mesh = context.robot.mesh;
@@ -64,6 +76,7 @@ void read_mesh(Reader& root, Context& context) {
     }
     mesh.size = read_size(reader, "size", context);
     mesh.size_near_cables = read_size(reader, "size_near_cables", context);
+    read_close_gaps(reader, context);
     if (reader.has("elements_through_wall")) {
         mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
         if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)

@@ -81,6 +81,7 @@ mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::Bod
     settings.order = robot.mesh.order;
     settings.through_wall = robot.mesh.elements_through_wall.value_or(robot.mesh.size > 0 ? 0 : 3);
     settings.judge_walls = !robot.mesh.elements_through_wall;
+    settings.close_gaps = robot.mesh.close_gaps.value_or(1e-3 * settings.size);
     settings.size_near_cables = robot.mesh.size_near_cables;
     for (const CableSpec& cable : robot.cables) settings.cables.push_back(cable.points);
     return settings;

@@ -61,6 +61,7 @@ struct MeshSpec {
     std::optional<std::filesystem::path> file;
     int order = 2;
     std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
+    std::optional<double> close_gaps;          ///< in length units, not below 0; else a thousandth of the size
     double size_near_cables = 0;               ///< in length units; 0: no wish
     int line = 0;
 };

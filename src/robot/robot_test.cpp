@@ -153,6 +153,14 @@ TEST_CASE("shapes that make no sense are refused") {
     check_problem(with("\"= gaps\"", "5000"), "1 to 1000 are possible");
 }
 
+TEST_CASE("bodies a rounding error apart are joined, unless the file says otherwise") {
+    const std::string apart = with("[[20, 0, 0], [40", "[[20.005, 0, 0], [40");
+    CHECK(problem(apart).empty());  // a thousandth of the mesh size is 0.006 mm
+    CHECK(problem(apart, {"mesh.close_gaps=0 mm"}).find("connected to nothing that is fixed") != std::string::npos);
+    CHECK(problem(apart, {"mesh.close_gaps=3 um"}).find("connected to nothing that is fixed") != std::string::npos);
+    CHECK(problem(apart, {"mesh.close_gaps=-1 mm"}).find("must not be below zero") != std::string::npos);
+}
+
 TEST_CASE("what does not fit the robot is refused with its line") {
     check_problem(with("geometry = { box = [[20,", "geometry = { box = [[-1,-1,-1],[50, 50, 50]] } #"),
                   "body \"left\" is empty: all of it belongs to later ones");

@@ -1,11 +1,15 @@
 // The 3MF files of the reference data against what their README expects of them.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 
+#include "mesh/mesh_report.hpp"
+#include "mesh/mesher.hpp"
+#include "mesh/surface_check.hpp"
 #include "threemf/read_3mf.hpp"
 
 using namespace pliant;
@@ -144,4 +148,26 @@ TEST_CASE("other makers' files") {
     CHECK(two.bodies[1].material == "#00A0E8");
     CHECK(mesh::signed_volume(two.bodies[0].mesh_mm) == doctest::Approx(63993.6).epsilon(1e-5));
     CHECK(mesh::signed_volume(two.bodies[1].mesh_mm) == doctest::Approx(33438.305).epsilon(1e-5));
+}
+
+TEST_CASE("closed bodies are meshed without a dihedral angle under 5 degrees") {
+    for (const char* file :
+         {"synthetic/two_halves.3mf", "synthetic/overlap_cubes.3mf", "synthetic/stack4.3mf", "synthetic/gap_10um.3mf",
+          "synthetic/alternating_bands.3mf", "consortium/core_box.3mf", "consortium/core_sphere.3mf",
+          "consortium/core_multiple_cylinders.3mf", "consortium/mustpass/Chapter4.2_Components.3mf",
+          "consortium/material_rhombicuboctahedron_color.3mf", "mit_models/pyramids.3mf",
+          "mit_models/cube_and_sphere_same_name.3mf"}) {
+        CAPTURE(file);
+        for (const Body& body : read(file).bodies) {
+            CAPTURE(body.name);
+            REQUIRE(mesh::check_closed(body.mesh_mm));
+            const Vec3 d = mesh::bounds(body.mesh_mm).size();
+            Progress silent;
+            const Result<mesh::TetMesh> mesh =
+                mesh::mesh_bodies(std::vector<mesh::BodyGeometry>{{body.name, body.mesh_mm}},
+                                  {.size = std::max({d.x, d.y, d.z}) / 8, .order = 1}, silent);
+            REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+            CHECK(mesh::smallest_dihedral_deg(*mesh) >= 5);
+        }
+    }
 }
