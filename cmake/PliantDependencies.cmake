@@ -31,6 +31,7 @@ endfunction()
 
 pliant_find_plain(metis metis.h metis)
 pliant_find_plain(gmsh gmsh.h gmsh)
+pliant_find_plain(civetweb civetweb.h civetweb)
 
 # Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose
 # size is not known when they are compiled (SVE, RVV) do not fit into arrays.

@@ -32,6 +32,7 @@ void add_compare_printers(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_materials(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
+void add_studio(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
 

@@ -1,0 +1,39 @@
+// The folder that the studio may read and write: nothing a page asks for lies outside of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace pliant::robot {
+struct Robot;
+}
+
+namespace pliant::studio {
+
+class ProjectFolder {
+public:
+    /// Errors: no such folder.
+    [[nodiscard]] static Result<ProjectFolder> open(const std::filesystem::path& folder);
+
+    [[nodiscard]] const std::filesystem::path& path() const { return root_; }
+    /// A relative path as a page writes it, with '/'. Errors: empty, absolute, "." or ".." among its parts, backslashes
+    /// or control characters, or a symbolic link on the way that leads outside.
+    [[nodiscard]] Result<std::filesystem::path> resolve(std::string_view relative) const;
+    /// True if the path, links followed, lies in the folder.
+    [[nodiscard]] bool holds(const std::filesystem::path& path) const;
+    /// Robot files and jobs (.toml, .zip), relative, sorted; two levels deep, at most 500, hidden ones left out.
+    [[nodiscard]] std::vector<std::string> files() const;
+
+private:
+    explicit ProjectFolder(std::filesystem::path root) : root_(std::move(root)) {}
+    std::filesystem::path root_;  ///< canonical
+};
+
+/// Every file that a robot is made of beside its own: surfaces and the mesh.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const robot::Robot& robot);
+
+}  // namespace pliant::studio

@@ -1,0 +1,204 @@
+// The job: slicing, its layers, its plan.
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
+#include "job/manifest.hpp"
+#include "plan/plan.hpp"
+#include "plan/timeline.hpp"
+#include "studio/examples.hpp"
+#include "studio/studio.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Response no_job() {
+    return error_response(404, "there is no job yet: slice the robot, or open a job file");
+}
+
+/// The number behind `words`, or -1.
+int number_behind(const std::string& text, const std::string& words) {
+    const std::size_t at = text.find(words);
+    if (at == std::string::npos) return -1;
+    int number = -1;
+    std::from_chars(text.data() + at + words.size(), text.data() + text.size(), number);
+    return number;
+}
+
+/// Where in the stack a remark of the slicer belongs, or -1.
+int layer_of(const std::string& remark) {
+    for (const char* words : {"in layer ", "is layer ", "in layers ", "from layer ", "layer "}) {
+        if (const int layer = number_behind(remark, words); layer >= 0) return layer;
+    }
+    return -1;
+}
+
+Json swap_json(const plan::Plan& plan, const machine::Printer& printer) {
+    const plan::SwapTimeline swap = plan::longest_swap(plan, printer);
+    Json devices = Json::array(), stretches = Json::array();
+    for (const plan::Device device : swap.devices) devices.push_back(plan::device_name(device));
+    for (const plan::Stretch& s : swap.stretches)
+        stretches.push_back({{"device", plan::device_name(s.device)}, {"begin", s.begin_s}, {"end", s.end_s}});
+    return {{"from", swap.from_slot}, {"to", swap.to_slot}, {"seconds", swap.seconds}, {"devices", devices},
+            {"stretches", stretches}};
+}
+
+Response job(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    const job::Manifest& manifest = open->archive.manifest();
+    const Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
+    Json issues = Json::array();
+    for (const std::string& warning : manifest.warnings) issues.push_back({{"text", warning}, {"layer", layer_of(warning)}});
+    const auto& p = open->printer;
+    Json json = {{"revision", open->revision},
+                 {"file", open->file.filename().string()},
+                 {"manifest", Json::parse(job::to_json(manifest))},
+                 {"colours", open->colours},
+                 {"issues", issues},
+                 {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
+                 {"printer", p.name}};
+    if (plan) {
+        json["plan"] = Json::parse(plan::plan_json(*plan));
+        json["swap"] = swap_json(*plan, p);
+    } else {
+        json["plan_error"] = plan.error().message;
+    }
+    return json_response(dumped(json));
+}
+
+Response image(Studio& studio, const Request& request) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    const int layer = number_behind(request.parts.at("layer"), ""), material = number_behind(request.parts.at("material"), "");
+    const auto& layers = open->archive.manifest().layers;
+    if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
+    for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
+        if (entry.material != material) continue;
+        const std::lock_guard lock(open->mutex);
+        Result<std::string> png = open->archive.file(entry.file);
+        if (!png) return error_response(png.error());
+        Response response{200, "image/png", std::move(*png)};
+        response.keep = true;
+        return response;
+    }
+    return error_response(404, "nothing of this material is in this layer");
+}
+
+Response download(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    Result<std::string> bytes = read_file(open->file);
+    if (!bytes) return error_response(bytes.error());
+    return {200, "application/zip", std::move(*bytes), "job.zip"};
+}
+
+Response save(Studio& studio, const Request& request) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    const Json json = Json::parse(request.body, nullptr, false);
+    const std::string name = json.is_object() && json.contains("name") && json["name"].is_string()
+                                 ? json["name"].get<std::string>()
+                                 : "";
+    const Result<std::filesystem::path> path = studio.folder().resolve(name);
+    if (!path) return error_response(path.error());
+    if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
+    std::error_code ignored;
+    if (std::filesystem::exists(*path, ignored)) return error_response(422, "that file exists; choose another name");
+    const Result<std::string> bytes = read_file(open->file);
+    if (!bytes) return error_response(bytes.error());
+    if (Status written = write_file(*path, *bytes); !written) return error_response(written.error());
+    return json_response("{}");
+}
+
+/// The same job on every machine that is built in.
+Response compare(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    Json rows = Json::array();
+    for (const BuiltInFile& file : example_printers()) {
+        const Result<machine::Printer> printer = machine::parse_printer(file.text, std::string(file.name) + ".toml");
+        if (!printer) continue;
+        const Result<plan::Plan> plan = plan::make_plan(open->archive.manifest(), *printer);
+        Json row = {{"file", file.name}, {"printer", printer->name}};
+        if (plan)
+            row.update({{"swaps", plan->swaps}, {"total_s", plan->seconds.total}, {"swap_s", plan->seconds.swap},
+                        {"clean_s", plan->seconds.clean}, {"waste_ml", plan->waste_ml}, {"solvent_ml", plan->solvent_ml}});
+        else
+            row["error"] = plan.error().message;
+        rows.push_back(row);
+    }
+    return json_response(dumped(rows));
+}
+
+Result<SliceOrder> read_order(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object()) return input_error("a JSON object is needed");
+    const Studio::Document d = studio.document();
+    SliceOrder order{d.text, d.file, "", "", 0, 1};
+    const std::string name = json.value("printer", Json("tower")).is_string() ? json.value("printer", "tower") : "";
+    const BuiltInFile* file = find_file(example_printers(), name);
+    order.printer_name = name + (file != nullptr ? ".toml" : "");
+    if (file != nullptr) {
+        order.printer_text = file->text;
+    } else {
+        const Result<std::filesystem::path> path = studio.folder().resolve(name);
+        if (!path) return tl::unexpected(path.error());
+        Result<std::string> text = read_file(*path, std::uintmax_t{4} << 20);
+        if (!text) return tl::unexpected(text.error());
+        order.printer_text = std::move(*text);
+    }
+    const auto whole = [&](const char* key, int fallback, int least, int most) -> Result<int> {
+        if (!json.contains(key)) return fallback;
+        if (!json[key].is_number_integer() || json[key] < least || json[key] > most)
+            return input_error("{}: a whole number from {} to {} is needed", key, least, most);
+        return json[key].get<int>();
+    };
+    const Result<int> layer = whole("layer_um", 0, 0, 1000), copies = whole("copies", 1, 1, 1000);
+    if (!layer) return tl::unexpected(layer.error());
+    if (!copies) return tl::unexpected(copies.error());
+    order.layer_um = *layer;
+    order.copies = *copies;
+    if (json.contains("turn")) {
+        const Json& turn = json["turn"];
+        const auto number = [](const Json& v) { return v.is_number(); };
+        if (!turn.is_array() || turn.size() != 3 || !std::all_of(turn.begin(), turn.end(), number))
+            return input_error("turn: three angles in degrees are needed");
+        order.turn_deg = turn.get<std::vector<double>>();
+    }
+    return order;
+}
+
+Response slice(Studio& studio, const Request& request) {
+    Result<SliceOrder> order = read_order(studio, request);
+    if (!order) return error_response(order.error());
+    const Status status = studio.make().slice(std::move(*order));
+    return status ? json_response("{}") : error_response(status.error());
+}
+
+Response cancel(Studio& studio, const Request&) {
+    studio.make().cancel();
+    return json_response("{}");
+}
+
+}  // namespace
+
+void add_make_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\", \"layer_um\", \"copies\", \"turn\"}", json,
+                      true, slice, json});
+    routes.push_back({"POST", "/api/job/cancel", "gives up slicing", json, true, cancel});
+    routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
+    routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back({"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare});
+    routes.push_back({"GET", "/api/job/file", "the job file", "application/zip", false, download});
+    routes.push_back({"POST", "/api/job/save", "writes the job into the folder: {\"name\"}", json, true, save, json});
+}
+
+}  // namespace pliant::studio
