@@ -1,1 +1,14 @@
-document.getElementById("app")!.textContent = "Pliant";
+import { render } from 'preact';
+import { App } from './app';
+import './style.css';
+import * as store from './store';
+import './theme';
+
+window.addEventListener('hashchange', () => {
+  const name = location.hash.slice(1) as store.Section;
+  if (['simulate', 'make', 'print'].includes(name)) store.section.value = name;
+});
+// For the tests and for the curious: the state of the page.
+Object.assign(window, { pliant: store });
+store.connect();
+render(<App />, document.getElementById('app') as HTMLElement);

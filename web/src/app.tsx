@@ -1,0 +1,138 @@
+// The frame around the three sections.
+import { useState } from 'preact/hooks';
+import { Icon } from './icons';
+import { Make } from './make/make';
+import { Print } from './print/print';
+import { Simulate } from './simulate/simulate';
+import { api, building, documentState, helm, notice, online, post, problems, scene, section, send, type Section } from './store';
+import { theme, toggleTheme } from './theme';
+
+interface Project {
+  files: string[];
+  examples: string[];
+  folder: string;
+}
+
+function Open() {
+  const [project, setProject] = useState<Project | null>(null);
+  const toggle = async () => setProject(project ? null : ((await (await api('/api/project')).json()) as Project));
+  const d = documentState.value;
+  return (
+    <div class="menu">
+      <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
+        <span class="title">{scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot')}</span>
+        <span class="quiet">
+          {d.name || 'example'}
+          {d.unsaved && ' · unsaved'}
+        </span>
+      </button>
+      {project && (
+        <div class="popover open-list" onClick={() => setProject(null)}>
+          <h3>Examples</h3>
+          {project.examples.map((name) => (
+            <button class="item" onClick={() => post('/api/example', { name })}>
+              {name.replace(/_/g, ' ')}
+            </button>
+          ))}
+          <h3 title={project.folder}>This folder</h3>
+          {project.files.length === 0 && <p class="quiet">no robot files or jobs</p>}
+          {project.files.map((name) => (
+            <button class="item" onClick={() => post('/api/open', { name })}>
+              {name}
+            </button>
+          ))}
+        </div>
+      )}
+    </div>
+  );
+}
+
+function Helm() {
+  const h = helm.value;
+  if (!online.value)
+    return (
+      <span class="helm lost" role="status" data-testid="helm" data-state="offline">
+        <span class="pulse" /> connection lost, trying again
+      </span>
+    );
+  if (h.asked)
+    return (
+      <span class="helm asked" data-testid="helm" data-state="asked">
+        someone wants to steer
+        <button class="primary small" onClick={() => send({ type: 'steer', action: 'give' })}>
+          Hand over
+        </button>
+      </span>
+    );
+  if (h.you)
+    return h.pages > 1 ? (
+      <span class="helm" data-testid="helm" data-state="steering">
+        <Icon name="helm" /> you steer, {h.pages - 1} {h.pages === 2 ? 'looks' : 'look'} on
+      </span>
+    ) : (
+      <span class="helm" data-testid="helm" data-state="steering" />
+    );
+  return (
+    <span class="helm" data-testid="helm" data-state={h.waiting ? 'waiting' : 'watching'}>
+      {h.waiting ? 'asked; waiting' : 'you look on'}
+      {!h.waiting && (
+        <button class="small" onClick={() => send({ type: 'steer', action: 'ask' })} data-testid="ask">
+          {h.held ? 'Ask to steer' : 'Steer'}
+        </button>
+      )}
+    </span>
+  );
+}
+
+export function App() {
+  const sections: [Section, string][] = [
+    ['simulate', 'Simulate'],
+    ['make', 'Make'],
+    ['print', 'Print'],
+  ];
+  return (
+    <div class="app">
+      <header>
+        <span class="brand" aria-label="Pliant">
+          <svg viewBox="0 0 24 24" aria-hidden="true">
+            <path d="M3 17c5.5 0 7-2.2 9-6.2S16.5 4.5 21 4.5" />
+            <circle cx="3.5" cy="17" r="1.6" />
+            <circle cx="20.5" cy="4.5" r="1.6" />
+          </svg>
+          Pliant
+        </span>
+        <nav class="sections" aria-label="Sections">
+          {sections.map(([name, label]) => (
+            <a
+              href={`#${name}`}
+              aria-current={section.value === name ? 'page' : undefined}
+              onClick={() => (section.value = name)}
+              data-testid={`section-${name}`}
+            >
+              {label}
+            </a>
+          ))}
+        </nav>
+        <Open />
+        <span class="grow" />
+        {problems.value.length > 0 && (
+          <span class="helm lost" data-testid="file-wrong">
+            <Icon name="warn" /> {problems.value.length} {problems.value.length === 1 ? 'mistake' : 'mistakes'} in the file
+          </span>
+        )}
+        <Helm />
+        <button class="bare" aria-label={theme.value === 'dark' ? 'Light colours' : 'Dark colours'} onClick={toggleTheme} data-testid="theme">
+          <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
+        </button>
+      </header>
+      {section.value === 'simulate' && <Simulate />}
+      {section.value === 'make' && <Make />}
+      {section.value === 'print' && <Print />}
+      {notice.value && (
+        <div class="notice" role="alert" data-testid="notice">
+          {notice.value}
+        </div>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,186 @@
+// From robot to job: slicing, layers, plan.
+import { signal } from '@preact/signals';
+import { useEffect, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import { api, documentState, job, mayDrive, post, say, scene, sliceError, slicing } from '../store';
+import { Layers, layer } from './layers';
+import { PlanView } from './plan';
+import { Stack } from './stack';
+
+const tab = signal<'layers' | 'stack' | 'plan'>('layers');
+const printer = signal('tower');
+const layerHeight = signal(100);
+const copies = signal(1);
+
+function SliceForm() {
+  const [printers, setPrinters] = useState<string[]>([]);
+  useEffect(() => {
+    api('/api/project')
+      .then((r) => r.json())
+      .then((p: { printers: string[]; files: string[] }) =>
+        setPrinters([...p.printers, ...p.files.filter((f) => /printer/.test(f) && f.endsWith('.toml'))]),
+      )
+      .catch((e: Error) => say(e.message));
+  }, []);
+  const busy = slicing.value;
+  return (
+    <form
+      class="slice-form"
+      onSubmit={(e) => {
+        e.preventDefault();
+        sliceError.value = '';
+        void post('/api/job/slice', { printer: printer.value, layer_um: layerHeight.value, copies: copies.value });
+      }}
+    >
+      <label>
+        Printer
+        <select value={printer.value} onChange={(e) => (printer.value = e.currentTarget.value)} data-testid="printer">
+          {printers.map((p) => (
+            <option value={p}>{p.replace(/_/g, ' ')}</option>
+          ))}
+        </select>
+      </label>
+      <label>
+        Layer
+        <span class="number">
+          <input type="number" min={10} max={1000} step={5} value={layerHeight.value} onChange={(e) => (layerHeight.value = Number(e.currentTarget.value))} />
+          <span class="unit">µm</span>
+        </span>
+      </label>
+      <label>
+        Copies
+        <span class="number">
+          <input type="number" min={1} max={100} step={1} value={copies.value} onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
+          <span class="unit" />
+        </span>
+      </label>
+      {busy ? (
+        <button type="button" onClick={() => post('/api/job/cancel')} data-testid="cancel-slice">
+          Cancel
+        </button>
+      ) : (
+        <button class="primary" disabled={!mayDrive.value || !scene.value} data-testid="slice">
+          Slice {scene.value?.head.robot ?? 'the robot'}
+        </button>
+      )}
+      {busy && (
+        <div class="progress" role="progressbar" aria-valuenow={Math.round(100 * busy.fraction)} aria-valuemin={0} aria-valuemax={100}>
+          <div style={{ width: `${100 * busy.fraction}%` }} />
+          <span>{busy.stage}</span>
+        </div>
+      )}
+      {sliceError.value && (
+        <p class="problems" role="alert">
+          {sliceError.value}
+        </p>
+      )}
+      {documentState.value.unsaved && <p class="quiet">The robot is sliced as it stands in the editor.</p>}
+    </form>
+  );
+}
+
+function Issues() {
+  const j = job.value!;
+  return (
+    <div class="issues">
+      <h3>{j.issues.length ? `${j.issues.length} ${j.issues.length === 1 ? 'remark' : 'remarks'}` : 'Nothing to remark'}</h3>
+      {j.issues.map((issue) => (
+        <button
+          class="issue"
+          disabled={issue.layer < 0}
+          onClick={() => {
+            tab.value = 'layers';
+            layer.value = Math.min(issue.layer, j.manifest.layers.length - 1);
+          }}
+        >
+          <Icon name="warn" />
+          <span>{issue.text}</span>
+          {issue.layer >= 0 && <span class="quiet">layer {issue.layer}</span>}
+        </button>
+      ))}
+      {j.issues.length === 0 && (
+        <p class="quiet">
+          <Icon name="check" /> No island begins in mid-air, no cavity traps resin, every piece hangs together.
+        </p>
+      )}
+    </div>
+  );
+}
+
+function Volumes() {
+  const j = job.value!;
+  return (
+    <table class="volumes">
+      <tbody>
+        {j.manifest.materials.map((m, k) => (
+          <tr>
+            <th>
+              <span class="swatch" style={{ background: j.colours[k] }} />
+              {m.name}
+            </th>
+            <td class="quiet">{m.resin}</td>
+            <td>{(m.model_volume_mm3 / 1000).toFixed(2)} ml</td>
+            <td>{m.exposure_s} s</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export function Make() {
+  const j = job.value;
+  const [name, setName] = useState('');
+  return (
+    <main class="make">
+      <aside class="side left">
+        <SliceForm />
+        {j && (
+          <>
+            <Volumes />
+            <Issues />
+            <div class="job-file">
+              <a class="button" href="/api/job/file" download>
+                <Icon name="download" /> Job file
+              </a>
+              <form
+                onSubmit={async (e) => {
+                  e.preventDefault();
+                  if (await post('/api/job/save', { name })) say(`${name} is in the folder`);
+                }}
+              >
+                <input placeholder="gripper.zip" aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} />
+                <button class="small" disabled={!name || !mayDrive.value}>
+                  Save
+                </button>
+              </form>
+            </div>
+          </>
+        )}
+      </aside>
+      <section class="stage">
+        {j ? (
+          <>
+            <nav class="tabs floating" role="tablist">
+              {(['layers', 'stack', 'plan'] as const).map((t) => (
+                <button role="tab" aria-selected={tab.value === t} onClick={() => (tab.value = t)} data-testid={`make-${t}`}>
+                  {{ layers: 'Layers', stack: 'In 3D', plan: 'Plan' }[t]}
+                </button>
+              ))}
+            </nav>
+            {tab.value === 'layers' && <Layers key={j.revision} job={j} />}
+            {tab.value === 'stack' && <Stack key={j.revision} job={j} />}
+            {tab.value === 'plan' && <PlanView key={j.revision} job={j} />}
+          </>
+        ) : (
+          <div class="empty">
+            <h2>No job yet</h2>
+            <p>
+              Slice the robot for a printer. Its layers, what may go wrong with them, and the plan of the print will be here.
+            </p>
+          </div>
+        )}
+      </section>
+    </main>
+  );
+}

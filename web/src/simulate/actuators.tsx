@@ -1,0 +1,196 @@
+// A slider and a number for every actuator.
+import { batch } from '@preact/signals';
+import { driveAll, following, frame, mayDrive, scene, wanted, wantedTime } from '../store';
+import type { Actuator } from '../types';
+import { shownFrame } from './view_state';
+
+const kinds: Record<string, { label: string; unit: string; step: number }> = {
+  length_ratio: { label: 'Length ratio', unit: '', step: 0.005 },
+  shortening_mm: { label: 'Shortening', unit: 'mm', step: 0.1 },
+  tension_N: { label: 'Tension', unit: 'N', step: 0.1 },
+  volume_ratio: { label: 'Volume ratio', unit: '', step: 0.005 },
+  volume_change_mm3: { label: 'Added volume', unit: 'mm³', step: 1 },
+  pressure_kPa: { label: 'Pressure', unit: 'kPa', step: 0.1 },
+  gas_ratio: { label: 'Gas ratio', unit: '', step: 0.005 },
+};
+const kindsOf = {
+  cable: ['length_ratio', 'shortening_mm', 'tension_N'],
+  chamber: ['volume_ratio', 'volume_change_mm3', 'pressure_kPa', 'gas_ratio'],
+};
+
+/// What the actuator is at now, as its kind counts.
+export function reading(actuator: Actuator, kind: string): number {
+  const head = frame.value?.head;
+  const all = scene.value?.head.actuators ?? [];
+  if (!head) return NaN;
+  if (actuator.type === 'cable') {
+    const c = head.cables[all.indexOf(actuator)];
+    if (!c) return NaN;
+    if (kind === 'tension_N') return c.tension_N;
+    return kind === 'length_ratio' ? c.ratio : c.length_mm / c.ratio - c.length_mm;
+  }
+  const c = head.chambers[all.indexOf(actuator) - head.cables.length];
+  if (!c) return NaN;
+  if (kind === 'pressure_kPa') return c.pressure_kPa;
+  if (kind === 'volume_change_mm3') return c.volume_mm3 - c.volume_mm3 / c.ratio;
+  if (kind === 'gas_ratio') return ((c.pressure_kPa + 101.325) / 101.325) * c.ratio;
+  return c.ratio;
+}
+
+function range(actuator: Actuator, kind: string, value: number): [number, number] {
+  const target = actuator.kind === kind ? actuator.target : NaN;
+  const atLeast = (least: number, factor: number) =>
+    Math.max(least, Number.isFinite(target) ? factor * Math.abs(target) : 0, 1.25 * Math.abs(value));
+  switch (kind) {
+    case 'length_ratio':
+      return [Math.min(0.5, Number.isFinite(target) ? target - 0.1 : 1, value), 1];
+    case 'shortening_mm':
+      return [0, Math.max(0.5 * actuator.rest, value)];
+    case 'tension_N':
+      return [0, niceAbove(atLeast(10, 1.5))];
+    case 'volume_ratio':
+      return [Math.min(0.9, value), Math.max(1.5, Number.isFinite(target) ? 1 + 1.5 * (target - 1) : 1, value)];
+    case 'volume_change_mm3':
+      return [-niceAbove(0.1 * actuator.rest), niceAbove(Math.max(0.5 * actuator.rest, value))];
+    case 'pressure_kPa':
+      return [-niceAbove(atLeast(5, 0.2)), niceAbove(atLeast(20, 1.5))];
+    default:
+      return [0.8, Math.max(2, value)];
+  }
+}
+
+function niceAbove(x: number): number {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return power * ([1, 2, 5, 10].find((f) => f * power >= x) ?? 10);
+}
+
+export function drive(name: string, kind: string, value: number) {
+  batch(() => {
+    if (following.value) holdOthers(name);
+    following.value = false;
+    shownFrame.value = null;
+    wanted.value = { ...wanted.value, [name]: { kind, value } };
+  });
+  driveAll();
+}
+
+/// From the program to the hand: everything else stays where it is.
+function holdOthers(name: string) {
+  const all = scene.value?.head.actuators ?? [];
+  wanted.value = Object.fromEntries(
+    all.map((a) => {
+      const kind = wanted.value[a.name]?.kind ?? a.kind;
+      const now = reading(a, kind);
+      return [a.name, { kind, value: a.name === name || !Number.isFinite(now) ? (wanted.value[a.name]?.value ?? 1) : now }];
+    }),
+  );
+}
+
+function Control({ actuator }: { actuator: Actuator }) {
+  const want = wanted.value[actuator.name] ?? { kind: actuator.kind, value: 1 };
+  const now = reading(actuator, want.kind);
+  const value = following.value && Number.isFinite(now) ? now : want.value;
+  const kind = kinds[want.kind];
+  const [low, high] = range(actuator, want.kind, value);
+  const head = frame.value?.head;
+  const index = scene.value!.head.actuators.indexOf(actuator);
+  const force =
+    actuator.type === 'cable'
+      ? `${(head?.cables[index]?.tension_N ?? 0).toFixed(2)} N`
+      : `${(head?.chambers[index - (head?.cables.length ?? 0)]?.pressure_kPa ?? 0).toFixed(2)} kPa`;
+  const id = `actuator-${index}`;
+  return (
+    <div class={`actuator ${actuator.type}`} data-testid={`actuator-${actuator.name}`}>
+      <div class="row">
+        <label class="name" for={id}>
+          <span class={`dot ${actuator.type}`} />
+          {actuator.name}
+        </label>
+        <output class="force" data-testid={`force-${actuator.name}`}>
+          {force}
+        </output>
+      </div>
+      <input
+        id={id}
+        type="range"
+        min={low}
+        max={high}
+        step={(high - low) / 1000}
+        value={value}
+        disabled={!mayDrive.value}
+        style={{ '--at': `${(100 * (value - low)) / (high - low || 1)}%` }}
+        onInput={(e) => drive(actuator.name, want.kind, Number(e.currentTarget.value))}
+      />
+      <div class="row">
+        <select
+          aria-label={`What drives ${actuator.name}`}
+          value={want.kind}
+          disabled={!mayDrive.value}
+          onChange={(e) => {
+            const next = e.currentTarget.value;
+            const at = reading(actuator, next);
+            drive(actuator.name, next, Number.isFinite(at) ? at : 1);
+          }}
+        >
+          {kindsOf[actuator.type].map((k) => (
+            <option value={k} key={k}>
+              {kinds[k].label}
+            </option>
+          ))}
+        </select>
+        <span class="number">
+          <input
+            type="number"
+            aria-label={`${kind.label} of ${actuator.name}`}
+            data-testid={`number-${actuator.name}`}
+            step={kind.step}
+            value={+value.toPrecision(5)}
+            disabled={!mayDrive.value}
+            onChange={(e) => {
+              const v = Number(e.currentTarget.value);
+              if (e.currentTarget.value !== '' && Number.isFinite(v)) drive(actuator.name, want.kind, v);
+            }}
+          />
+          <span class="unit">{kind.unit}</span>
+        </span>
+      </div>
+    </div>
+  );
+}
+
+export function Actuators() {
+  const head = scene.value?.head;
+  if (!head) return null;
+  return (
+    <div class="actuators">
+      {head.actuators.map((a) => (
+        <Control actuator={a} key={a.name} />
+      ))}
+      {head.loaded && !following.value && (
+        <div class="actuator">
+          <div class="row">
+            <label class="name" for="loads">
+              Loads and supports
+            </label>
+            <output class="force">{Math.round((100 * wantedTime.value) / head.program.duration)} %</output>
+          </div>
+          <input
+            id="loads"
+            type="range"
+            min={0}
+            max={head.program.duration}
+            step={head.program.duration / 1000}
+            value={wantedTime.value}
+            disabled={!mayDrive.value}
+            style={{ '--at': `${(100 * wantedTime.value) / head.program.duration}%` }}
+            onInput={(e) => {
+              wantedTime.value = Number(e.currentTarget.value);
+              driveAll();
+            }}
+          />
+        </div>
+      )}
+      {head.actuators.length === 0 && <p class="quiet">This robot has no cable and no chamber; play its program, or pull at it.</p>}
+    </div>
+  );
+}

@@ -1,0 +1,180 @@
+// The robot's materials and its file.
+import { effect, signal } from '@preact/signals';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import { api, documentState, frame, mayDrive, onEvent, post, problems, say, scene } from '../store';
+import { setKey } from './toml_edit';
+import { pinned } from './view_state';
+
+export const text = signal('');
+const theirs = signal('');
+
+async function load() {
+  const next = await (await api('/api/robot')).text();
+  theirs.value = next;
+  text.value = next;
+}
+onEvent((event) => {
+  if (event.type === 'document') load().catch((e: Error) => say(e.message));
+});
+
+export async function apply(next: string): Promise<boolean> {
+  try {
+    await api('/api/robot', { method: 'PUT', headers: { 'Content-Type': 'text/plain' }, body: next });
+    return true;
+  } catch (error) {
+    say((error as Error).message);
+    return false;
+  }
+}
+
+/// So that a change can be seen against what was before.
+export function pinNow(label: string) {
+  const now = frame.peek();
+  if (now) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now };
+}
+
+function change(material: string, key: string, value: string, label: string) {
+  const next = setKey(text.value, `material.${material}`, key, value);
+  if (next === null) return say(`${material} is not written out in the file: change it there`);
+  pinNow(label);
+  void apply(next);
+}
+
+export function Materials() {
+  const head = scene.value?.head;
+  if (!head) return null;
+  return (
+    <div class="materials">
+      {head.materials.map((m) => (
+        <fieldset class="material" key={m.name} disabled={!mayDrive.value}>
+          <legend>
+            <span class="swatch" style={{ background: m.colour }} />
+            {m.name}
+            <span class="quiet">{m.law}</span>
+          </legend>
+          <label>
+            <span>Young's modulus</span>
+            <span class="number">
+              <input
+                type="number"
+                min={0}
+                step="any"
+                data-testid={`modulus-${m.name}`}
+                value={+m.youngs_modulus_MPa.toPrecision(6)}
+                onChange={(e) => {
+                  const v = Number(e.currentTarget.value);
+                  if (v > 0) change(m.name, 'youngs_modulus', `"${v} MPa"`, `${m.name}: ${+m.youngs_modulus_MPa.toPrecision(4)} MPa`);
+                }}
+              />
+              <span class="unit">MPa</span>
+            </span>
+          </label>
+          <label>
+            <span>Poisson ratio</span>
+            <span class="number">
+              <input
+                type="number"
+                min={0}
+                max={0.4999}
+                step={0.01}
+                value={+m.poisson_ratio.toPrecision(6)}
+                onChange={(e) => {
+                  const v = Number(e.currentTarget.value);
+                  if (v >= 0 && v < 0.5) change(m.name, 'poisson_ratio', `${v}`, `${m.name}: Poisson ratio ${m.poisson_ratio}`);
+                }}
+              />
+              <span class="unit" />
+            </span>
+          </label>
+        </fieldset>
+      ))}
+    </div>
+  );
+}
+
+export function Editor() {
+  const area = useRef<HTMLTextAreaElement>(null);
+  const gutter = useRef<HTMLDivElement>(null);
+  const [saveAs, setSaveAs] = useState('');
+  const lines = text.value.split('\n').length;
+  const wrong = new Map(problems.value.map((p) => [p.line, p.text]));
+  const d = documentState.value;
+  const changed = text.value !== theirs.value;
+  useEffect(
+    () =>
+      effect(() => {
+        const first = problems.value.find((p) => p.line > 0);
+        if (first && area.current) area.current.scrollTop = Math.max(0, (first.line - 6) * 18);
+      }),
+    [],
+  );
+  const save = () => (d.name ? post('/api/robot/save', {}) : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
+  return (
+    <div class="editor">
+      <div class="tools">
+        <button class="primary small" disabled={!changed || !mayDrive.value} onClick={() => apply(text.value)} data-testid="apply">
+          Apply
+        </button>
+        <span class="quiet keys">Ctrl+Enter</span>
+        <span class="grow" />
+        <button class="bare" title="Undo" aria-label="Undo" disabled={!d.undo || !mayDrive.value} onClick={() => post('/api/robot/undo')}>
+          <Icon name="undo" />
+        </button>
+        <button class="bare" title="Redo" aria-label="Redo" disabled={!d.redo || !mayDrive.value} onClick={() => post('/api/robot/redo')}>
+          <Icon name="redo" />
+        </button>
+        <button class="bare" title="Save" aria-label="Save" disabled={changed || !mayDrive.value || (!d.unsaved && !!d.name)} onClick={save}>
+          <Icon name="save" />
+        </button>
+      </div>
+      {saveAs && (
+        <form
+          class="saveas"
+          onSubmit={async (e) => {
+            e.preventDefault();
+            if (await post('/api/robot/save', { name: saveAs })) setSaveAs('');
+          }}
+        >
+          <input value={saveAs} aria-label="File name" onInput={(e) => setSaveAs(e.currentTarget.value)} />
+          <button class="primary small">Save</button>
+          <button class="small" type="button" onClick={() => setSaveAs('')}>
+            Cancel
+          </button>
+        </form>
+      )}
+      {problems.value.length > 0 && (
+        <ul class="problems" role="alert" data-testid="problems">
+          {problems.value.map((p) => (
+            <li>
+              {p.line > 0 && <b>line {p.line}</b>} {p.text}
+            </li>
+          ))}
+        </ul>
+      )}
+      <div class="code">
+        <div class="gutter" ref={gutter} aria-hidden="true">
+          {Array.from({ length: lines }, (_, i) => (
+            <div class={wrong.has(i + 1) ? 'wrong' : ''} title={wrong.get(i + 1)} data-line={i + 1}>
+              {i + 1}
+            </div>
+          ))}
+        </div>
+        <textarea
+          ref={area}
+          spellcheck={false}
+          wrap="off"
+          aria-label="Robot file"
+          data-testid="robot-file"
+          value={text.value}
+          readOnly={!mayDrive.value}
+          onInput={(e) => (text.value = e.currentTarget.value)}
+          onScroll={(e) => (gutter.current!.scrollTop = e.currentTarget.scrollTop)}
+          onKeyDown={(e) => {
+            if (e.key === 'Enter' && (e.ctrlKey || e.metaKey)) void apply(text.value);
+          }}
+        />
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,517 @@
+// The live robot: 3D view, actuators, plots, file.
+import { effect, signal } from '@preact/signals';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import {
+  building,
+  following,
+  frame,
+  frameRate,
+  latency,
+  mayDrive,
+  post,
+  problems,
+  say,
+  scene,
+  send,
+  sendInput,
+  wanted,
+  wantedTime,
+  wantFields,
+  documentState,
+  restValue,
+} from '../store';
+import { Actuators } from './actuators';
+import { gradientCss } from './colormap';
+import { apply, Editor, Materials, pinNow, text } from './editor';
+import { Plots } from './plots';
+import { asProgram, recorded, recording, startRecording, stopRecording } from './recorder';
+import { clearTracks, frames, tracksCsv, tracksVersion } from './tracks';
+import { RobotView } from './view';
+import * as look from './view_state';
+
+let view: RobotView | null = null;
+const panel = signal<'move' | 'plots' | 'file'>('move');
+
+function options() {
+  return {
+    field: look.field.value,
+    scale: look.fieldNames.find((f) => f.name === look.field.value)!.scale,
+    wireframe: look.wireframe.value,
+    ghost: look.ghost.value,
+    inside: look.showInside.value,
+    exploded: look.exploded.value,
+    sectionAxis: look.sectionAxis.value,
+    sectionAt: look.sectionAt.value,
+    pinned: look.pinned.value?.positions ?? null,
+    beside: look.beside.value,
+  };
+}
+
+function Canvas() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const labels = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    let made: RobotView;
+    try {
+      made = view = new RobotView(canvas.current!);
+    } catch {
+      say('This browser has no WebGL, so the robot cannot be drawn.');
+      return;
+    }
+    let pending = 0;
+    let last: Record<string, unknown> | null = null;
+    made.mayGrab = () => mayDrive.value && look.shownFrame.value === null;
+    made.onGrab = (grab) => {
+      if (!grab) {
+        last = null;
+        return send({ type: 'release' });
+      }
+      last = { type: 'pull', vertex: grab.vertex, to: grab.to };
+      pending ||= requestAnimationFrame(() => {
+        pending = 0;
+        if (last) sendInput(last);
+      });
+    };
+    made.onRange = (low, high) => (look.fieldRange.value = [low, high]);
+    made.onDraw = (project) => {
+      const shown = look.shownFrame.value ?? frame.value;
+      const children = labels.current?.children ?? [];
+      shown?.head.markers.forEach((p, k) => {
+        const [x, y] = project(p);
+        const label = children[k] as HTMLElement | undefined;
+        if (label) label.style.transform = `translate(${x + 9}px, ${y - 10}px)`;
+      });
+    };
+    const stops = [
+      effect(() => {
+        if (scene.value) made.setScene(scene.value);
+      }),
+      effect(() => made.setOptions(options())),
+      effect(() => {
+        const shown = look.shownFrame.value ?? frame.value;
+        if (shown) made.setFrame(shown);
+      }),
+      effect(() => {
+        const f = look.field.value;
+        wantFields(f === 'material' || f === 'displacement' ? [] : [f]);
+      }),
+    ];
+    return () => {
+      for (const stop of stops) stop();
+      made.dispose();
+      view = null;
+    };
+  }, []);
+  const keys = (e: KeyboardEvent) => {
+    const step = 0.12;
+    const moves: Record<string, () => void> = {
+      ArrowLeft: () => view?.turn(-step, 0, 1),
+      ArrowRight: () => view?.turn(step, 0, 1),
+      ArrowUp: () => view?.turn(0, step, 1),
+      ArrowDown: () => view?.turn(0, -step, 1),
+      '+': () => view?.turn(0, 0, 0.9),
+      '-': () => view?.turn(0, 0, 1.1),
+      Home: () => view?.lookAt('home'),
+    };
+    if (!moves[e.key]) return;
+    moves[e.key]();
+    e.preventDefault();
+  };
+  return (
+    <div class="canvas">
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        aria-label="The robot in 3D. Arrow keys turn it, plus and minus come nearer and go away, Home shows all of it."
+        onKeyDown={keys}
+        data-testid="view"
+      />
+      <div class="labels" ref={labels} aria-hidden="true">
+        {scene.value?.head.markers.map((m) => <span key={m.name}>{m.name}</span>)}
+      </div>
+    </div>
+  );
+}
+
+function Legend() {
+  const f = look.fieldNames.find((n) => n.name === look.field.value)!;
+  if (f.name === 'material')
+    return (
+      <ul class="legend materials-legend">
+        {scene.value?.head.materials.map((m) => (
+          <li key={m.name}>
+            <span class="swatch" style={{ background: m.colour }} />
+            {m.name}
+          </li>
+        ))}
+      </ul>
+    );
+  const [low, high] = look.fieldRange.value;
+  const number = (x: number) => (Math.abs(x) >= 1e4 ? x.toExponential(2) : `${+x.toPrecision(3)}`);
+  return (
+    <div class="legend field-legend" data-testid="legend">
+      <div class="bar" style={{ background: gradientCss() }} />
+      <div class="ticks">
+        {[1, 0.75, 0.5, 0.25, 0].map((t) => (
+          <span>{number(low + t * (high - low))}</span>
+        ))}
+      </div>
+      <div class="what">
+        {f.label}
+        {f.unit && <span class="quiet"> {f.unit}</span>}
+      </div>
+    </div>
+  );
+}
+
+function Toggle({ on, label }: { on: typeof look.ghost; label: string }) {
+  return (
+    <button class="chip" aria-pressed={on.value} onClick={() => (on.value = !on.value)}>
+      {label}
+    </button>
+  );
+}
+
+function LookBar() {
+  const [more, setMore] = useState(false);
+  return (
+    <div class="lookbar">
+      <select class="chip" aria-label="Colours" data-testid="field" value={look.field.value} onChange={(e) => (look.field.value = e.currentTarget.value as look.FieldName)}>
+        {look.fieldNames.map((f) => (
+          <option value={f.name} key={f.name}>
+            {f.label}
+          </option>
+        ))}
+      </select>
+      <Toggle on={look.wireframe} label="Mesh" />
+      <Toggle on={look.ghost} label="Rest shape" />
+      <Toggle on={look.showInside} label="See through" />
+      <button class="chip" aria-pressed={more || look.sectionAxis.value !== ''} aria-expanded={more} onClick={() => setMore(!more)}>
+        Section
+      </button>
+      <button class="chip icon-only" aria-label="Show all of it" title="Show all of it" onClick={() => view?.lookAt('home')}>
+        <Icon name="frame" />
+      </button>
+      {more && (
+        <div class="popover">
+          <div class="segments" role="group" aria-label="Section plane">
+            {(['', 'x', 'y', 'z'] as const).map((a) => (
+              <button aria-pressed={look.sectionAxis.value === a} onClick={() => (look.sectionAxis.value = a)}>
+                {a || 'off'}
+              </button>
+            ))}
+          </div>
+          <label>
+            Cut at
+            <input type="range" min={0} max={1} step={0.002} value={look.sectionAt.value} disabled={!look.sectionAxis.value} style={{ '--at': `${100 * look.sectionAt.value}%` }} onInput={(e) => (look.sectionAt.value = Number(e.currentTarget.value))} />
+          </label>
+          <label>
+            Pull materials apart
+            <input type="range" min={0} max={1} step={0.01} value={look.exploded.value} style={{ '--at': `${100 * look.exploded.value}%` }} onInput={(e) => (look.exploded.value = Number(e.currentTarget.value))} />
+          </label>
+        </div>
+      )}
+    </div>
+  );
+}
+
+function follow(time: number) {
+  following.value = true;
+  look.shownFrame.value = null;
+  wantedTime.value = time;
+  sendInput({ type: 'follow', time });
+}
+
+function toRest() {
+  const head = scene.value?.head;
+  if (!head) return;
+  following.value = true;
+  wantedTime.value = 0;
+  look.shownFrame.value = null;
+  wanted.value = Object.fromEntries(head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
+  send({ type: 'rest' });
+  clearTracks();
+}
+
+function Timeline() {
+  tracksVersion.value;
+  const head = scene.value?.head;
+  const playing = frame.value?.head.playing ?? false;
+  if (!head) return null;
+  const duration = head.program.duration;
+  const time = playing ? (frame.value?.head.time ?? 0) : wantedTime.value;
+  const shown = look.shownFrame.value ? frames.indexOf(look.shownFrame.value) : frames.length - 1;
+  const program = recorded.value.length > 1 && !recording.value;
+  return (
+    <div class="timeline">
+      <button class="round" disabled={!mayDrive.value} aria-label={playing ? 'Pause the program' : 'Play the program'} data-testid="play" onClick={() => {
+        following.value = true;
+        look.shownFrame.value = null;
+        send({ type: 'play', on: !playing });
+      }}>
+        <Icon name={playing ? 'pause' : 'play'} />
+      </button>
+      <label class="track">
+        <span>Program</span>
+        <input type="range" data-testid="program" min={0} max={duration} step={duration / 1000} value={time} disabled={!mayDrive.value} style={{ '--at': `${(100 * time) / duration}%` }} class={following.value ? '' : 'idle'} onInput={(e) => follow(Number(e.currentTarget.value))} />
+        <output>{duration === 1 ? `${Math.round(100 * time)} %` : `${time.toFixed(2)} s`}</output>
+      </label>
+      <label class="track">
+        <span>Replay</span>
+        <input type="range" data-testid="replay" min={0} max={Math.max(frames.length - 1, 1)} step={1} value={shown} style={{ '--at': `${(100 * shown) / Math.max(frames.length - 1, 1)}%` }} onInput={(e) => {
+          const k = Number(e.currentTarget.value);
+          look.shownFrame.value = k >= frames.length - 1 ? null : frames[k];
+        }} />
+        <output>{look.shownFrame.value ? `${shown + 1} of ${frames.length}` : 'live'}</output>
+      </label>
+      <button class="round" disabled={!mayDrive.value} aria-label="Back to rest" title="Back to rest" data-testid="rest" onClick={toRest}>
+        <Icon name="rest" />
+      </button>
+      <button class={`round record ${recording.value ? 'on' : ''}`} aria-label={recording.value ? 'Stop recording' : 'Record a program'} title="Record a program" aria-pressed={recording.value} onClick={() => (recording.value ? stopRecording() : startRecording())}>
+        <Icon name={recording.value ? 'stop' : 'record'} />
+      </button>
+      {program && (
+        <button class="small" onClick={() => {
+          const keys = asProgram();
+          if (!keys) return;
+          panel.value = 'file';
+          const without = text.value.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
+          void apply(`${without.trimEnd()}\n\n${keys}\n`).then((done) => done && (recorded.value = []));
+        }}>
+          Put {recorded.value.length} samples into the file
+        </button>
+      )}
+    </div>
+  );
+}
+
+function save(blob: Blob, name: string) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function Export() {
+  const [open, setOpen] = useState(false);
+  const head = scene.value?.head;
+  if (!head) return null;
+  const items: [string, string, () => void][] = [
+    ['Picture', 'PNG', () => void view?.png().then((b) => b && save(b, 'robot.png'))],
+    ['What the plots show', 'CSV', () => save(new Blob([tracksCsv(head)], { type: 'text/csv' }), 'plots.csv')],
+    ['Forces since rest', 'CSV', () => (location.href = '/api/export/steps.csv')],
+    ['Markers since rest', 'CSV', () => (location.href = '/api/export/markers.csv')],
+    ['Motion since rest', 'GLB', () => (location.href = '/api/export/robot.glb')],
+    ['This state with its fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
+  ];
+  return (
+    <div class="menu">
+      <button class="chip" aria-expanded={open} onClick={() => setOpen(!open)}>
+        <Icon name="download" /> Export
+      </button>
+      {open && (
+        <div class="popover right" onClick={() => setOpen(false)}>
+          {items.map(([label, kind, go]) => (
+            <button class="item" onClick={go}>
+              <span>{label}</span>
+              <span class="quiet">{kind}</span>
+            </button>
+          ))}
+        </div>
+      )}
+    </div>
+  );
+}
+
+function Status() {
+  const head = frame.value?.head;
+  const s = scene.value?.head;
+  if (building.value)
+    return (
+      <div class="status" role="status" data-testid="status" data-state="building">
+        <span class="pulse" /> building: {building.value.stage}
+      </div>
+    );
+  if (!head || !s) return <div class="status" data-testid="status" data-state="none" />;
+  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : 'catching up';
+  const words = {
+    replay: 'replay',
+    stuck: 'it goes no further',
+    arrived: 'at equilibrium',
+    'catching up': 'catching up',
+  }[state];
+  return (
+    <div class="status" role="status" data-testid="status" data-state={state} title={head.stuck}>
+      <span class={`lamp ${state === 'arrived' ? 'good' : state === 'stuck' ? 'bad' : 'busy'}`} /> {words}
+      <span class="quiet">
+        residual {head.residual.toExponential(0)} · {s.tets.toLocaleString('en')} tets · {head.solve_ms.toFixed(0)} ms
+        <span class="wide">
+          {' '}
+          · {frameRate.value} frames/s · {latency.value.toFixed(0)} ms to picture
+        </span>
+      </span>
+    </div>
+  );
+}
+
+function Readings() {
+  const shown = (look.shownFrame.value ?? frame.value)?.head;
+  const head = scene.value?.head;
+  if (!shown || !head) return null;
+  const pull = shown.pull;
+  return (
+    <table class="readings">
+      <tbody>
+        {head.markers.map((m, k) => (
+          <tr key={m.name} data-testid={`marker-${m.name}`}>
+            <th>{m.name}</th>
+            {(shown.markers[k] ?? []).map((v) => (
+              <td>{v.toFixed(2)}</td>
+            ))}
+            <td class="unit">mm</td>
+          </tr>
+        ))}
+        {look.pinned.value?.frame.head.markers.map((p, k) => (
+          <tr class="pinned-row" key={`pin${k}`}>
+            <th>{head.markers[k]?.name} pinned</th>
+            {p.map((v) => (
+              <td>{v.toFixed(2)}</td>
+            ))}
+            <td class="unit">mm</td>
+          </tr>
+        ))}
+        {pull && (
+          <tr>
+            <th>your pull</th>
+            {pull.force_N.map((v) => (
+              <td>{v.toFixed(2)}</td>
+            ))}
+            <td class="unit">N</td>
+          </tr>
+        )}
+      </tbody>
+    </table>
+  );
+}
+
+function Pin() {
+  const p = look.pinned.value;
+  if (!p)
+    return (
+      <button class="chip" onClick={() => pinNow('pinned')} data-testid="pin">
+        <Icon name="pin" /> Pin to compare
+      </button>
+    );
+  return (
+    <span class="chip pinned" data-testid="pinned">
+      <span class="swatch" style={{ background: '#f2a93b' }} /> {p.label}
+      <button class="bare" aria-pressed={look.beside.value} onClick={() => (look.beside.value = !look.beside.value)}>
+        {look.beside.value ? 'over it' : 'side by side'}
+      </button>
+      <button class="bare" aria-label="Unpin" onClick={() => (look.pinned.value = null)}>
+        ×
+      </button>
+    </span>
+  );
+}
+
+const hints = [
+  'Drag a slider: the robot bends to where its cable or its air leads it, and every picture is a state at equilibrium.',
+  'Take hold of the body with the mouse and pull. Drag beside it to turn the view; the wheel comes nearer.',
+  'Change a material under File: the state before stays as a pale ghost to compare with. Then go on to Make.',
+];
+const hintsSeen = signal(Number(localStorage.getItem('pliant_hints') ?? 0));
+
+function Hints() {
+  const k = hintsSeen.value;
+  if (k >= hints.length) return null;
+  const next = (to: number) => {
+    hintsSeen.value = to;
+    localStorage.setItem('pliant_hints', String(to));
+  };
+  return (
+    <aside class="hint" data-testid="hint">
+      <b>{k + 1} of 3</b>
+      <p>{hints[k]}</p>
+      <div>
+        <button class="primary small" onClick={() => next(k + 1)}>
+          {k + 1 < hints.length ? 'Next' : 'Done'}
+        </button>
+        {k + 1 < hints.length && (
+          <button class="small" onClick={() => next(hints.length)}>
+            I know
+          </button>
+        )}
+      </div>
+    </aside>
+  );
+}
+
+function Accuracy() {
+  const fine = documentState.value.accuracy === 'fine';
+  const set = (accuracy: string) => void post('/api/accuracy', { accuracy });
+  return (
+    <div class="segments" role="group" aria-label="Elements" title="Linear tets answer at once and bend too little; quadratic ones are those of pliant simulate">
+      <button aria-pressed={!fine} disabled={!mayDrive.value} onClick={() => set('preview')}>
+        quick
+      </button>
+      <button aria-pressed={fine} disabled={!mayDrive.value} onClick={() => set('fine')} data-testid="fine">
+        accurate
+      </button>
+    </div>
+  );
+}
+
+export function Simulate() {
+  const tabs: [typeof panel.value, string][] = [
+    ['move', 'Move'],
+    ['plots', 'Plots'],
+    ['file', 'File'],
+  ];
+  return (
+    <main class="simulate">
+      <section class="stage">
+        <Canvas />
+        <LookBar />
+        <div class="stage-right">
+          <Pin />
+          <Export />
+        </div>
+        <Legend />
+        <Hints />
+        <Status />
+      </section>
+      <aside class="side">
+        <nav class="tabs" role="tablist">
+          {tabs.map(([name, label]) => (
+            <button role="tab" aria-selected={panel.value === name} onClick={() => (panel.value = name)} data-testid={`tab-${name}`}>
+              {label}
+              {name === 'file' && problems.value.length > 0 && <span class="badge">{problems.value.length}</span>}
+            </button>
+          ))}
+          <span class="grow" />
+          <Accuracy />
+        </nav>
+        <div class="panel" key={panel.value}>
+          {panel.value === 'move' && (
+            <>
+              <Actuators />
+              <Readings />
+              <Plots />
+            </>
+          )}
+          {panel.value === 'plots' && <Plots />}
+          {panel.value === 'file' && (
+            <>
+              <Materials />
+              <Editor />
+            </>
+          )}
+        </div>
+      </aside>
+      <Timeline />
+    </main>
+  );
+}

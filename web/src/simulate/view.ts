@@ -1,0 +1,549 @@
+// The robot in 3D. Draws when something has changed, and only then.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Line2 } from 'three/addons/lines/Line2.js';
+import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import type { Frame, Scene } from '../types';
+import { fieldColour } from './colormap';
+import type { FieldName } from './view_state';
+
+export interface ViewOptions {
+  field: FieldName;
+  scale: number;
+  wireframe: boolean;
+  ghost: boolean;
+  inside: boolean;
+  exploded: number;
+  sectionAxis: '' | 'x' | 'y' | 'z';
+  sectionAt: number;
+  pinned: Float32Array | null;
+  beside: boolean;
+}
+
+export interface Grab {
+  vertex: number;
+  to: [number, number, number];
+}
+
+const cableColour = 0xcc1a24;
+
+/// Looks solid where it is cut: the inner side of a surface is drawn flat, in the colour of the material.
+function insideMaterial(colour: THREE.ColorRepresentation) {
+  return new THREE.MeshBasicMaterial({ color: colour, side: THREE.BackSide });
+}
+
+export class RobotView {
+  readonly renderer: THREE.WebGLRenderer;
+  private readonly world = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.1, 10000);
+  private readonly controls: OrbitControls;
+  private readonly root = new THREE.Group();
+  private readonly plane = new THREE.Plane(new THREE.Vector3(-1, 0, 0), 0);
+  private readonly key = new THREE.DirectionalLight(0xffffff, 2.2);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.5);
+  private scene: Scene | null = null;
+  private frame: Frame | null = null;
+  private body: THREE.BufferGeometry | null = null;
+  private meshes: THREE.Mesh[] = [];
+  private insides: THREE.Mesh[] = [];
+  private wires: THREE.LineSegments | null = null;
+  private ghostMesh: THREE.Mesh | null = null;
+  private pinnedMesh: THREE.Mesh | null = null;
+  private chamberMesh: THREE.Mesh | null = null;
+  private supportPoints: THREE.Points | null = null;
+  private supportVertices: number[] = [];
+  private cables: Line2[] = [];
+  private markers: THREE.Mesh[] = [];
+  private obstacles: THREE.Object3D[] = [];
+  private readonly arrow: Line2;
+  private readonly handle: THREE.Mesh;
+  private centre = new THREE.Vector3();
+  private size = 100;
+  private offsets: THREE.Vector3[] = [];
+  private options: ViewOptions | null = null;
+  private dirty = true;
+  private stopped = false;
+  private grabbing: { vertex: number; plane: THREE.Plane } | null = null;
+  onGrab: (grab: Grab | null) => void = () => {};
+  mayGrab = () => true;
+  onRange: (low: number, high: number) => void = () => {};
+  onDraw: (project: (p: [number, number, number]) => [number, number]) => void = () => {};
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.localClippingEnabled = true;
+    this.renderer.toneMapping = THREE.NoToneMapping;
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener('change', () => this.invalidate());
+    this.key.position.set(0.6, -1, 1.6);
+    this.world.add(this.sky, this.key, this.root);
+    this.arrow = new Line2(new LineGeometry(), new LineMaterial({ color: 0xf2b705, linewidth: 3, depthTest: false }));
+    this.arrow.visible = false;
+    this.handle = new THREE.Mesh(
+      new THREE.SphereGeometry(1, 24, 16),
+      new THREE.MeshBasicMaterial({ color: 0xf2b705, depthTest: false, transparent: true }),
+    );
+    this.handle.visible = false;
+    this.arrow.renderOrder = this.handle.renderOrder = 10;
+    this.world.add(this.arrow, this.handle);
+    canvas.addEventListener('pointerdown', (e) => this.pointerDown(e), { capture: true });
+    canvas.addEventListener('pointermove', (e) => this.pointerMove(e));
+    canvas.addEventListener('pointerup', (e) => this.pointerUp(e));
+    canvas.addEventListener('pointercancel', (e) => this.pointerUp(e));
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement as Element);
+    this.resize();
+    const loop = () => {
+      if (this.stopped) return;
+      requestAnimationFrame(loop);
+      if (this.dirty) this.draw();
+    };
+    loop();
+  }
+
+  dispose() {
+    this.stopped = true;
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
+
+  invalidate() {
+    this.dirty = true;
+  }
+
+  setScene(scene: Scene) {
+    const first = this.scene === null || this.scene.head.robot !== scene.head.robot;
+    this.scene = scene;
+    this.frame = null;
+    this.root.clear();
+    this.build(scene);
+    if (first) this.lookAt('home');
+    if (this.options) this.setOptions(this.options);
+    this.invalidate();
+  }
+
+  private build(scene: Scene) {
+    const rest = scene.f32('rest');
+    const triangles = scene.u32('triangles');
+    const material = scene.u32('material');
+    const box = new THREE.Box3().setFromArray(rest as unknown as number[]);
+    box.getCenter(this.centre);
+    this.size = box.getSize(new THREE.Vector3()).length();
+    const body = new THREE.BufferGeometry();
+    body.setAttribute('position', new THREE.BufferAttribute(new Float32Array(rest), 3));
+    body.setAttribute('normal', new THREE.BufferAttribute(new Float32Array(rest.length), 3));
+    body.setAttribute('color', new THREE.BufferAttribute(new Float32Array(rest.length).fill(1), 3));
+    body.setIndex(new THREE.BufferAttribute(new Uint32Array(triangles), 1));
+    body.boundingSphere = new THREE.Sphere(this.centre.clone(), 50 * this.size);
+    this.body = body;
+    // Triangles stand in the order of their materials: one group each.
+    scene.head.materials.forEach((_, m) => {
+      let begin = -1;
+      let end = 0;
+      for (let t = 0; t < triangles.length; t += 3) {
+        if (material[triangles[t]] !== m) continue;
+        if (begin < 0) begin = t;
+        end = t + 3;
+      }
+      if (begin >= 0) body.addGroup(begin, end - begin, m);
+    });
+    this.meshes = [new THREE.Mesh(body, scene.head.materials.map((m) => this.bodyMaterial(m.colour)))];
+    this.insides = [new THREE.Mesh(body, scene.head.materials.map((m) => insideMaterial(m.colour)))];
+    this.root.add(this.meshes[0], this.insides[0]);
+    this.wires = null;
+    this.ghostMesh = new THREE.Mesh(
+      this.copyOf(rest),
+      new THREE.MeshLambertMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.22, depthWrite: false }),
+    );
+    this.ghostMesh.visible = false;
+    this.pinnedMesh = new THREE.Mesh(
+      this.copyOf(rest),
+      new THREE.MeshLambertMaterial({ color: 0xf2a93b, transparent: true, opacity: 0.42, depthWrite: false }),
+    );
+    this.pinnedMesh.visible = false;
+    this.root.add(this.ghostMesh, this.pinnedMesh);
+    this.buildOffsets(scene, rest, material);
+    this.buildParts(scene);
+    this.updateNormals();
+  }
+
+  private copyOf(positions: Float32Array) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(positions), 3));
+    geometry.setIndex(this.body!.getIndex());
+    geometry.computeVertexNormals();
+    return geometry;
+  }
+
+  private bodyMaterial(colour: string) {
+    return new THREE.MeshStandardMaterial({ color: colour, roughness: 0.62, metalness: 0, side: THREE.FrontSide });
+  }
+
+  /// Each material moves away from the middle of the robot.
+  private buildOffsets(scene: Scene, rest: Float32Array, material: Uint32Array) {
+    const sums = scene.head.materials.map(() => ({ at: new THREE.Vector3(), n: 0 }));
+    for (let v = 0; v < material.length; ++v) {
+      sums[material[v]].at.add(new THREE.Vector3(rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]));
+      sums[material[v]].n += 1;
+    }
+    this.offsets = sums.map((s) => (s.n ? s.at.divideScalar(s.n).sub(this.centre) : s.at));
+  }
+
+  private buildParts(scene: Scene) {
+    this.cables = scene.head.cable_points.map(() => {
+      const line = new Line2(new LineGeometry(), new LineMaterial({ color: cableColour, linewidth: 3.2 }));
+      const through = new Line2(
+        line.geometry,
+        new LineMaterial({ color: cableColour, linewidth: 2.2, transparent: true, opacity: 0.3, depthTest: false }),
+      );
+      line.add(through);
+      this.root.add(line);
+      return line;
+    });
+    const radius = 0.009 * this.size;
+    this.markers = scene.head.markers.map(() => {
+      const marker = new THREE.Mesh(
+        new THREE.SphereGeometry(radius, 20, 14),
+        new THREE.MeshBasicMaterial({ color: 0x11161d, transparent: true, opacity: 0.9, depthTest: false }),
+      );
+      marker.renderOrder = 5;
+      this.root.add(marker);
+      return marker;
+    });
+    const chambers = scene.u32('chamber_triangles');
+    this.chamberMesh = null;
+    if (chambers.length) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(chambers), 1));
+      this.chamberMesh = new THREE.Mesh(
+        geometry,
+        new THREE.MeshBasicMaterial({ color: 0x2f9bff, transparent: true, opacity: 0.2, depthTest: false, side: THREE.DoubleSide }),
+      );
+      this.chamberMesh.frustumCulled = false;
+      this.chamberMesh.renderOrder = 3;
+      this.root.add(this.chamberMesh);
+    }
+    this.supportVertices = [];
+    scene.u32('support').forEach((s, v) => s > 0 && this.supportVertices.push(v));
+    const held = new THREE.BufferGeometry();
+    held.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * this.supportVertices.length), 3));
+    this.supportPoints = new THREE.Points(
+      held,
+      new THREE.PointsMaterial({ color: 0x2a2f38, size: 4, sizeAttenuation: false, transparent: true, opacity: 0.75 }),
+    );
+    this.supportPoints.frustumCulled = false;
+    this.root.add(this.supportPoints);
+    this.obstacles = scene.head.obstacles.map((_, o) => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(scene.f32(`obstacle_points_${o}`)), 3));
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(scene.u32(`obstacle_triangles_${o}`)), 1));
+      geometry.computeVertexNormals();
+      const mesh = new THREE.Mesh(
+        geometry,
+        new THREE.MeshStandardMaterial({ color: 0xb3b8bf, roughness: 0.8, side: THREE.DoubleSide }),
+      );
+      this.root.add(mesh);
+      return mesh;
+    });
+  }
+
+  setFrame(frame: Frame) {
+    if (!this.scene || frame.head.revision !== this.scene.head.revision || !this.body) return;
+    this.frame = frame;
+    const positions = this.body.getAttribute('position') as THREE.BufferAttribute;
+    (positions.array as Float32Array).set(frame.f32('positions'));
+    this.explode(positions.array as Float32Array);
+    positions.needsUpdate = true;
+    this.updateNormals();
+    this.updateColours();
+    this.updateParts(frame);
+    this.invalidate();
+  }
+
+  private explode(positions: Float32Array) {
+    const by = 1.1 * (this.options?.exploded ?? 0);
+    if (!by || !this.scene) return;
+    const material = this.scene.u32('material');
+    for (let v = 0; v < material.length; ++v) {
+      const offset = this.offsets[material[v]];
+      positions[3 * v] += by * offset.x;
+      positions[3 * v + 1] += by * offset.y;
+      positions[3 * v + 2] += by * offset.z;
+    }
+  }
+
+  /// Area-weighted; vertices are doubled along sharp edges already.
+  private updateNormals() {
+    const body = this.body!;
+    const p = body.getAttribute('position').array as Float32Array;
+    const normals = body.getAttribute('normal') as THREE.BufferAttribute;
+    const n = normals.array as Float32Array;
+    const index = body.getIndex()!.array;
+    n.fill(0);
+    for (let t = 0; t < index.length; t += 3) {
+      const a = 3 * index[t];
+      const b = 3 * index[t + 1];
+      const c = 3 * index[t + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      for (const i of [a, b, c]) {
+        n[i] += x;
+        n[i + 1] += y;
+        n[i + 2] += z;
+      }
+    }
+    for (let i = 0; i < n.length; i += 3) {
+      const length = Math.hypot(n[i], n[i + 1], n[i + 2]) || 1;
+      n[i] /= length;
+      n[i + 1] /= length;
+      n[i + 2] /= length;
+    }
+    normals.needsUpdate = true;
+  }
+
+  private fieldValues(): Float32Array | null {
+    const frame = this.frame;
+    const field = this.options?.field ?? 'material';
+    if (!frame || !this.scene || field === 'material') return null;
+    if (field !== 'displacement') return frame.has(field) ? frame.f32(field) : null;
+    const rest = this.scene.f32('rest');
+    const now = frame.f32('positions');
+    const values = new Float32Array(rest.length / 3);
+    for (let v = 0; v < values.length; ++v)
+      values[v] = Math.hypot(now[3 * v] - rest[3 * v], now[3 * v + 1] - rest[3 * v + 1], now[3 * v + 2] - rest[3 * v + 2]);
+    return values;
+  }
+
+  private updateColours() {
+    const values = this.fieldValues();
+    if (!values || !this.body) return;
+    const scale = this.options?.scale ?? 1;
+    let low = Infinity, high = -Infinity;
+    for (const v of values) {
+      if (v < low) low = v;
+      if (v > high) high = v;
+    }
+    if (!(high > low)) high = low + Math.max(1e-9, Math.abs(low) * 1e-6);
+    this.onRange(low * scale, high * scale);
+    const colours = this.body.getAttribute('color') as THREE.BufferAttribute;
+    const c = colours.array as Float32Array;
+    const linear = new THREE.Color();
+    for (let v = 0; v < values.length; ++v) {
+      linear.setRGB(...fieldColour((values[v] - low) / (high - low)), THREE.SRGBColorSpace);
+      c[3 * v] = linear.r;
+      c[3 * v + 1] = linear.g;
+      c[3 * v + 2] = linear.b;
+    }
+    colours.needsUpdate = true;
+  }
+
+  private updateParts(frame: Frame) {
+    const cables = frame.f32('cables');
+    let at = 0;
+    this.cables.forEach((line, c) => {
+      const count = 3 * this.scene!.head.cable_points[c];
+      line.geometry.dispose();
+      const geometry = new LineGeometry();
+      geometry.setPositions(Array.from(cables.subarray(at, at + count)));
+      line.geometry = geometry;
+      (line.children[0] as Line2).geometry = geometry;
+      at += count;
+    });
+    frame.head.markers.forEach((p, m) => this.markers[m]?.position.set(...p));
+    if (this.chamberMesh) {
+      const chambers = new THREE.BufferAttribute(new Float32Array(frame.f32('chambers')), 3);
+      this.chamberMesh.geometry.setAttribute('position', chambers);
+    }
+    const positions = this.body!.getAttribute('position').array as Float32Array;
+    const held = this.supportPoints!.geometry.getAttribute('position') as THREE.BufferAttribute;
+    this.supportVertices.forEach((v, k) => held.setXYZ(k, positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]));
+    held.needsUpdate = true;
+    frame.head.obstacles.forEach((p, o) => this.obstacles[o]?.position.set(...p));
+    this.updateArrow();
+  }
+
+  private updateArrow() {
+    const grab = this.grabbing;
+    this.arrow.visible = this.handle.visible = grab !== null;
+    if (!grab || !this.body) return;
+    const p = this.body.getAttribute('position');
+    const geometry = new LineGeometry();
+    geometry.setPositions([p.getX(grab.vertex), p.getY(grab.vertex), p.getZ(grab.vertex), ...this.handle.position.toArray()]);
+    this.arrow.geometry.dispose();
+    this.arrow.geometry = geometry;
+    this.handle.scale.setScalar(0.012 * this.size);
+  }
+
+  setOptions(options: ViewOptions) {
+    this.options = options;
+    if (!this.body || !this.scene) return;
+    const coloured = options.field !== 'material';
+    this.scene.head.materials.forEach((m, k) => {
+      const outside = (this.meshes[0].material as THREE.MeshStandardMaterial[])[k];
+      outside.vertexColors = coloured;
+      outside.color.set(coloured ? '#ffffff' : m.colour);
+      outside.clippingPlanes = options.sectionAxis ? [this.plane] : [];
+      outside.transparent = options.inside && !coloured && this.cables.length + (this.chamberMesh ? 1 : 0) > 0;
+      outside.opacity = 1;
+      outside.needsUpdate = true;
+      const inside = (this.insides[0].material as THREE.MeshBasicMaterial[])[k];
+      inside.vertexColors = coloured;
+      inside.color.set(coloured ? '#ffffff' : m.colour).multiplyScalar(coloured ? 1 : 0.8);
+      inside.clippingPlanes = options.sectionAxis ? [this.plane] : [];
+      inside.needsUpdate = true;
+    });
+    this.insides[0].visible = options.sectionAxis !== '';
+    for (const line of this.cables) line.children[0].visible = options.inside;
+    if (this.chamberMesh) this.chamberMesh.visible = options.inside;
+    this.placeSection(options);
+    this.setWires(options.wireframe);
+    this.ghostMesh!.visible = options.ghost;
+    this.setPinned(options);
+    if (this.frame) this.setFrame(this.frame);
+    this.invalidate();
+  }
+
+  private placeSection(options: ViewOptions) {
+    if (!options.sectionAxis) return;
+    const axis = { x: 0, y: 1, z: 2 }[options.sectionAxis];
+    const box = new THREE.Box3().setFromArray(this.body!.getAttribute('position').array as unknown as number[]);
+    const at = box.min.getComponent(axis) + options.sectionAt * (box.max.getComponent(axis) - box.min.getComponent(axis));
+    this.plane.normal.set(0, 0, 0).setComponent(axis, options.sectionAxis === 'y' ? 1 : -1);
+    this.plane.constant = options.sectionAxis === 'y' ? -at : at;
+  }
+
+  private setWires(on: boolean) {
+    if (!on) {
+      if (this.wires) this.wires.visible = false;
+      return;
+    }
+    if (!this.wires) {
+      const index = this.body!.getIndex()!.array;
+      const edges: number[] = [];
+      for (let t = 0; t < index.length; t += 3)
+        for (const [a, b] of [[0, 1], [1, 2], [2, 0]]) if (index[t + a] < index[t + b]) edges.push(index[t + a], index[t + b]);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', this.body!.getAttribute('position'));
+      geometry.setIndex(edges);
+      this.wires = new THREE.LineSegments(
+        geometry,
+        new THREE.LineBasicMaterial({ color: 0x10151c, transparent: true, opacity: 0.28 }),
+      );
+      this.wires.frustumCulled = false;
+      this.root.add(this.wires);
+    }
+    this.wires.visible = true;
+  }
+
+  private setPinned(options: ViewOptions) {
+    const mesh = this.pinnedMesh!;
+    const positions = mesh.geometry.getAttribute('position') as THREE.BufferAttribute;
+    mesh.visible = options.pinned !== null && options.pinned.length === positions.array.length;
+    if (!mesh.visible) return;
+    (positions.array as Float32Array).set(options.pinned!);
+    positions.needsUpdate = true;
+    mesh.geometry.computeVertexNormals();
+    const box = new THREE.Box3().setFromArray(this.scene!.f32('rest') as unknown as number[]);
+    mesh.position.set(0, options.beside ? 1.6 * (box.max.y - box.min.y) + 0.1 * this.size : 0, 0);
+  }
+
+  lookAt(side: 'home' | 'x' | 'y' | 'z') {
+    const from = { home: [0.55, -1.25, 0.62], x: [1, 0, 0.0001], y: [0, -1, 0.0001], z: [0, -0.001, 1] }[side];
+    const distance = (0.62 * this.size) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, Math.max(this.camera.aspect, 0.55));
+    const target = this.centre.clone().add(new THREE.Vector3(0, 0, 0.08 * this.size));
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).add(new THREE.Vector3(...from).normalize().multiplyScalar(distance));
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.invalidate();
+  }
+
+  turn(around: number, up: number, nearer: number) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
+    s.theta += around;
+    s.phi = Math.min(Math.max(s.phi - up, 0.05), Math.PI - 0.05);
+    s.radius *= nearer;
+    const back = new THREE.Vector3().setFromSpherical(s);
+    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(back.x, -back.z, back.y));
+    this.controls.update();
+    this.invalidate();
+  }
+
+  private ray(e: PointerEvent) {
+    const box = this.canvas.getBoundingClientRect();
+    const at = new THREE.Vector2(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2);
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, this.camera);
+    return ray;
+  }
+
+  private pointerDown(e: PointerEvent) {
+    if (e.button !== 0 || e.shiftKey || !this.mayGrab() || !this.frame || this.options?.exploded) return;
+    const hit = this.ray(e).intersectObject(this.meshes[0], false)[0];
+    if (!hit?.face || (this.options?.sectionAxis && this.plane.distanceToPoint(hit.point) < 0)) return;
+    const p = this.body!.getAttribute('position');
+    const distance = (v: number) => hit.point.distanceTo(new THREE.Vector3(p.getX(v), p.getY(v), p.getZ(v)));
+    const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
+    const facing = this.camera.getWorldDirection(new THREE.Vector3());
+    const at = new THREE.Vector3(p.getX(vertex), p.getY(vertex), p.getZ(vertex));
+    this.grabbing = { vertex, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(facing, at) };
+    this.handle.position.copy(at);
+    this.controls.enabled = false;
+    this.canvas.setPointerCapture(e.pointerId);
+    this.canvas.style.cursor = 'grabbing';
+    this.updateArrow();
+    this.invalidate();
+  }
+
+  private pointerMove(e: PointerEvent) {
+    if (!this.grabbing) return;
+    const at = this.ray(e).ray.intersectPlane(this.grabbing.plane, new THREE.Vector3());
+    if (!at) return;
+    this.handle.position.copy(at);
+    this.updateArrow();
+    this.onGrab({ vertex: this.grabbing.vertex, to: at.toArray() });
+    this.invalidate();
+  }
+
+  private pointerUp(_: PointerEvent) {
+    if (!this.grabbing) return;
+    this.grabbing = null;
+    this.controls.enabled = true;
+    this.canvas.style.cursor = '';
+    this.updateArrow();
+    this.onGrab(null);
+    this.invalidate();
+  }
+
+  private resize() {
+    const box = (this.canvas.parentElement as Element).getBoundingClientRect();
+    if (!box.width || !box.height) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(box.width, box.height, false);
+    this.camera.aspect = box.width / box.height;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  private draw() {
+    this.dirty = false;
+    this.key.position.copy(this.camera.position).add(new THREE.Vector3(-0.4, -0.3, 0.9).multiplyScalar(this.size));
+    this.renderer.render(this.world, this.camera);
+    const box = this.canvas.getBoundingClientRect();
+    this.onDraw((p) => {
+      const v = new THREE.Vector3(...p).project(this.camera);
+      return [((v.x + 1) / 2) * box.width, ((1 - v.y) / 2) * box.height];
+    });
+  }
+
+  png(): Promise<Blob | null> {
+    this.draw();
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+}

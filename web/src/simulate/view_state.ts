@@ -1,0 +1,32 @@
+// What is shown of the robot, and how.
+import { signal } from '@preact/signals';
+import type { Frame } from '../types';
+
+export type FieldName = 'material' | 'displacement' | 'von_mises' | 'stretch' | 'J' | 'energy';
+export const fieldNames: { name: FieldName; label: string; unit: string; scale: number }[] = [
+  { name: 'material', label: 'Materials', unit: '', scale: 1 },
+  { name: 'displacement', label: 'Displacement', unit: 'mm', scale: 1 },
+  { name: 'von_mises', label: 'Von Mises stress', unit: 'kPa', scale: 1e-3 },
+  { name: 'stretch', label: 'Largest stretch', unit: '', scale: 1 },
+  { name: 'J', label: 'Volume ratio J', unit: '', scale: 1 },
+  { name: 'energy', label: 'Energy density', unit: 'kJ/m³', scale: 1e-3 },
+];
+
+export const field = signal<FieldName>('material');
+export const wireframe = signal(false);
+export const ghost = signal(false);
+export const exploded = signal(0);
+export const showInside = signal(true);
+export const sectionAxis = signal<'' | 'x' | 'y' | 'z'>('');
+export const sectionAt = signal(0.5);
+export const fieldRange = signal<[number, number]>([0, 1]);
+/// A frame of the recording that is shown instead of the live one.
+export const shownFrame = signal<Frame | null>(null);
+/// The state that was pinned to compare with.
+export interface Pinned {
+  label: string;
+  positions: Float32Array;
+  frame: Frame;
+}
+export const pinned = signal<Pinned | null>(null);
+export const beside = signal(false);

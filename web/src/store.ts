@@ -1,0 +1,209 @@
+// The state of the page and its line to the studio.
+import { batch, computed, signal } from '@preact/signals';
+import { readPacket } from './packet';
+import type { Frame, FrameHead, Job, Problem, Scene, SceneHead } from './types';
+
+export type Section = 'simulate' | 'make' | 'print';
+
+const sections: Section[] = ['simulate', 'make', 'print'];
+const asked = location.hash.slice(1) as Section;
+export const section = signal<Section>(sections.includes(asked) ? asked : 'simulate');
+
+export const online = signal(false);
+export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
+export const mayDrive = computed(() => online.value && helm.value.you);
+
+export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'preview' as 'preview' | 'fine' });
+export const scene = signal<Scene | null>(null);
+export const frame = signal<Frame | null>(null);
+export const building = signal<{ stage: string; fraction: number } | null>(null);
+export const problems = signal<Problem[]>([]);
+export const slicing = signal<{ stage: string; fraction: number } | null>(null);
+export const sliceError = signal('');
+export const job = signal<Job | null>(null);
+export const notice = signal('');
+
+/// What was asked for, by actuator; the frame says what has been reached.
+export interface Wanted {
+  kind: string;
+  value: number;
+}
+export const wanted = signal<Record<string, Wanted>>({});
+export const wantedTime = signal(0);
+export const following = signal(true);
+/// Milliseconds from the last input to the frame that showed it.
+export const latency = signal(0);
+export const frameRate = signal(0);
+
+const listeners = new Set<(event: Record<string, unknown>) => void>();
+export function onEvent(listener: (event: Record<string, unknown>) => void) {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/// Who this page is, kept over reloads and lost connections.
+function pageKey(): string {
+  const known = sessionStorage.getItem('pliant_page');
+  if (known) return known;
+  const bytes = crypto.getRandomValues(new Uint8Array(12));
+  const key = Array.from(bytes, (b) => b.toString(16).padStart(2, '0')).join('');
+  sessionStorage.setItem('pliant_page', key);
+  return key;
+}
+export const page = pageKey();
+
+let socket: WebSocket | null = null;
+let retry = 250;
+let fields: string[] = [];
+let tag = 0;
+const sentAt = new Map<number, number>();
+const frameTimes: number[] = [];
+
+export function send(message: Record<string, unknown>) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+}
+
+/// An input that a frame answers.
+export function sendInput(message: Record<string, unknown>) {
+  tag += 1;
+  sentAt.set(tag, performance.now());
+  if (sentAt.size > 500) sentAt.delete(sentAt.keys().next().value as number);
+  send({ ...message, tag });
+}
+
+export function wantFields(names: string[]) {
+  fields = names;
+  send({ type: 'fields', names });
+}
+
+export async function api(path: string, options: RequestInit = {}): Promise<Response> {
+  const response = await fetch(path, { ...options, headers: { ...options.headers, 'X-Pliant-Page': page } });
+  if (!response.ok) {
+    const body = (await response.json().catch(() => ({}))) as { error?: string };
+    throw new Error(body.error ?? `the studio answered ${response.status}`);
+  }
+  return response;
+}
+
+export async function post(path: string, body?: unknown): Promise<boolean> {
+  try {
+    await api(path, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
+    return true;
+  } catch (error) {
+    say((error as Error).message);
+    return false;
+  }
+}
+
+let noticeTimer = 0;
+export function say(text: string) {
+  notice.value = text;
+  clearTimeout(noticeTimer);
+  noticeTimer = window.setTimeout(() => (notice.value = ''), 6000);
+}
+
+async function loadScene() {
+  const response = await api('/api/scene');
+  const loaded = readPacket<SceneHead>(await response.arrayBuffer());
+  const frameResponse = await api('/api/frame');
+  const first = readPacket<FrameHead>(await frameResponse.arrayBuffer());
+  batch(() => {
+    const same = scene.value !== null && sameActuators(scene.value.head, loaded.head);
+    scene.value = loaded;
+    frame.value = first.head.revision === loaded.head.revision ? first : null;
+    if (!same) {
+      wanted.value = Object.fromEntries(loaded.head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
+      wantedTime.value = 0;
+      following.value = true;
+    }
+  });
+  // After a change of the file the robot goes where it was wanted before.
+  if (Object.entries(wanted.value).some(([, w]) => w.value !== restValue(w.kind)) && helm.value.you) driveAll();
+}
+
+function sameActuators(a: SceneHead, b: SceneHead) {
+  return a.actuators.map((x) => x.name).join('\n') === b.actuators.map((x) => x.name).join('\n');
+}
+
+export function restValue(kind: string): number {
+  return kind.endsWith('ratio') ? 1 : 0;
+}
+
+export function driveAll() {
+  if (following.value) return sendInput({ type: 'follow', time: wantedTime.value });
+  const actuators = Object.entries(wanted.value).map(([name, w]) => ({ name, kind: w.kind, value: w.value }));
+  sendInput({ type: 'drive', time: wantedTime.value, actuators });
+}
+
+export async function loadJob() {
+  job.value = (await (await api('/api/job')).json()) as Job;
+}
+
+function receiveText(text: string) {
+  const event = JSON.parse(text) as Record<string, unknown> & { type: string };
+  if (event.type === 'helm') helm.value = event as never;
+  if (event.type === 'document') documentState.value = event as never;
+  if (event.type === 'scene') loadScene().catch((e: Error) => say(e.message));
+  if (event.type === 'build') {
+    building.value = event.stage ? (event as never) : null;
+    if (event.stage === 'read') problems.value = [];
+  }
+  if (event.type === 'problem') problems.value = (event as unknown as { lines: Problem[] }).lines;
+  if (event.type === 'slicing') {
+    slicing.value = event.stage ? (event as never) : null;
+    sliceError.value = (event.error as string) ?? '';
+  }
+  if (event.type === 'job') loadJob().catch((e: Error) => say(e.message));
+  if (event.type === 'error') say(String(event.error));
+  for (const listener of listeners) listener(event);
+}
+
+function receiveFrame(buffer: ArrayBuffer) {
+  const next = readPacket<FrameHead>(buffer);
+  if (scene.value === null || next.head.revision !== scene.value.head.revision) return;
+  const now = performance.now();
+  frameTimes.push(now);
+  while (frameTimes.length > 0 && frameTimes[0] < now - 1000) frameTimes.shift();
+  batch(() => {
+    const sent = sentAt.get(next.head.tag);
+    if (sent !== undefined) {
+      latency.value = now - sent;
+      for (const key of sentAt.keys()) if (key <= next.head.tag) sentAt.delete(key);
+    }
+    frameRate.value = frameTimes.length;
+    frame.value = next;
+    if (next.head.playing) wantedTime.value = next.head.time;
+  });
+}
+
+export function connect() {
+  const opened = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`);
+  opened.binaryType = 'arraybuffer';
+  socket = opened;
+  const ping = window.setInterval(() => send({ type: 'ping' }), 5000);
+  opened.onopen = () => {
+    retry = 250;
+    online.value = true;
+    send({ type: 'hello', page });
+    if (fields.length) send({ type: 'fields', names: fields });
+  };
+  opened.onmessage = (event: MessageEvent) => {
+    if (typeof event.data === 'string') receiveText(event.data);
+    else receiveFrame(event.data as ArrayBuffer);
+  };
+  opened.onclose = () => {
+    clearInterval(ping);
+    online.value = false;
+    if (socket === opened) setTimeout(connect, retry);
+    retry = Math.min(2 * retry, 4000);
+  };
+}
+
+/// For the tests: loses the line as a network would.
+export function dropLine() {
+  socket?.close();
+}

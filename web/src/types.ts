@@ -1,0 +1,110 @@
+// What the studio says; docs/reference/studio.md describes it.
+import type { Packet } from './packet';
+
+export interface Material {
+  name: string;
+  colour: string;
+  law: string;
+  youngs_modulus_MPa: number;
+  poisson_ratio: number;
+  density_kg_m3: number;
+  resin: string;
+}
+
+export interface Actuator {
+  type: 'cable' | 'chamber';
+  name: string;
+  kind: string;
+  target: number;
+  rest: number;
+}
+
+export interface SceneHead {
+  revision: number;
+  accuracy: 'preview' | 'fine';
+  robot: string;
+  materials: Material[];
+  actuators: Actuator[];
+  cable_points: number[];
+  supports: string[];
+  markers: { name: string; rest: [number, number, number] }[];
+  obstacles: { name: string; open: boolean }[];
+  loaded: boolean;
+  program: { steps: number; duration: number };
+  tolerance: number;
+  nodes: number;
+  tets: number;
+  order: number;
+}
+
+export interface FrameHead {
+  revision: number;
+  sequence: number;
+  tag: number;
+  time: number;
+  arrived: boolean;
+  stuck: string;
+  playing: boolean;
+  residual: number;
+  min_J: number;
+  energy_mJ: number;
+  iterations: number;
+  solve_ms: number;
+  cables: { ratio: number; length_mm: number; tension_N: number }[];
+  chambers: { ratio: number; volume_mm3: number; pressure_kPa: number }[];
+  markers: [number, number, number][];
+  supports: [number, number, number][];
+  obstacles: [number, number, number][];
+  pull?: { vertex: number; force_N: [number, number, number] };
+}
+
+export type Scene = Packet<SceneHead>;
+export type Frame = Packet<FrameHead>;
+
+export interface Problem {
+  line: number;
+  text: string;
+}
+
+export interface JobMaterial {
+  name: string;
+  resin: string;
+  exposure_s: number;
+  model_volume_mm3: number;
+}
+
+export interface Plan {
+  layers: number;
+  swaps: number;
+  swap_lower_bound: number;
+  order_rule: string;
+  orders: Record<string, { swaps: number; change_s: number }>;
+  seconds: Record<'total' | 'swap' | 'clean' | 'expose' | 'move', number>;
+  layer_seconds: Record<'total' | 'swap' | 'clean' | 'expose' | 'move', number[]>;
+  resin_ml: Record<string, number>;
+  waste_ml: number;
+  solvent_ml: number;
+  vats: { slot: number; resin: string; refill: boolean; first_layer: number; last_layer: number; waste_ml: number; materials: number[] }[];
+  order: number[][];
+  warnings: string[];
+}
+
+export interface Job {
+  revision: number;
+  file: string;
+  printer: string;
+  colours: string[];
+  issues: { text: string; layer: number }[];
+  platform: { width_mm: number; depth_mm: number };
+  manifest: {
+    name: string;
+    width_px: number;
+    height_px: number;
+    pixel_um: number;
+    materials: JobMaterial[];
+    layers: { z_um: number; thickness_um: number; images: { material: number; file: string; area_mm2: number }[] }[];
+  };
+  plan?: Plan;
+  plan_error?: string;
+  swap?: { from: number; to: number; seconds: number; devices: string[]; stretches: { device: string; begin: number; end: number }[] };
+}
