@@ -42,7 +42,7 @@ bool matches(const Route& route, Request& request) {
         else if (name != segment)
             return false;
     }
-    if (!wanted.empty() || !path.empty()) return false;
+    if (!wanted.empty() || !path.empty() || request.path.ends_with('/')) return false;
     request.parts = std::move(parts);
     return true;
 }

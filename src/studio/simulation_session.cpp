@@ -441,7 +441,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
                  {"min_J", step.min_J},
                  {"energy_mJ", 1e3 * step.energy_J},
                  {"iterations", progress.iterations},
-                 {"solve_ms", 1e3 * progress.wall_s},
+                 {"solve_ms", 1e3 * step.wall_s},
                  {"cables", cables},
                  {"chambers", chambers},
                  {"markers", markers},

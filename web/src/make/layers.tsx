@@ -143,7 +143,7 @@ export function Layers({ job }: { job: Job }) {
   const fit = async () => {
     const [x0, y0, x1, y1] = await lit(job);
     const box = canvas.current!.parentElement!.getBoundingClientRect();
-    place.current = { x: (x0 + x1) / 2, y: (y0 + y1) / 2, zoom: 0.86 * Math.min(box.width / (x1 - x0), box.height / (y1 - y0)) };
+    place.current = { x: (x0 + x1) / 2, y: (y0 + y1) / 2, zoom: 0.8 * Math.min(box.width / (x1 - x0), box.height / (y1 - y0)) };
     draw();
   };
 

@@ -43,11 +43,22 @@ export function clearTracks() {
 let started = 0;
 let seenRevision = -1;
 
+/// After a pause the last values are written down once more, so that the line does not lean into the next change.
+function holdLast(seconds: number) {
+  const n = tracks.seconds.length;
+  if (n === 0 || seconds - tracks.seconds[n - 1] < 0.3) return;
+  tracks.seconds.push(seconds - 0.02);
+  for (const list of [tracks.residual, ...tracks.cables, ...tracks.chambers, ...tracks.markers]) list.push(list[n - 1]);
+  for (const list of tracks.places) list.push(list[n - 1]);
+}
+
 function add(next: Frame) {
   const head = next.head;
   const rest = scene.peek()!.head.markers;
   if (tracks.seconds.length === 0) started = performance.now();
-  tracks.seconds.push((performance.now() - started) / 1000);
+  const seconds = (performance.now() - started) / 1000;
+  holdLast(seconds);
+  tracks.seconds.push(seconds);
   head.cables.forEach((c, k) => tracks.cables[k]?.push(c.tension_N));
   head.chambers.forEach((c, k) => tracks.chambers[k]?.push(c.pressure_kPa));
   head.markers.forEach((p, k) => {

@@ -196,8 +196,9 @@ export class RobotView {
       const line = new Line2(new LineGeometry(), new LineMaterial({ color: cableColour, linewidth: 3.2 }));
       const through = new Line2(
         line.geometry,
-        new LineMaterial({ color: cableColour, linewidth: 2.2, transparent: true, opacity: 0.3, depthTest: false }),
+        new LineMaterial({ color: cableColour, linewidth: 2.2, transparent: true, opacity: 0.42, depthTest: false }),
       );
+      through.renderOrder = 4;
       line.add(through);
       this.root.add(line);
       return line;
@@ -386,8 +387,6 @@ export class RobotView {
       outside.vertexColors = coloured;
       outside.color.set(coloured ? '#ffffff' : m.colour);
       outside.clippingPlanes = options.sectionAxis ? [this.plane] : [];
-      outside.transparent = options.inside && !coloured && this.cables.length + (this.chamberMesh ? 1 : 0) > 0;
-      outside.opacity = 1;
       outside.needsUpdate = true;
       const inside = (this.insides[0].material as THREE.MeshBasicMaterial[])[k];
       inside.vertexColors = coloured;
@@ -452,7 +451,7 @@ export class RobotView {
 
   lookAt(side: 'home' | 'x' | 'y' | 'z') {
     const from = { home: [0.55, -1.25, 0.62], x: [1, 0, 0.0001], y: [0, -1, 0.0001], z: [0, -0.001, 1] }[side];
-    const distance = (0.62 * this.size) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, Math.max(this.camera.aspect, 0.55));
+    const distance = (0.54 * this.size) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, Math.max(this.camera.aspect, 0.55));
     const target = this.centre.clone().add(new THREE.Vector3(0, 0, 0.08 * this.size));
     this.controls.target.copy(target);
     this.camera.position.copy(target).add(new THREE.Vector3(...from).normalize().multiplyScalar(distance));

@@ -1,0 +1,189 @@
+// The real page on the real program, as people use it.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, program, settled, startBrowser, startStudio } from './studio.mjs';
+
+const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
+let folder;
+let studio;
+let browser;
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'pliant_page_'));
+  cpSync(robot, join(folder, 'finger.toml'));
+  studio = await startStudio(['finger.toml'], folder);
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  assert.equal(await studio?.stop(), 0);
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/// Where a marker is, mm, as the page shows it.
+async function marker(page, name) {
+  const cells = await page.getByTestId(`marker-${name}`).locator('td').allTextContents();
+  return cells.slice(0, 3).map(Number);
+}
+
+/// Waits until the page shows the answer to its last input.
+async function answered(page, before) {
+  await page.waitForFunction((t) => window.pliant.frame.value?.head.tag > t, before);
+  await settled(page);
+}
+const tag = (page) => page.evaluate(() => window.pliant.frame.value.head.tag);
+
+/// The same target through the command line.
+function simulated(ratio) {
+  const text = execFileSync(program, ['simulate', robot, '--json', '--set', 'mesh.order=1', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
+  return JSON.parse(text).steps.at(-1).markers.tip;
+}
+
+const near = (a, b, within, what) => a.forEach((x, k) => assert.ok(Math.abs(x - b[k]) < within, `${what}: ${a} is not ${b}`));
+
+test('a dragged slider brings the tip where pliant simulate has it', async () => {
+  const { page, context, wrong } = await openPage(browser, studio.address);
+  await settled(page);
+  assert.match(await page.getByTestId('hint').textContent(), /1 of 3/);
+  const slider = page.locator('#actuator-0');
+  const box = await slider.boundingBox();
+  const started = await tag(page);
+  await page.mouse.move(box.x + box.width - 9, box.y + box.height / 2);
+  await page.mouse.down();
+  for (let k = 1; k <= 8; ++k) await page.mouse.move(box.x + box.width - 9 - (k * box.width) / 36, box.y + box.height / 2);
+  await page.mouse.up();
+  await answered(page, started);
+  const ratio = Number(await page.getByTestId('number-flexor').inputValue());
+  assert.ok(ratio < 0.95 && ratio > 0.7, `the slider is at ${ratio}`);
+  await page.waitForTimeout(200);
+  near(await marker(page, 'tip'), simulated(ratio), 0.05, 'tip');
+  const keyed = await tag(page);
+  await slider.focus();
+  for (let k = 0; k < 20; ++k) await page.keyboard.press('ArrowRight');
+  await answered(page, keyed);
+  assert.ok(Number(await page.getByTestId('number-flexor').inputValue()) > ratio);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('the program plays to its end, and a body can be pulled', async () => {
+  const { page, context, wrong } = await openPage(browser, studio.address);
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await page.getByTestId('play').click();
+  await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.999 && !window.pliant.frame.value.head.playing);
+  near(await marker(page, 'tip'), simulated(0.85), 0.05, 'tip');
+  const before = await marker(page, 'tip');
+  const view = await page.getByTestId('view').boundingBox();
+  const tip = await page.locator('.labels span', { hasText: 'tip' }).boundingBox();
+  const started = await tag(page);
+  await page.mouse.move(tip.x - 14, tip.y + 16);
+  await page.mouse.down();
+  for (let k = 1; k <= 6; ++k) await page.mouse.move(tip.x - 14, tip.y + 16 - 10 * k);
+  await page.waitForFunction((t) => window.pliant.frame.value.head.tag > t && window.pliant.frame.value.head.pull, started);
+  await settled(page);
+  const pulled = await marker(page, 'tip');
+  assert.ok(Math.hypot(...pulled.map((x, k) => x - before[k])) > 1, `${pulled} was ${before} in a view of ${view.width}`);
+  await page.mouse.up();
+  await page.waitForFunction(() => !window.pliant.frame.value.head.pull && window.pliant.frame.value.head.arrived);
+  near(await marker(page, 'tip'), before, 0.1, 'let go');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a mistake in the robot file shows at its line', async () => {
+  const { page, context } = await openPage(browser, studio.address);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  const area = page.getByTestId('robot-file');
+  await page.waitForFunction(() => document.querySelector('[data-testid=robot-file]').value.includes('youngs_modulus'));
+  const good = await area.inputValue();
+  const line = good.split('\n').findIndex((l) => l.includes('youngs_modulus')) + 1;
+  await area.fill(good.replace('youngs_modulus', 'young_modulus'));
+  await page.getByTestId('apply').click();
+  await page.waitForSelector('[data-testid=problems]');
+  assert.match(await page.getByTestId('problems').textContent(), new RegExp(`line ${line} .*young_modulus`));
+  assert.ok(await page.locator(`.gutter [data-line="${line}"].wrong`).count());
+  await area.fill(good);
+  await area.press('Control+Enter');
+  await page.waitForSelector('[data-testid=problems]', { state: 'detached' });
+  await settled(page);
+  assert.equal(readFileSync(join(folder, 'finger.toml'), 'utf8'), good, 'nothing is written before it is saved');
+  await context.close();
+});
+
+test('several look, one steers, and the helm is handed over', async () => {
+  const first = await openPage(browser, studio.address);
+  await settled(first.page);
+  const second = await openPage(browser, studio.address);
+  await settled(second.page);
+  await second.page.waitForSelector('[data-testid=helm][data-state=watching]');
+  assert.ok(await second.page.locator('#actuator-0').isDisabled());
+  const started = await tag(first.page);
+  await first.page.getByTestId('number-flexor').fill('0.9');
+  await first.page.getByTestId('number-flexor').press('Enter');
+  await answered(first.page, started);
+  const there = await marker(first.page, 'tip');
+  await second.page.waitForFunction((x) => Math.abs(window.pliant.frame.value.head.markers.at(-1)[0] - x) < 0.01 || window.pliant.frame.value.head.arrived, there[0]);
+  await second.page.waitForTimeout(300);
+  near(await marker(second.page, 'tip'), there, 0.02, 'both see the same');
+  await second.page.getByTestId('ask').click();
+  await first.page.getByRole('button', { name: 'Hand over' }).click();
+  await second.page.waitForSelector('[data-testid=helm][data-state=steering]');
+  await first.page.waitForSelector('[data-testid=helm][data-state=watching]');
+  assert.ok(await second.page.locator('#actuator-0').isEnabled());
+  assert.deepEqual([...first.wrong, ...second.wrong], []);
+  await second.context.close();
+  await first.context.close();
+});
+
+test('a lost connection comes back, still at the helm', async () => {
+  const { page, context } = await openPage(browser, studio.address);
+  await settled(page);
+  if ((await page.getByTestId('helm').getAttribute('data-state')) !== 'steering') {
+    await page.waitForTimeout(10500);  // the page before is forgotten
+    await page.getByTestId('ask').click();
+  }
+  await page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
+  const before = await marker(page, 'tip');
+  await page.evaluate(() => window.pliant.dropLine());
+  await page.waitForSelector('[data-testid=helm][data-state=offline]');
+  await page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
+  near(await marker(page, 'tip'), before, 0.01, 'tip');
+  const started = await tag(page);
+  await page.getByTestId('number-flexor').fill('0.95');
+  await page.getByTestId('number-flexor').press('Enter');
+  await answered(page, started);
+  assert.ok(Math.abs((await marker(page, 'tip'))[2] - before[2]) > 0.1);
+  await context.close();
+});
+
+test('the robot is sliced, and its layers and plan are seen', async () => {
+  const { page, context, wrong } = await openPage(browser, `${studio.address}#make`);
+  await page.waitForFunction(() => window.pliant.scene.value !== null);
+  if (await page.getByTestId('slice').isDisabled()) {
+    await page.waitForTimeout(10500);
+    await page.getByTestId('ask').click();
+  }
+  await page.getByTestId('slice').click();
+  await page.waitForSelector('[data-testid=layer-view]');
+  await page.getByTestId('layer').fill('40');
+  // Somewhere in the picture the layer is drawn in the colour of a material.
+  await page.waitForFunction(() => {
+    const canvas = document.querySelector('[data-testid=layer-view]');
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    const colours = window.pliant.job.value.colours.map((c) => parseInt(c.slice(1), 16));
+    for (let i = 0; i < pixels.length; i += 4)
+      for (const c of colours) if (pixels[i] === c >> 16 && pixels[i + 1] === ((c >> 8) & 255) && pixels[i + 2] === (c & 255)) return true;
+    return false;
+  });
+  await page.getByTestId('make-plan').click();
+  const plan = await page.getByTestId('plan').textContent();
+  const swaps = await page.evaluate(() => window.pliant.job.value.plan.swaps);
+  assert.match(plan, new RegExp(`${swaps}swaps, never fewer than`));
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
