@@ -25,6 +25,7 @@ std::vector<Route> all_routes() {
     add_project_routes(routes);
     add_simulation_routes(routes);
     add_make_routes(routes);
+    add_print_routes(routes);
     routes.push_back({"GET", "/api/openapi.json", "this description", "application/json", false,
                       [](Studio& studio, const Request&) {
                           return json_response(open_api(studio.routes(), studio.version()));

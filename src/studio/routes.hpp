@@ -25,6 +25,7 @@ struct Route {
 void add_project_routes(std::vector<Route>& routes);
 void add_simulation_routes(std::vector<Route>& routes);
 void add_make_routes(std::vector<Route>& routes);
+void add_print_routes(std::vector<Route>& routes);
 
 /// Whether the path fits; fills request.parts.
 [[nodiscard]] bool matches(const Route& route, Request& request);

@@ -41,6 +41,7 @@ Studio::Studio(ProjectFolder folder, std::string version)
     simulation_ = std::make_unique<SimulationSession>(
         SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
     make_ = std::make_unique<MakeSession>(send, version_);
+    print_ = std::make_unique<PrintSession>(send);
 }
 
 Studio::~Studio() = default;
@@ -194,6 +195,7 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
     send(document_event(document()));
     for (const std::string& news : simulation_->news()) send(news);
     for (const std::string& news : make_->news()) send(news);
+    for (const std::string& news : print_->news()) send(news);
     if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);
 }
 

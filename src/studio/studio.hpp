@@ -10,6 +10,7 @@
 #include "studio/http.hpp"
 #include "studio/hub.hpp"
 #include "studio/make_session.hpp"
+#include "studio/print_session.hpp"
 #include "studio/project_folder.hpp"
 #include "studio/routes.hpp"
 #include "studio/simulation_session.hpp"
@@ -43,6 +44,7 @@ public:
     [[nodiscard]] ProjectFolder& folder() { return folder_; }
     [[nodiscard]] SimulationSession& simulation() { return *simulation_; }
     [[nodiscard]] MakeSession& make() { return *make_; }
+    [[nodiscard]] PrintSession& print() { return *print_; }
     [[nodiscard]] const std::string& version() const { return version_; }
     [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
@@ -77,6 +79,7 @@ private:
     Hub hub_;
     std::unique_ptr<SimulationSession> simulation_;
     std::unique_ptr<MakeSession> make_;
+    std::unique_ptr<PrintSession> print_;
     std::vector<Route> routes_;
     std::mutex mutex_;  ///< guards the document
     Document document_;

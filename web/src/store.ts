@@ -55,7 +55,8 @@ export const page = pageKey();
 let socket: WebSocket | null = null;
 let retry = 250;
 let fields: string[] = [];
-let tag = 0;
+// Tags rise from page to page, so that a frame is never taken for the answer to another page's input.
+let tag = Math.floor(performance.timeOrigin % 5e8);
 const sentAt = new Map<number, number>();
 const frameTimes: number[] = [];
 
@@ -202,6 +203,9 @@ export function connect() {
     retry = Math.min(2 * retry, 4000);
   };
 }
+
+/// Whoever closes the page lets go of the helm at once.
+window.addEventListener('pagehide', () => send({ type: 'steer', action: 'leave' }));
 
 /// For the tests: loses the line as a network would.
 export function dropLine() {

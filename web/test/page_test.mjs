@@ -44,8 +44,8 @@ function simulated(ratio) {
 
 const near = (a, b, within, what) => a.forEach((x, k) => assert.ok(Math.abs(x - b[k]) < within, `${what}: ${a} is not ${b}`));
 
-test('a dragged slider brings the tip where pliant simulate has it', async () => {
-  const { page, context, wrong } = await openPage(browser, studio.address);
+test('a dragged slider brings the tip where pliant simulate has it', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   assert.match(await page.getByTestId('hint').textContent(), /1 of 3/);
   const slider = page.locator('#actuator-0');
@@ -66,11 +66,10 @@ test('a dragged slider brings the tip where pliant simulate has it', async () =>
   await answered(page, keyed);
   assert.ok(Number(await page.getByTestId('number-flexor').inputValue()) > ratio);
   assert.deepEqual(wrong, []);
-  await context.close();
 });
 
-test('the program plays to its end, and a body can be pulled', async () => {
-  const { page, context, wrong } = await openPage(browser, studio.address);
+test('the program plays to its end, and a body can be pulled', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
   await page.getByTestId('play').click();
@@ -91,11 +90,10 @@ test('the program plays to its end, and a body can be pulled', async () => {
   await page.waitForFunction(() => !window.pliant.frame.value.head.pull && window.pliant.frame.value.head.arrived);
   near(await marker(page, 'tip'), before, 0.1, 'let go');
   assert.deepEqual(wrong, []);
-  await context.close();
 });
 
-test('a mistake in the robot file shows at its line', async () => {
-  const { page, context } = await openPage(browser, studio.address);
+test('a mistake in the robot file shows at its line', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-file').click();
   const area = page.getByTestId('robot-file');
@@ -112,13 +110,12 @@ test('a mistake in the robot file shows at its line', async () => {
   await page.waitForSelector('[data-testid=problems]', { state: 'detached' });
   await settled(page);
   assert.equal(readFileSync(join(folder, 'finger.toml'), 'utf8'), good, 'nothing is written before it is saved');
-  await context.close();
 });
 
-test('several look, one steers, and the helm is handed over', async () => {
-  const first = await openPage(browser, studio.address);
+test('several look, one steers, and the helm is handed over', async (t) => {
+  const first = await openPage(browser, studio.address, t);
   await settled(first.page);
-  const second = await openPage(browser, studio.address);
+  const second = await openPage(browser, studio.address, t);
   await settled(second.page);
   await second.page.waitForSelector('[data-testid=helm][data-state=watching]');
   assert.ok(await second.page.locator('#actuator-0').isDisabled());
@@ -136,17 +133,11 @@ test('several look, one steers, and the helm is handed over', async () => {
   await first.page.waitForSelector('[data-testid=helm][data-state=watching]');
   assert.ok(await second.page.locator('#actuator-0').isEnabled());
   assert.deepEqual([...first.wrong, ...second.wrong], []);
-  await second.context.close();
-  await first.context.close();
 });
 
-test('a lost connection comes back, still at the helm', async () => {
-  const { page, context } = await openPage(browser, studio.address);
+test('a lost connection comes back, still at the helm', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
   await settled(page);
-  if ((await page.getByTestId('helm').getAttribute('data-state')) !== 'steering') {
-    await page.waitForTimeout(10500);  // the page before is forgotten
-    await page.getByTestId('ask').click();
-  }
   await page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
   const before = await marker(page, 'tip');
   await page.evaluate(() => window.pliant.dropLine());
@@ -158,16 +149,11 @@ test('a lost connection comes back, still at the helm', async () => {
   await page.getByTestId('number-flexor').press('Enter');
   await answered(page, started);
   assert.ok(Math.abs((await marker(page, 'tip'))[2] - before[2]) > 0.1);
-  await context.close();
 });
 
-test('the robot is sliced, and its layers and plan are seen', async () => {
-  const { page, context, wrong } = await openPage(browser, `${studio.address}#make`);
+test('the robot is sliced, and its layers and plan are seen', async (t) => {
+  const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
   await page.waitForFunction(() => window.pliant.scene.value !== null);
-  if (await page.getByTestId('slice').isDisabled()) {
-    await page.waitForTimeout(10500);
-    await page.getByTestId('ask').click();
-  }
   await page.getByTestId('slice').click();
   await page.waitForSelector('[data-testid=layer-view]');
   await page.getByTestId('layer').fill('40');
@@ -185,5 +171,4 @@ test('the robot is sliced, and its layers and plan are seen', async () => {
   const swaps = await page.evaluate(() => window.pliant.job.value.plan.swaps);
   assert.match(plan, new RegExp(`${swaps}swaps, never fewer than`));
   assert.deepEqual(wrong, []);
-  await context.close();
 });

@@ -44,10 +44,12 @@ export async function startBrowser() {
 }
 
 /// A page that looks at the studio; what it should not do (errors, foreign addresses) is collected in `wrong`.
-export async function openPage(browser, address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
+/// It is closed at the end of test `t`. Playwright's own waiting evaluates texts, which the page's policy forbids: that
+/// policy is tested in wire_test.mjs.
+export async function openPage(browser, address, t, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1100, height: 720 }, bypassCSP: true, ...options });
   const page = await context.newPage();
-  page.setDefaultTimeout(60000);
+  page.setDefaultTimeout(30000);
   const wrong = [];
   page.on('pageerror', (error) => wrong.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && wrong.push(message.text()));
@@ -55,8 +57,16 @@ export async function openPage(browser, address, options = {}) {
     const url = request.url();
     if (!url.startsWith(new URL(address).origin) && !url.startsWith('blob:') && !url.startsWith('data:')) wrong.push(`asked for ${url}`);
   });
+  t?.after(() => leave({ page, context }));
   await page.goto(address);
   return { page, context, wrong };
+}
+
+/// Closes a page as a person does: the helm is free at once.
+async function leave({ page, context }) {
+  await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' })).catch(() => {});
+  await page.waitForTimeout(100);
+  await context.close();
 }
 
 /// The robot is there and at equilibrium.

@@ -1,8 +1,370 @@
 // Watching and steering a print.
-export function Print() {
+import { signal } from '@preact/signals';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import { api, job, mayDrive, post, say, section } from '../store';
+import { clock } from '../make/plan';
+import { theme } from '../theme';
+import { MachineView } from './machine_view';
+import { busy, events, flags, host, info, load, now } from './state';
+
+const speeds = [1, 10, 60, 300];
+const ticks = signal<Record<string, boolean>>({});
+
+function TakeMachine() {
+  const [speed, setSpeed] = useState(60);
+  const j = job.value;
   return (
-    <main class="page">
-      <p class="quiet">A print is started with <code>pliant print JOB.zip</code>.</p>
+    <div class="take">
+      <h2>Print</h2>
+      {j ? (
+        <>
+          <p>
+            <b>{j.manifest.name}</b>, {j.manifest.layers.length} layers, for the {j.printer}
+            {j.plan && `: ${clock(j.plan.seconds.total)}, ${j.plan.swaps} swaps`}.
+          </p>
+          <p class="quiet">
+            The virtual printer obeys the same G-code as the real one and is dark, wet and slow like it. A machine at a port is
+            driven by <code>pliant print JOB.zip --port DEVICE</code>.
+          </p>
+          <div class="row left">
+            <button class="primary" disabled={!mayDrive.value} data-testid="take-twin" onClick={() => post('/api/print/twin', { speed })}>
+              Take the virtual printer
+            </button>
+            <label class="inline">
+              at
+              <select value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="take-speed">
+                {[...speeds, 3000].map((s) => (
+                  <option value={s}>{s}×</option>
+                ))}
+              </select>
+              speed
+            </label>
+          </div>
+        </>
+      ) : (
+        <p>
+          There is no job yet. <a href="#make" onClick={() => (section.value = 'make')}>Slice the robot</a>, or open a job file.
+        </p>
+      )}
+    </div>
+  );
+}
+
+function Checklist() {
+  const i = info.value!;
+  const items: [string, string][] = [
+    ...i.vats.map((v): [string, string] => [`slot${v.slot}`, `slot ${v.slot} holds at least ${Math.ceil(v.ml)} ml of ${v.resin}`]),
+    ['platform', 'the platform is clean, tight and level'],
+    ['path', 'nothing stands in the way of carriage, tower and platform'],
+    ['solution', 'cleaning solution is filled up, the drain is free'],
+  ];
+  const open = items.filter(([key]) => !ticks.value[key]).length;
+  return (
+    <section class="block">
+      <h3>Before it starts</h3>
+      <ul class="checklist">
+        {items.map(([key, text]) => (
+          <li key={key}>
+            <label>
+              <input type="checkbox" checked={ticks.value[key] ?? false} disabled={!mayDrive.value} onChange={(e) => (ticks.value = { ...ticks.value, [key]: e.currentTarget.checked })} />
+              <span>{text}</span>
+            </label>
+          </li>
+        ))}
+      </ul>
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready} onClick={() => host('job', { command: 'start' })}>
+        {open > 0 ? `${open} to check` : 'Start the print'}
+      </button>
+    </section>
+  );
+}
+
+function Steering() {
+  const n = now.value!;
+  const f = flags.value;
+  const [sure, setSure] = useState(false);
+  return (
+    <section class="block steering">
+      {n.progress.prompt && (
+        <div class="prompt" role="alert" data-testid="prompt">
+          <Icon name="warn" />
+          <span>{n.progress.prompt}</span>
+          <button class="primary small" disabled={!mayDrive.value} onClick={() => host('job', { command: 'resume' })}>
+            Done, go on
+          </button>
+        </div>
+      )}
+      <div class="row left">
+        {(f.printing || f.pausing) && (
+          <button data-testid="pause" disabled={!mayDrive.value || f.pausing} onClick={() => host('job', { command: 'pause', action: 'pause' })}>
+            <Icon name="pause" /> {f.pausing ? 'pausing…' : 'Pause'}
+          </button>
+        )}
+        {f.paused && !n.progress.prompt && (
+          <button class="primary" data-testid="resume" disabled={!mayDrive.value} onClick={() => host('job', { command: 'resume' })}>
+            <Icon name="play" /> Go on
+          </button>
+        )}
+        {busy.value &&
+          (sure ? (
+            <>
+              <button
+                class="danger"
+                data-testid="cancel-sure"
+                disabled={!mayDrive.value}
+                onClick={() => {
+                  setSure(false);
+                  void host('job', { command: 'cancel' });
+                }}
+              >
+                Cancel for good
+              </button>
+              <button onClick={() => setSure(false)}>No</button>
+            </>
+          ) : (
+            <button data-testid="cancel" disabled={!mayDrive.value || f.cancelling} onClick={() => setSure(true)}>
+              <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
+            </button>
+          ))}
+        {f.error && (
+          <button class="primary" disabled={!mayDrive.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
+            Connect again
+          </button>
+        )}
+        <span class="grow" />
+        <button class="danger" data-testid="emergency" onClick={() => post('/api/print/stop')}>
+          Emergency stop
+        </button>
+      </div>
+    </section>
+  );
+}
+
+function Progress() {
+  const n = now.value!;
+  const p = n.progress;
+  const done = p.completion ?? 0;
+  return (
+    <section class="block">
+      <div class="row">
+        <b class="state" data-testid="print-state">
+          {p.finished && !busy.value ? 'Printed' : n.state.text}
+        </b>
+        <span class="quiet">{n.job.file.name}</span>
+      </div>
+      {n.state.message && <p class={p.failed || flags.value.error ? 'problems' : 'quiet'}>{n.state.message}</p>}
+      <div class="progress tall" role="progressbar" aria-valuenow={Math.round(done)} aria-valuemin={0} aria-valuemax={100}>
+        <div style={{ width: `${done}%` }} />
+      </div>
+      <div class="figures small-figures">
+        <div>
+          <b data-testid="print-layer">{p.layer === null ? '–' : p.layer + 1}</b>
+          <span>of {n.job.layers} layers</span>
+        </div>
+        <div>
+          <b>{clock(p.printTimeLeft ?? 0)}</b>
+          <span>left</span>
+        </div>
+        <div>
+          <b>{clock(p.printTime ?? 0)}</b>
+          <span>so far</span>
+        </div>
+        <div>
+          <b>{n.machine.slot || '–'}</b>
+          <span>slot in use</span>
+        </div>
+      </div>
+    </section>
+  );
+}
+
+function Picture() {
+  const p = now.value!.progress;
+  const j = job.value;
+  const known = j && p.layer !== null && p.material !== null && j.manifest.layers[p.layer]?.images.some((i) => i.material === p.material);
+  return (
+    <figure class={`picture ${p.lit ? 'lit' : ''}`}>
+      {known ? (
+        <img alt={`Layer ${p.layer}, ${j.manifest.materials[p.material!].name}`} src={`/api/job/layers/${p.layer}/${p.material}?job=${j.revision}`} />
+      ) : (
+        <div class="dark">no light yet</div>
+      )}
+      <figcaption>
+        {known ? j.manifest.materials[p.material!].name : ''}
+        <span>{p.lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
+      </figcaption>
+    </figure>
+  );
+}
+
+function Machine3D() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const i = info.value!;
+  const j = job.value;
+  useEffect(() => {
+    if (!i.machine) return;
+    const colours: Record<string, string> = {};
+    j?.manifest.materials.forEach((m, k) => (colours[m.resin] = j.colours[k]));
+    const size: [number, number] = [i.machine.platform.width * 0.36, i.machine.platform.depth * 0.3];
+    let view: MachineView;
+    try {
+      view = new MachineView(canvas.current!, i.machine, colours, size);
+    } catch {
+      return;
+    }
+    const stop = now.subscribe((n) => {
+      if (!n) return;
+      const layer = n.progress.layer;
+      const height = layer === null || !j ? 0 : (j.manifest.layers[Math.min(layer, j.manifest.layers.length - 1)]?.z_um ?? 0) / 1000;
+      view.show(n, height, j?.colours[n.progress.material ?? 0] ?? '#d98f5c');
+    });
+    return () => {
+      stop();
+      view.dispose();
+    };
+  }, [i, j?.revision, theme.value]);
+  return (
+    <div class="machine-view">
+      <canvas ref={canvas} tabIndex={0} aria-label="The machine in 3D" data-testid="machine-view" />
+    </div>
+  );
+}
+
+function ByHand() {
+  const m = info.value!.machine!;
+  const n = now.value!;
+  const ready = flags.value.ready && mayDrive.value;
+  const [step, setStep] = useState(5);
+  return (
+    <section class="block">
+      <h3>By hand</h3>
+      <div class="axes">
+        {Object.keys(m.axes).map((axis) => (
+          <div class="axis" key={axis}>
+            <span>
+              {axis}
+              {!n.machine.axes[axis]?.homed && <em> not homed</em>}
+            </span>
+            <output>{(n.machine.axes[axis]?.position ?? 0).toFixed(2)}</output>
+            <button class="bare" aria-label={`${axis} back by ${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: -step })}>
+              <Icon name="left" />
+            </button>
+            <button class="bare" aria-label={`${axis} on by ${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: step })}>
+              <Icon name="right" />
+            </button>
+          </div>
+        ))}
+      </div>
+      <div class="row left wrap">
+        <span class="segments" role="group" aria-label="Step">
+          {[0.1, 1, 5, 20].map((s) => (
+            <button aria-pressed={step === s} onClick={() => setStep(s)}>
+              {s} mm
+            </button>
+          ))}
+        </span>
+        <button class="small" disabled={!ready} data-testid="home" onClick={() => host('printer/axes', { command: 'home' })}>
+          Home all
+        </button>
+        <button class="small" disabled={!ready} onClick={() => host('printer/clean', { seconds: 15 })}>
+          Clean 15 s
+        </button>
+        <button class="small" disabled={!ready} onClick={() => host('printer/prime', { seconds: 10 })}>
+          Prime the pump
+        </button>
+      </div>
+      <div class="row left wrap">
+        {m.vats.map((v) => (
+          <button class="small" disabled={!ready || n.machine.slot === v.slot} onClick={() => host('printer/vat', { slot: v.slot })} title={v.resin}>
+            Vat {v.slot}
+          </button>
+        ))}
+        <button class="small" disabled={!ready || n.machine.slot === 0} onClick={() => host('printer/vat', { slot: 0 })}>
+          Put the vat away
+        </button>
+      </div>
+    </section>
+  );
+}
+
+function Log() {
+  const list = useRef<HTMLOListElement>(null);
+  const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
+  useEffect(() => {
+    const l = list.current;
+    if (l && l.scrollHeight - l.scrollTop - l.clientHeight < 160) l.scrollTop = l.scrollHeight;
+  }, [events.value.length]);
+  return (
+    <section class="block">
+      <h3>Log</h3>
+      <ol class="log" ref={list} data-testid="log">
+        {shown.map((e) => (
+          <li class={e.kind} key={e.number}>
+            <time>{clock(e.clock)}</time>
+            <span>{e.kind === 'layer' ? `layer ${e.text}` : e.text}</span>
+          </li>
+        ))}
+      </ol>
+    </section>
+  );
+}
+
+export function Print() {
+  useEffect(() => {
+    if (!info.value) load().catch((e: Error) => say(e.message));
+  }, []);
+  useEffect(() => {
+    // The pictures of a print come from its job.
+    if (!job.value) api('/api/job').then((r) => r.json()).then((j) => (job.value = j)).catch(() => {});
+  }, []);
+  const i = info.value;
+  if (!i?.machine || !now.value)
+    return (
+      <main class="page">
+        <TakeMachine />
+      </main>
+    );
+  return (
+    <main class="print">
+      <div class="watch">
+        <Machine3D />
+        <Picture />
+      </div>
+      <div class="steer">
+        <div class="row machine-name">
+          <b>{i.machine.name}</b>
+          <span class="quiet">{i.twin ? 'virtual printer' : 'at a port'}</span>
+        </div>
+        <Progress />
+        <Steering />
+        {!busy.value && <Checklist />}
+        {i.twin && (
+          <section class="block row">
+            <span class="segments" role="group" aria-label="Speed of the virtual printer">
+              {speeds.map((s) => (
+                <button
+                  aria-pressed={i.speed === s}
+                  disabled={!mayDrive.value}
+                  onClick={async () => {
+                    if (await post('/api/print/speed', { speed: s })) info.value = { ...i, speed: s };
+                  }}
+                >
+                  {s}×
+                </button>
+              ))}
+            </span>
+            <button class="small" disabled={busy.value || !mayDrive.value} onClick={() => post('/api/print/leave')}>
+              Give the machine back
+            </button>
+          </section>
+        )}
+        {!busy.value && <ByHand />}
+        <Log />
+        <p class="quiet">
+          {now.value.machine.firmware} · {now.value.machine.linesSent} lines sent · {now.value.machine.resends} sent again
+        </p>
+      </div>
     </main>
   );
 }

@@ -1,0 +1,203 @@
+#include "studio/print_session.hpp"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "operate/programs.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::chrono::milliseconds between_messages{200};
+constexpr double slowest = 0.1, fastest = 10000;
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+double mm(int um) {
+    return um / 1e3;
+}
+
+/// `{"current": ...}` as an event of the page.
+std::string event_of(const std::string& message) {
+    return R"({"type":"print",)" + message.substr(1);
+}
+
+bool under_way(host::State state) {
+    using host::State;
+    return state == State::printing || state == State::pausing || state == State::paused || state == State::cancelling ||
+           state == State::working;
+}
+
+host::LinkOptions link_options(const machine::Controller& controller) {
+    host::LinkOptions options;
+    options.window_lines = controller.window_lines;
+    options.window_bytes = controller.window_bytes;
+    return options;
+}
+
+/// What the page draws the machine from.
+Json printer_json(const machine::Printer& p) {
+    Json axes = Json::object(), vats = Json::array();
+    for (const machine::Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = p.axis(axis);
+        if (!spec.present()) continue;
+        axes[std::string(machine::axis_name(axis))] = {{"min", mm(spec.min_um)},
+                                                       {"max", mm(spec.max_um)},
+                                                       {"speed", spec.speed_mm_s},
+                                                       {"rotary", spec.rotary}};
+    }
+    for (const machine::Vat& vat : p.vats)
+        vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}, {"fill_ml", vat.fill_ml}});
+    const char* store = p.store() == machine::Store::tower ? "tower" : p.store() == machine::Store::table ? "table" : "none";
+    return {{"name", p.name},
+            {"store", store},
+            {"axes", axes},
+            {"vats", vats},
+            {"carriage", {{"print", mm(p.carriage.print_um)}, {"tower", mm(p.carriage.tower_um)}}},
+            {"platform", {{"width", mm(p.platform.width_um)}, {"depth", mm(p.platform.depth_um)}, {"height", mm(p.platform.build_height_um)}}},
+            {"tower", {{"slots", p.tower.slots}, {"first", mm(p.tower.first_slot_um)}, {"pitch", mm(p.tower.pitch_um)}}},
+            {"wall", mm(p.vat_shape.wall_um)}};
+}
+
+}  // namespace
+
+struct PrintSession::Machine {
+    Machine(operate::ReadyJob ready_, double speed)
+        : ready(std::move(ready_)), twin(ready.printer, speed), control(setup()) {}
+
+    host::ControlSetup setup() {
+        return {ready.printer,
+                [this]() -> Result<std::unique_ptr<host::Wire>> { return twin.wire(); },
+                twin.projector(),
+                twin.clock(),
+                operate::programs_of(ready.printer),
+                link_options(ready.printer.controller),
+                {},
+                {},
+                nullptr};
+    }
+
+    operate::ReadyJob ready;
+    PacedTwin twin;
+    host::Control control;
+    std::atomic<bool> ending = false;
+    std::thread worker, watcher;
+};
+
+PrintSession::PrintSession(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
+
+PrintSession::~PrintSession() {
+    end(machine());
+}
+
+std::shared_ptr<PrintSession::Machine> PrintSession::machine() const {
+    const std::lock_guard lock(mutex_);
+    return machine_;
+}
+
+Status PrintSession::take_twin(const std::filesystem::path& job, double speed) {
+    if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
+    if (Status status = give_back(); !status) return status;
+    Result<operate::ReadyJob> ready = operate::load_job(job);
+    if (!ready) return tl::unexpected(ready.error());
+    // A new virtual machine stands at its beginning: what another one had begun cannot be gone on with here.
+    ready->job.journal.clear();
+    host::PrintJob print = ready->job;
+    auto made = std::make_shared<Machine>(std::move(*ready), speed);
+    made->worker = std::thread([made = made.get()] { made->control.serve(); });
+    Status status = made->control.load(std::move(print));
+    if (status) status = made->control.connect();
+    if (!status) {
+        end(made);
+        return status;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        machine_ = made;
+    }
+    watch(made);
+    tell_(R"({"type":"machine"})");
+    return {};
+}
+
+/// Sends what has changed a few times a second.
+void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
+    machine->watcher = std::thread([this, m = machine.get()] {
+        long last = 0;
+        std::string before;
+        while (!m->ending) {
+            std::string message = host::current_message(m->control, last);
+            if (message != before) tell_(event_of(message));
+            before = std::move(message);
+            std::this_thread::sleep_for(between_messages);
+        }
+    });
+}
+
+void PrintSession::end(std::shared_ptr<Machine> machine) {
+    if (!machine) return;
+    machine->ending = true;
+    if (machine->watcher.joinable()) machine->watcher.join();
+    machine->twin.pace().let_go();
+    machine->control.quit();
+    if (machine->worker.joinable()) machine->worker.join();
+}
+
+Status PrintSession::give_back() {
+    std::shared_ptr<Machine> machine = this->machine();
+    if (!machine) return {};
+    if (under_way(machine->control.snapshot().state))
+        return failure("a print is under way: cancel it before the machine is given back");
+    {
+        const std::lock_guard lock(mutex_);
+        machine_.reset();
+    }
+    end(std::move(machine));
+    tell_(R"({"type":"machine"})");
+    return {};
+}
+
+Status PrintSession::set_speed(double speed) {
+    const auto machine = this->machine();
+    if (!machine) return failure("there is no virtual printer");
+    if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
+    machine->twin.pace().set_speed(speed);
+    return {};
+}
+
+host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path, std::string_view body) {
+    const auto machine = this->machine();
+    if (!machine) return {404, R"({"error":"no machine has been taken"})"};
+    return host::handle_api(machine->control, method, path, body);
+}
+
+std::string PrintSession::describe() const {
+    const auto machine = this->machine();
+    if (!machine) return R"({"machine":null})";
+    Json vats = Json::array(), refills = Json::array();
+    for (const plan::VatUse& use : machine->ready.plan.vats)
+        vats.push_back({{"slot", use.slot}, {"resin", use.resin}, {"ml", use.resin_ml}, {"materials", use.materials}});
+    for (const host::Refill& refill : machine->ready.job.refills)
+        refills.push_back({{"layer", refill.layer}, {"text", refill.text}});
+    long last = 0;
+    const Json history = Json::parse(host::history_message(machine->control, last));
+    return dumped({{"machine", printer_json(machine->ready.printer)},
+                   {"twin", true},
+                   {"speed", machine->twin.pace().speed()},
+                   {"job", machine->ready.job.name},
+                   {"seconds", machine->ready.plan.seconds.total},
+                   {"vats", vats},
+                   {"refills", refills},
+                   {"now", history["history"]}});
+}
+
+std::vector<std::string> PrintSession::news() const {
+    if (!machine()) return {};
+    return {R"({"type":"machine"})"};
+}
+
+}  // namespace pliant::studio

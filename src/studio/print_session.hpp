@@ -1,0 +1,52 @@
+// A print that pages watch and steer: a job, a machine (virtual or at a port) and the host's control over both.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/control.hpp"
+#include "host/control_api.hpp"
+#include "operate/print_job.hpp"
+#include "studio/paced_twin.hpp"
+
+namespace pliant::studio {
+
+class PrintSession {
+public:
+    /// `tell` sends a JSON event to all pages.
+    explicit PrintSession(std::function<void(const std::string& json)> tell);
+    ~PrintSession();  ///< a print under way is suspended
+    PrintSession(const PrintSession&) = delete;
+    PrintSession& operator=(const PrintSession&) = delete;
+
+    /// Takes the machine that the job was made for, as a twin. Refused while a print is under way. Errors: the job
+    /// cannot be printed.
+    [[nodiscard]] Status take_twin(const std::filesystem::path& job, double speed);
+    /// Gives the machine back; a print under way is refused.
+    [[nodiscard]] Status give_back();
+    [[nodiscard]] Status set_speed(double speed);
+
+    /// One request of docs/reference/host-api.md; 404 while there is no machine.
+    [[nodiscard]] host::ApiAnswer ask(std::string_view method, std::string_view path, std::string_view body);
+    /// The machine and the job for the page: JSON.
+    [[nodiscard]] std::string describe() const;
+    [[nodiscard]] std::vector<std::string> news() const;
+
+private:
+    struct Machine;
+    void watch(const std::shared_ptr<Machine>& machine);
+    [[nodiscard]] std::shared_ptr<Machine> machine() const;
+    void end(std::shared_ptr<Machine> machine);
+
+    std::function<void(const std::string& json)> tell_;
+    mutable std::mutex mutex_;
+    std::shared_ptr<Machine> machine_;
+};
+
+}  // namespace pliant::studio

@@ -1,0 +1,82 @@
+// The print as the studio tells it.
+import { computed, signal } from '@preact/signals';
+import { api, onEvent, post, say } from '../store';
+
+export interface Now {
+  state: { text: string; message: string; flags: Record<string, boolean> };
+  job: { file: { name: string | null }; estimatedPrintTime: number | null; layers: number; canResume: boolean };
+  progress: {
+    completion: number | null;
+    printTime: number | null;
+    printTimeLeft: number | null;
+    layer: number | null;
+    material: number | null;
+    image: string | null;
+    lit: boolean;
+    litTime: number;
+    exposureTime: number;
+    prompt: string | null;
+    finished: boolean;
+    failed: boolean;
+  };
+  machine: {
+    axes: Record<string, { position: number; homed: boolean }>;
+    slot: number;
+    pump: boolean;
+    firmware: string;
+    linesSent: number;
+    resends: number;
+  };
+  events: { number: number; clock: number; kind: string; text: string }[];
+}
+
+export interface MachineInfo {
+  name: string;
+  store: 'tower' | 'table' | 'none';
+  axes: Record<string, { min: number; max: number; speed: number; rotary: boolean }>;
+  vats: { slot: number; resin: string; fill_ml: number }[];
+  carriage: { print: number; tower: number };
+  platform: { width: number; depth: number; height: number };
+  tower: { slots: number; first: number; pitch: number };
+  wall: number;
+}
+
+export interface PrintInfo {
+  machine: MachineInfo | null;
+  twin: boolean;
+  speed: number;
+  job: string;
+  seconds: number;
+  vats: { slot: number; resin: string; ml: number; materials: number[] }[];
+  refills: { layer: number; text: string }[];
+}
+
+export const info = signal<PrintInfo | null>(null);
+export const now = signal<Now | null>(null);
+export const events = signal<Now['events']>([]);
+export const flags = computed(() => now.value?.state.flags ?? {});
+export const busy = computed(() => ['printing', 'pausing', 'paused', 'cancelling'].some((f) => flags.value[f]));
+
+const mostEvents = 400;
+
+function take(next: Now) {
+  const last = events.value[events.value.length - 1]?.number ?? 0;
+  const fresh = next.events.filter((e) => e.number > last);
+  if (fresh.length) events.value = [...events.value, ...fresh].slice(-mostEvents);
+  now.value = next;
+}
+
+export async function load() {
+  const loaded = (await (await api('/api/print')).json()) as PrintInfo & { now: Now };
+  info.value = loaded;
+  events.value = [];
+  now.value = null;
+  if (loaded.machine) take(loaded.now);
+}
+
+onEvent((event) => {
+  if (event.type === 'machine') load().catch((e: Error) => say(e.message));
+  if (event.type === 'print' && event.current) take(event.current as Now);
+});
+
+export const host = (path: string, body: unknown) => post(`/api/print/host/${path}`, body);
