@@ -20,7 +20,8 @@ struct ApiAnswer {
 [[nodiscard]] ApiAnswer handle_api(Control& control, std::string_view method, std::string_view path,
                                    std::string_view body);
 
-/// The first message for one who has just connected: `{"history": {...}}`; `last_event` is set to the newest event in it.
+/// The first message for one who has just connected: `{"history": {...}}`; `last_event` is set to the newest event in
+/// it.
 [[nodiscard]] std::string history_message(const Control& control, long& last_event);
 /// What has happened since event `last_event`, which is moved on: `{"current": {...}}`. Call it a few times a second.
 [[nodiscard]] std::string current_message(const Control& control, long& last_event);

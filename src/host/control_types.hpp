@@ -38,8 +38,8 @@ struct Recovery {
     bool position_known = true;  ///< false: the controller has restarted, the axes stopped somewhere on their way
     /// At the next light, or at the end if all of it has been given.
     machine::Interlock target;
-    bool finished = false;     ///< no light is left: only park
-    int last_lit_vat = -1;     ///< index of the vat that printed last, whose resin clings to the part; -1: none
+    bool finished = false;         ///< no light is left: only park
+    int last_lit_vat = -1;         ///< index of the vat that printed last, whose resin clings to the part; -1: none
     bool on_hooks_stroke = false;  ///< only if the position is not known: the tower may stand half-way
 };
 
@@ -110,37 +110,37 @@ enum class State {
 
 struct Snapshot {
     State state = State::offline;
-    std::string message;   ///< why it stands still, or what it waits for; for people
-    bool failed = false;   ///< the last print ended by an error
-    bool finished = false; ///< the last print is complete
-    std::string firmware;  ///< as M115 names it
-    std::string job;       ///< "": none is loaded
-    bool can_resume = false;   ///< the journal holds an interrupted print of this job
-    int layer = -1;            ///< from 0; -1: none yet
+    std::string message;      ///< why it stands still, or what it waits for; for people
+    bool failed = false;      ///< the last print ended by an error
+    bool finished = false;    ///< the last print is complete
+    std::string firmware;     ///< as M115 names it
+    std::string job;          ///< "": none is loaded
+    bool can_resume = false;  ///< the journal holds an interrupted print of this job
+    int layer = -1;           ///< from 0; -1: none yet
     int layers = 0;
-    int material = -1;         ///< of the current or last light
-    std::string image;         ///< entry of the job's archive
+    int material = -1;  ///< of the current or last light
+    std::string image;  ///< entry of the job's archive
     bool lit = false;
-    double lit_s = 0;          ///< how long this light has been on
-    double exposure_s = 0;     ///< how long it shall be
-    double completion = 0;     ///< share of the print's time, 0 to 1
-    double seconds_done = 0;   ///< since the print began, pauses included
-    double seconds_left = 0;   ///< as planned
+    double lit_s = 0;                 ///< how long this light has been on
+    double exposure_s = 0;            ///< how long it shall be
+    double completion = 0;            ///< share of the print's time, 0 to 1
+    double seconds_done = 0;          ///< since the print began, pauses included
+    double seconds_left = 0;          ///< as planned
     std::vector<double> exposures_s;  ///< by material, where they have been changed; else 0
     machine::Position position;       ///< after the last command
     std::array<bool, machine::axis_count> homed{};
-    int slot = 0;            ///< of the vat in use; 0: none
+    int slot = 0;  ///< of the vat in use; 0: none
     bool pump = false;
-    std::string prompt;      ///< what a person is asked to do before resume()
+    std::string prompt;  ///< what a person is asked to do before resume()
     long lines_sent = 0;
     long resends = 0;
-    long last_event = 0;     ///< number of the newest event
+    long last_event = 0;  ///< number of the newest event
 };
 
 struct Event {
-    long number = 0;    ///< from 1, without gaps
-    double clock_s = 0; ///< of the devices' clock
-    std::string kind;   ///< "state", "layer", "light", "dark", "log", "prompt", "error"
+    long number = 0;     ///< from 1, without gaps
+    double clock_s = 0;  ///< of the devices' clock
+    std::string kind;    ///< "state", "layer", "light", "dark", "log", "prompt", "error"
     std::string text;
 };
 
