@@ -18,6 +18,16 @@
 
 namespace pliant::host {
 
+/// Where an interrupted print stands, and where it has to go on.
+struct Recovery {
+    machine::Interlock state;   ///< as far as it is known; axes that are not homed may be anywhere
+    machine::Interlock target;  ///< at the next light, or at the end if all of it has been given
+    bool finished = false;      ///< no light is left: only park
+    int last_lit_vat = -1;      ///< index of the vat that printed last, whose resin clings to the part; -1: none
+    /// The controller has lost its position while a vat was taken or left: the tower stands half-way on the hooks.
+    bool on_hooks = false;
+};
+
 /// What a machine must be told, given where it stands. The host knows no plan: whoever sets it up gives these (see
 /// operate/programs.hpp). Each returns G-code, or why there is none.
 struct Programs {
@@ -29,18 +39,7 @@ struct Programs {
     std::function<Result<std::string>(const machine::Interlock& state, int slot)> bring_vat;  ///< 0: put it away
     std::function<Result<std::string>(const machine::Interlock& state, double seconds)> clean;
     /// From where an interrupted print has left the machine to where its light goes on next.
-    std::function<Result<std::string>(const struct Recovery& recovery)> resume;
-};
-
-/// Where an interrupted print stands, and where it has to go on.
-struct Recovery {
-    machine::Interlock state;    ///< as far as it is known; axes that are not homed may be anywhere
-    bool position_known = true;  ///< false: the controller has restarted, the axes stopped somewhere on their way
-    /// At the next light, or at the end if all of it has been given.
-    machine::Interlock target;
-    bool finished = false;         ///< no light is left: only park
-    int last_lit_vat = -1;         ///< index of the vat that printed last, whose resin clings to the part; -1: none
-    bool on_hooks_stroke = false;  ///< only if the position is not known: the tower may stand half-way
+    std::function<Result<std::string>(const Recovery& recovery)> resume;
 };
 
 /// Ask for resin before a layer.
@@ -81,6 +80,8 @@ struct ControlSetup {
 struct Assume {
     /// How long a light was on that was burning when the host died: seconds.
     std::optional<double> lit_s;
+    /// Another program has spoken to the controller since, but has moved no vat.
+    bool vats_untouched = false;
 };
 
 struct StartOptions {

@@ -20,6 +20,8 @@ public:
     /// What has arrived; waits up to `timeout_s` for the first byte. "" if none came in time; an error if the wire
     /// broke.
     [[nodiscard]] virtual Result<std::string> read(double timeout_s) = 0;
+    /// Resets the controller, on purpose only: its position is lost.
+    [[nodiscard]] virtual Status reset() { return failure("this wire cannot reset the controller"); }
 };
 
 /// A light as the projector measured it, from the frames that it presented.

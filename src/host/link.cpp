@@ -67,10 +67,16 @@ Link::Link(Wire& wire, Clock& clock, LinkOptions options)
 
 Status Link::wait_for_boot() {
     const double boot_end = clock_.now() + options_.boot_s;
-    while (!started_ && clock_.now() < boot_end) {
+    while (!started_ && !no_start_ && clock_.now() < boot_end) {
         if (const auto heard = hear(boot_end - clock_.now()); !heard) return tl::unexpected(heard.error());
     }
     return {};
+}
+
+Status Link::put(std::string_view bytes) {
+    Status status = wire_.write(bytes);
+    wire_failed_ = wire_failed_ || !status;
+    return status;
 }
 
 Status Link::wait_until_quiet() {
@@ -90,7 +96,7 @@ Result<long> Link::last_line() {
         wanted_.reset();
         // Number 0 follows no line: it is refused, and the refusal names the last one. The line end before it ends
         // whatever an earlier host has left half-sent.
-        if (Status status = wire_.write("\n" + framed(0, "M400")); !status) return tl::unexpected(status.error());
+        if (Status status = put("\n" + framed(0, "M400")); !status) return tl::unexpected(status.error());
         double end = clock_.now() + options_.boot_s;
         while (!wanted_ && clock_.now() < end) {
             const auto heard = hear(end - clock_.now());
@@ -116,7 +122,7 @@ Status Link::connect(long base) {
         outstanding_.push_back({base, 0});
         ignore_ok_ = false;
         wanted_.reset();
-        if (Status status = wire_.write(framed(base, fmt::format("M110 N{}", base))); !status) return status;
+        if (Status status = put(framed(base, fmt::format("M110 N{}", base))); !status) return status;
         double end = clock_.now() + options_.boot_s;
         while (!outstanding_.empty() && !wanted_ && clock_.now() < end) {
             const auto heard = hear(end - clock_.now());
@@ -229,7 +235,7 @@ bool Link::window_takes(const std::string& line) const {
 Status Link::transmit() {
     while (next_to_send_ < next_number_ && window_takes(line_bytes(next_to_send_))) {
         const std::string& line = line_bytes(next_to_send_);
-        if (Status status = wire_.write(line); !status) return status;
+        if (Status status = put(line); !status) return status;
         last_write_s_ = clock_.now();
         outstanding_.push_back({next_to_send_, line.size()});
         outstanding_bytes_ += line.size();
@@ -276,6 +282,7 @@ Result<bool> Link::hear(double timeout_s) {
 
 Result<bool> Link::hear_once(double timeout_s) {
     const auto bytes = wire_.read(timeout_s);
+    wire_failed_ = wire_failed_ || !bytes;
     if (!bytes) return tl::unexpected(bytes.error());
     if (bytes->empty()) return false;
     heard_ += *bytes;

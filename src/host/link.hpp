@@ -84,6 +84,10 @@ public:
     [[nodiscard]] bool was_reset() const { return was_reset_; }
     /// Whether `start` was heard while connecting.
     [[nodiscard]] bool has_started() const { return started_; }
+    /// Before connect(): the controller has been heard before on this wire, there is no `start` to wait for.
+    void expect_no_start() { no_start_ = true; }
+    /// Whether the wire itself broke.
+    [[nodiscard]] bool wire_failed() const { return wire_failed_; }
 
 private:
     struct Sent {
@@ -97,6 +101,7 @@ private:
     [[nodiscard]] Result<bool> hear(double timeout_s);
     [[nodiscard]] Result<bool> hear_once(double timeout_s);
     [[nodiscard]] Status wait_for_boot();
+    [[nodiscard]] Status put(std::string_view bytes);
     [[nodiscard]] Status wait_until_quiet();
     [[nodiscard]] Status handle(std::string_view line);
     [[nodiscard]] Status handle_error(std::string_view line);
@@ -138,6 +143,8 @@ private:
     bool connected_ = false;
     bool started_ = false;
     bool was_reset_ = false;
+    bool no_start_ = false;
+    bool wire_failed_ = false;
     double last_write_s_ = 0;
     long resends_ = 0;
     long token_ = 0;
