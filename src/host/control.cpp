@@ -91,8 +91,8 @@ struct Control::State_ {
     // ---------------
     std::unique_ptr<Machine> machine;
     bool touched = false;  ///< the controller has been spoken to since the last start
-    long last_line = 0;  ///< of the controller when the wire was opened
-    long last_base = 0;  ///< of our own last session
+    long last_line = 0;    ///< of the controller when the wire was opened
+    long last_base = 0;    ///< of our own last session
     std::optional<PrintJob> job;
     Script script;
     std::vector<double> times;
