@@ -29,13 +29,13 @@ struct Life {
     long dies_at = -1;
     bool dead = false;
     std::function<void()> on_death;
-    /// Asked at every deed: for wishes in the middle.
+    /// Called at every deed on the wire: for wishes and mishaps in the middle.
     std::function<void(long)> at_deed;
 
-    bool act() {
+    bool act(bool on_wire = true) {
         if (dead) return false;
         ++deeds;
-        if (at_deed) at_deed(deeds);
+        if (at_deed && on_wire) at_deed(deeds);
         if (deeds != dies_at) return true;
         dead = true;
         if (on_death) on_death();
@@ -66,14 +66,14 @@ class MortalProjector final : public host::Projector {
 public:
     MortalProjector(twin::Twin& twin, Life& life) : twin_(twin), life_(life) {}
     [[nodiscard]] Status show(const job::Image& image) override {
-        if (!life_.act()) return {};
+        if (!life_.act(false)) return {};
         twin_.light_on(image);
         lit = true;
         return {};
     }
     [[nodiscard]] Status black() override {
         if (!lit) return {};
-        if (!life_.act()) return {};
+        if (!life_.act(false)) return {};
         twin_.light_off();
         lit = false;
         return {};

@@ -94,6 +94,9 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
         if (Status status = note_go(program, step, at_.lock); !status) return status;
     }
     if (Status status = link_.send(command); !status) return status;
+    // When the tower has done its stroke, the journal says so as soon as it can: in the middle of it nobody knows where
+    // it stands.
+    if (after.lock.in_hooks_stroke() && after.lock.position() != at_.lock.position()) noted_ = false;
     at_ = std::move(after);
     return {};
 }

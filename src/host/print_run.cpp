@@ -154,6 +154,12 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
         return status;
     }
     fact.open_light = last_record_;
+    // The last look before the light: a controller that restarts now has said so already.
+    if (Status status = run_.machine.link().listen_for(0); !status) {
+        run_.machine.light_off();
+        (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
+        return status;
+    }
     if (run_.setup.guard != nullptr) run_.setup.guard->lit(fact.open_light);
     const double start_s = clock_.now();
     Status status = projector_.show_for(image, left_s);
