@@ -13,6 +13,7 @@
 #include <string>
 
 #include "host/control.hpp"
+#include "host/journal.hpp"
 #include "operate/programs.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
@@ -29,8 +30,10 @@ struct Life {
     long dies_at = -1;
     bool dead = false;
     std::function<void()> on_death;
-    /// Called at every deed on the wire: for wishes and mishaps in the middle.
+    /// Called at every deed on the wire: for mishaps in the middle.
     std::function<void(long)> at_deed;
+    /// Called whenever the host listens: for wishes.
+    std::function<void()> at_look;
 
     bool act(bool on_wire = true) {
         if (dead) return false;
@@ -52,6 +55,7 @@ public:
     }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
         if (life_.dead) return std::string();
+        if (life_.at_look) life_.at_look();
         auto said = wire_.read(timeout_s);
         if (said && !said->empty() && !life_.act()) return std::string();
         return said;
@@ -128,6 +132,7 @@ struct ControlBench {
         printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
         printer.projector.width_px = width;
         printer.projector.height_px = height;
+        printer.projector.pixel_um = 158.75;
         std::string pattern = (std::filesystem::temp_directory_path() / "pliant_control_XXXXXX").string();
         folder = ::mkdtemp(pattern.data());
         make_job();
@@ -166,7 +171,9 @@ struct ControlBench {
                          {"rigid", last, rigid_mm2 * 0.05 * layers, 0, 2.5, 12}};
         for (int i = 0; i < layers; ++i)
             job.layers.push_back({50 * (i + 1), 50, {{0, "soft.png", soft_mm2}, {1, "rigid.png", rigid_mm2}}});
-        const plan::Plan plan = plan::make_plan(job, printer).value();
+        auto planned = plan::make_plan(job, printer);
+        REQUIRE_MESSAGE(planned, (planned ? "" : planned.error().message));
+        const plan::Plan& plan = *planned;
         gcode = plan::write_gcode(plan, job, printer);
     }
 

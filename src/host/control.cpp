@@ -657,7 +657,7 @@ void Control::State_::finish(const Result<Ending>& ending) {
         desk.update([](Snapshot& s) { s.failed = true; });
         return desk.state(machine ? State::idle : State::offline, ending.error().message);
     }
-    if (!ending) return fail(ending.error());
+    if (!ending) return fail(desk.stopped() ? Error{Cause::failed, "emergency stop"} : ending.error());
     show_machine();
     machine->keep(nullptr);
     desk.update([&](Snapshot& s) {

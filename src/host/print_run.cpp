@@ -65,8 +65,6 @@ Result<Ending> PrintRun::resume(const Recovery& recovery) {
     const bool there = run_.machine.state().position()[Axis::platform] == recovery.target.position()[Axis::platform] &&
                        run_.machine.state().hooked_vat() == recovery.target.hooked_vat();
     if (!there) return failure("the program that goes on does not lead to the next light");
-    // Marks where this state is, and keeps the height of the part.
-    run_.machine.stand(recovery.target);
     return steps_from(next_light(facts_, run_.script));
 }
 
