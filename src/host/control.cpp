@@ -470,7 +470,9 @@ Status Control::State_::open() {
     }
     machine->link().set_watch([this] { return desk.watch(); });
     machine->link().set_listener([this](std::string_view line) {
-        if (line.substr(0, 10) == "//action:p" || line.substr(0, 6) == "Error:") desk.event("log", std::string(line));
+        for (const std::string_view told : {"//action:prompt_begin", "//action:notification", "echo:busy: paused"}) {
+            if (line.substr(0, told.size()) == told) desk.event("log", std::string(line));
+        }
     });
     const auto last = machine->link().last_line();
     if (!last) return tl::unexpected(last.error());
