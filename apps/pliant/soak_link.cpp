@@ -2,18 +2,24 @@
 // once in effect, the end position exact; then whole prints on the same wire, which the oracle must pass.
 //
 //   pliant_soak_link [LINES] [SEED] [PER]       PER "line" (default): noise hits so many lines; "byte": so many bytes
+//   pliant_soak_link throughput [LINES]         lines a second over a pseudo-terminal to a fast virtual printer
 #include <fmt/core.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <random>
 #include <string>
+#include <thread>
 
 #include "host/link.hpp"
+#include "host/serial.hpp"
+#include "host/steady_clock.hpp"
 #include "machine/gcode.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
+#include "twin/serve.hpp"
 #include "twin_bench.hpp"
 
 namespace {
@@ -176,11 +182,50 @@ bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Nois
     return wrong == 0;
 }
 
+/// How many lines a second are acknowledged over a pseudo-terminal, with a machine that takes no time.
+bool measure_throughput(const machine::Printer& printer, long lines) {
+    auto pty = twin::Pty::open();
+    if (!pty) return false;
+    twin::Twin twin(printer);
+    std::atomic<bool> stop = false;
+    std::thread machine([&] {
+        twin::ServeOptions options;
+        options.speed = 1e6;
+        options.stop = [&] { return stop.load(); };
+        (void)twin::serve(twin, *pty, options);
+    });
+    auto wire = host::SerialWire::open(pty->device(), 250000);
+    host::SteadyClock clock;
+    Status status = wire ? Status{} : tl::unexpected(wire.error());
+    double seconds = 0;
+    if (status) {
+        host::Link link(*wire, clock);
+        status = link.connect();
+        for (const char* line : {"M84 S0", "G90", "G28 Z"}) {
+            if (status) status = link.send(line);
+        }
+        if (status) status = link.fence();
+        const double begin_s = clock.now();
+        for (long i = 0; status && i < lines; ++i) status = link.send(i % 2 == 0 ? "G1 Z300 F1200" : "G1 Z310 F1200");
+        if (status) status = link.fence();
+        seconds = clock.now() - begin_s;
+    }
+    stop = true;
+    machine.join();
+    fmt::print("{} lines acknowledged in {:.2f} s: {:.0f} a second{}\n", lines, seconds,
+               static_cast<double>(lines) / seconds, status ? "" : ": " + status.error().message);
+    return status.has_value();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     const long lines = argc > 1 ? std::atol(argv[1]) : 100000;
     const auto seed = static_cast<unsigned>(argc > 2 ? std::atol(argv[2]) : 1);
+    if (argc > 1 && std::strcmp(argv[1], "throughput") == 0) {
+        const auto printer = machine::load_printer("examples/printers/tower.toml");
+        return printer && measure_throughput(*printer, argc > 2 ? std::atol(argv[2]) : 20000) ? 0 : 1;
+    }
     Noise noise;
     noise.per_byte = argc > 3 && std::strcmp(argv[3], "byte") == 0;
     const auto printer = machine::load_printer("examples/printers/tower.toml");
