@@ -241,7 +241,8 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         for (Material& m : job.manifest.materials) {
             if (m.name == bodies[b].material)
-                m.model_volume_mm3 = std::max(0.0, m.model_volume_mm3 - job.summary.lost_mm3[b]);
+                m.model_volume_mm3 =
+                    std::max(0.0, m.model_volume_mm3 - job.summary.lost_mm3[b] - job.summary.doubled_mm3[b]);
         }
     }
     job.manifest.warnings = job.summary.warnings;

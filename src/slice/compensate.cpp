@@ -177,8 +177,9 @@ ComposedLayer compensated(const ComposedLayer& fine, int factor, std::span<const
     layer.offset(by);
     const int fine_per_pixel = factor * factor;
     ComposedLayer result{Reducer(layer.sets(), factor, raster, rules).images(), fine.lost_px,
-                         (closed + fine_per_pixel - 1) / fine_per_pixel};
+                         (closed + fine_per_pixel - 1) / fine_per_pixel, fine.overlapping, fine.doubled_px};
     for (double& lost : result.lost_px) lost /= fine_per_pixel;
+    for (double& doubled : result.doubled_px) doubled /= fine_per_pixel;
     return result;
 }
 

@@ -26,13 +26,16 @@ struct ComposedLayer {
     std::vector<MaterialImage> images;  ///< ordered by material; blank ones are left out
     std::vector<double> lost_px;        ///< (bodies), area that later bodies of other materials took from each, pixels
     std::int64_t closed_gap_pixels = 0;
+    bool overlapping = false;          ///< there are pixels of which bodies together cover more than there is
+    std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material cover too
 };
 
 /// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.
 ///
 /// A body covers |winding| of a pixel, at most 1 (the nonzero rule: overlapping shells of one body count once; exact
 /// except in pixels that the outlines of two overlapping shells share, where the sum is capped at 1). Where the bodies
-/// together cover more than the pixel they overlap, and later bodies are served first. The pixel then goes whole to the
+/// together cover more than the pixel they overlap, and later bodies are served first. What each loses is left to
+/// overlaps(), which does not depend on pixels: `lost_px` and `doubled_px` are 0 here. The pixel then goes whole to the
 /// material with the largest share (the one with the latest body on a tie), at the light of all shares together: an
 /// interface between materials has neither a dark line nor a pixel in two images.
 ///

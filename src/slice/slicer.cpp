@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "slice/overlap.hpp"
 #include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
@@ -121,15 +122,29 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
-ComposedLayer Slicer::composed(int layer, const Raster& raster, const ComposeRules& rules) const {
+ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
     CellBuffer cells(raster);
     std::vector<Segment> segments;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
-        section(b, layer, segments);
+        section(b, k, segments);
         cells.add(static_cast<int>(b), segments);
     }
-    return compose(cells.sorted(), material_of_, raster, rules);
+    ComposedLayer layer = compose(cells.sorted(), material_of_, raster, rules);
+    if (layer.overlapping) measure_overlap(k, raster, layer);
+    return layer;
+}
+
+/// From the outlines, not from pixels.
+void Slicer::measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const {
+    std::vector<std::vector<Segment>> outlines(shapes_.size());
+    for (std::size_t b = 0; b < shapes_.size(); ++b) section(b, layer, outlines[b]);
+    const std::vector<Overlap> areas = overlaps(outlines, material_of_);
+    const double pixel = raster.pixel_um * grid_per_um;
+    for (std::size_t b = 0; b < areas.size(); ++b) {
+        composed.lost_px[b] = areas[b].others / (pixel * pixel);
+        composed.doubled_px[b] = areas[b].own / (pixel * pixel);
+    }
 }
 
 /// Per material; empty where no border of the layer moves.
@@ -180,10 +195,14 @@ Status Slicer::check_teeth() const {
     return {};
 }
 
-Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}
+Tally::Tally(const Slicer& slicer)
+    : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0), doubled_px_(lost_px_) {}
 
 void Tally::add(int k, const SlicedLayer& layer) {
-    for (std::size_t b = 0; b < lost_px_.size(); ++b) lost_px_[b] += layer.lost_px[b];
+    for (std::size_t b = 0; b < lost_px_.size(); ++b) {
+        lost_px_[b] += layer.lost_px[b];
+        doubled_px_[b] += layer.doubled_px[b];
+    }
     closed_gap_pixels_ += layer.closed_gap_pixels;
     if (layer.images.empty()) {
         if (pending_empty_++ == 0 && empty_between_ == 0) first_empty_ = k;
@@ -202,6 +221,7 @@ Summary Tally::summary() const {
     for (std::size_t b = 0; b < lost_px_.size(); ++b) {
         const double lost_mm3 = lost_px_[b] * voxel_mm3;
         summary.lost_mm3.push_back(lost_mm3);
+        summary.doubled_mm3.push_back(doubled_px_[b] * voxel_mm3);
         if (lost_mm3 < voxel_mm3) continue;
         summary.overlap_mm3 += lost_mm3;
         summary.warnings.push_back(

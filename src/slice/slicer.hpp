@@ -76,6 +76,7 @@ private:
     [[nodiscard]] int material(const std::string& name) const;
     [[nodiscard]] Status check_teeth() const;
     [[nodiscard]] ComposedLayer outlined(int layer) const;
+    void measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const;
     [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
@@ -92,7 +93,8 @@ struct Summary {
     double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
     std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
     std::vector<std::string> warnings;
-    std::vector<double> lost_mm3{};  ///< per body: its share of overlap_mm3, which a later body keeps
+    std::vector<double> lost_mm3{};     ///< per body: its share of overlap_mm3, which a later body keeps
+    std::vector<double> doubled_mm3{};  ///< per body: what a later body of the same material fills too
 };
 
 /// Collects the remarks of all layers, added in order.
@@ -104,7 +106,7 @@ public:
 
 private:
     const Slicer& slicer_;
-    std::vector<double> lost_px_;
+    std::vector<double> lost_px_, doubled_px_;
     std::int64_t closed_gap_pixels_ = 0;
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };
