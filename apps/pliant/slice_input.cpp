@@ -21,6 +21,20 @@ void add_resin(Drawing& drawing, const std::string& material, const std::string&
         drawing.resin_of_material.emplace_back(material, resin);
 }
 
+const robot::BodySpec& body_named(const robot::Robot& robot, const std::string& name) {
+    return *std::find_if(robot.bodies.begin(), robot.bodies.end(),
+                         [&](const robot::BodySpec& body) { return body.name == name; });
+}
+
+/// Squares of a length become whole pixels once the printer is known.
+slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend) {
+    const double um = robot.unit_m * 1e6;
+    slice::Blend result{robot.materials[static_cast<std::size_t>(blend.material)].name, um * blend.from, um * blend.to,
+                        blend.shares, 1};
+    result.cell_um = um * blend.cell;
+    return result;
+}
+
 Result<Drawing> read_robot(const std::string& path, const std::vector<std::string>& assignments, Progress& progress) {
     const Result<robot::Robot> robot = robot::load_robot(path, assignments);
     if (!robot) return tl::unexpected(robot.error());
@@ -30,9 +44,22 @@ Result<Drawing> read_robot(const std::string& path, const std::vector<std::strin
     drawing.name = robot->name;
     for (robot::BodySurface& body : *surfaces) {
         const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
-        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        const robot::BodySpec& spec = body_named(*robot, body.body);
+        std::string name = material.name;
+        // A body with light of its own is a material of its own in the same resin.
+        if (spec.exposure_s > 0) {
+            name += " of " + spec.name;
+            add_resin(drawing, name, material.resin);
+            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
+        }
+        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        if (spec.blend) drawing.bodies.back().blend = blend_of(*robot, *spec.blend);
     }
-    for (const robot::MaterialSpec& material : robot->materials) add_resin(drawing, material.name, material.resin);
+    for (const robot::MaterialSpec& material : robot->materials) {
+        add_resin(drawing, material.name, material.resin);
+        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
+            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
+    }
     return drawing;
 }
 

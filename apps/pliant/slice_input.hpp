@@ -1,6 +1,7 @@
 // What `pliant slice` prints: bodies from robot files, 3MF files, surfaces and tet meshes.
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ struct Drawing {
     std::vector<slice::Body> bodies;
     std::vector<job::MaterialStack> stacks;  ///< in place of bodies: images that exist
     std::vector<std::pair<std::string, std::string>> resin_of_material;
+    std::map<std::string, std::pair<double, double>> exposure_of_material;  ///< seconds, first layers; 0: not said
     std::vector<std::string> warnings;
 };
 

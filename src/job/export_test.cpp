@@ -69,7 +69,7 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(sl1->at(1).filename() == "two_rigid.sl1");
     auto zip = ZipReader::open(sl1->at(1));
     REQUIRE(zip.has_value());
-    CHECK(zip->entry_count() == 12);
+    CHECK(zip->entry_count() == 13);
     CHECK(lit(zip->read("two00003.png", 1 << 20)) == 0);
     CHECK(lit(zip->read("two00004.png", 1 << 20)) == 15 * 20);
     CHECK(zip->read("config.ini", 1 << 20)->find("expTimeFirst = 12\n") != std::string::npos);

@@ -81,7 +81,7 @@ public:
         for (std::size_t m = 0; m < images_.size(); ++m) {
             if (images_[m].blank()) continue;
             const std::int64_t sum = images_[m].value_sum();
-            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum});
+            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum, 0});
         }
         return taken;
     }

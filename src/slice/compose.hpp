@@ -19,7 +19,14 @@ struct ComposeRules {
 struct MaterialImage {
     int material = 0;
     RunImage image;
-    std::int64_t value_sum = 0;  ///< of all pixels, for the area
+    std::int64_t value_sum = 0;   ///< of all pixels, for the area
+    std::int64_t shared_sum = 0;  ///< of those that another material's image lights too, on purpose
+};
+
+/// How a blended body was dealt out, in whole pixels of light.
+struct DealtBody {
+    int body = 0;
+    double first_px = 0, second_px = 0;
 };
 
 struct ComposedLayer {
@@ -28,6 +35,7 @@ struct ComposedLayer {
     std::int64_t closed_gap_pixels = 0;
     bool overlapping = false;          ///< there are pixels of which bodies together cover more than there is
     std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material cover too
+    std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
 };
 
 /// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.

@@ -104,6 +104,19 @@ void number_pieces(PieceMap& map, bool outside, int width) {
     }
 }
 
+/// The first pixel of each piece.
+void first_pixels(const PieceMap& map, std::vector<int>& rows, std::vector<int>& columns) {
+    rows.assign(map.pixels.size(), -1);
+    columns = rows;
+    for (int row = map.first_row; row < map.first_row + map.rows(); ++row) {
+        for (const Stretch& s : map.row(row)) {
+            if (rows[s.piece] >= 0) continue;
+            rows[s.piece] = row;
+            columns[s.piece] = s.begin;
+        }
+    }
+}
+
 }  // namespace
 
 std::span<const Stretch> PieceMap::row(int row) const {
@@ -134,15 +147,8 @@ LayerShape shape_of(const ComposedLayer& layer, int width_px) {
     number_pieces(shape.solid, false, width_px);
     number_pieces(shape.voids, true, width_px);
     shape.faint = shape.solid.stretches.empty();
-    shape.solid_row.assign(shape.solid.pixels.size(), -1);
-    shape.solid_column = shape.solid_row;
-    for (int row = first; row < end; ++row) {
-        for (const Stretch& s : shape.solid.row(row)) {
-            if (shape.solid_row[s.piece] >= 0) continue;
-            shape.solid_row[s.piece] = row;
-            shape.solid_column[s.piece] = s.begin;
-        }
-    }
+    first_pixels(shape.solid, shape.solid_row, shape.solid_column);
+    first_pixels(shape.voids, shape.void_row, shape.void_column);
     return shape;
 }
 

@@ -11,26 +11,7 @@ namespace {
 constexpr std::size_t most_faults = 1000;
 constexpr double rounding_um = 0.01;
 
-/// Light of an irradiance that the printer file leaves open: all that matters is its share of the exposure.
-double irradiance(const machine::Printer& printer) {
-    return printer.projector.irradiance_W_m2 > 0 ? printer.projector.irradiance_W_m2 : 1;
-}
-
 }  // namespace
-
-double WorkingCurve::depth_um(double dose_J_m2) const {
-    return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
-}
-
-WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin) {
-    if (resin.penetration_um > 0) return {resin.penetration_um, resin.critical_J_m2};
-    const double dose = irradiance(printer) * resin.exposure_s;
-    const double depth = resin.cure_depth_um;
-    const double layer = std::min<double>(printer.layer_um, depth / 2);
-    const double share = resin.critical_share;
-    const double penetration = share < 1 ? (depth - layer) / std::log(1 / share) : depth;
-    return {penetration, dose * std::exp(-depth / penetration)};
-}
 
 Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
     for (const machine::Vat& vat : printer.vats) {
@@ -53,7 +34,7 @@ void Cure::fault(std::string text) {
 std::optional<double> Cure::cures(int vat, double seconds, int z_um, double area_mm2) {
     const machine::Vat& place = printer_->vats[static_cast<std::size_t>(vat)];
     const machine::Resin* resin = printer_->find_resin(place.resin);
-    const double dose = irradiance(*printer_) * seconds;
+    const double dose = machine::irradiance_W_m2(*printer_) * seconds;
     const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(dose);
     if (resin == nullptr) {
         fault(fmt::format("slot {} holds no resin", place.slot));
