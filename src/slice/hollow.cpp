@@ -255,19 +255,21 @@ private:
                                                   (top_um - bottom_um) / 1000, wanted_.drain_um / 1000));
             return;
         }
-        for (const double z_um : {bottom_um + wanted_.drain_um / 2, top_um - wanted_.drain_um / 2}) {
+        for (const bool at_top : {false, true}) {
+            const double z_um = at_top ? top_um - wanted_.drain_um / 2 : bottom_um + wanted_.drain_um / 2;
             const int z = std::clamp(static_cast<int>(z_um / cells_.height_um), low->z, high->z);
-            if (const std::optional<Drain> drain = shortest(cavity, z, z_um)) drains.push_back(*drain);
+            if (const auto drain = shortest(cavity, (at_top ? high : low)->z, z, z_um)) drains.push_back(*drain);
         }
     }
 
-    /// The shortest way from the cavity at a height to where nothing is solid.
-    [[nodiscard]] std::optional<Drain> shortest(const std::vector<Cell>& cavity, int z, double z_um) const {
+    /// The shortest way, at slab `z`, from above or below the cavity's cells in slab `end` to where nothing is solid: so
+    /// the hole reaches the cavity's very end, however narrow that is.
+    [[nodiscard]] std::optional<Drain> shortest(const std::vector<Cell>& cavity, int end, int z, double z_um) const {
         const CellGrid& g = cells_.grid;
         std::optional<Drain> best;
         int least = INT32_MAX;
         for (const Cell& c : cavity) {
-            if (c.z != z) continue;
+            if (c.z != end) continue;
             for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
                 int n = 1;
                 while (g.has(c.x + n * dx, c.y + n * dy, z) && solid_[g.at(c.x + n * dx, c.y + n * dy, z)] != 0) ++n;
