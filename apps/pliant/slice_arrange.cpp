@@ -129,7 +129,11 @@ Status arrange(const SliceOptions& options, job::JobSettings& settings, Drawing&
     if (!supported) return {};
     auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
     if (!supports) return tl::unexpected(supports.error());
-    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself", supports->tips, supports->on_part));
+    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {:.1f} mm^3", supports->tips,
+                                supports->on_part, supports->volume_mm3));
+    if (supports->islands_left > 0)
+        drawing.warnings.push_back(
+            fmt::format("{} islands are left that supports do not reach", supports->islands_left));
     drawing.bodies.insert(drawing.bodies.begin(), std::make_move_iterator(supports->bodies.begin()),
                           std::make_move_iterator(supports->bodies.end()));
     return {};

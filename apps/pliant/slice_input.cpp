@@ -8,6 +8,7 @@
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
+#include "step/read_step.hpp"
 #include "threemf/read_3mf.hpp"
 
 namespace pliant::app {
@@ -112,6 +113,15 @@ Status add_surface(std::string_view bytes, const std::filesystem::path& path, co
     return {};
 }
 
+Status add_step(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    Result<step::StepFile> file = step::read_step(path);
+    if (!file) return tl::unexpected(file.error());
+    drawing.bodies.push_back({material, mesh::scaled(std::move(file->surface_mm), um_per_mm), path.stem().string()});
+    return {};
+}
+
 Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
     if (material.empty())
         return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
@@ -137,6 +147,7 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
+    if (step::looks_like_step(*bytes)) return add_step(path, material, drawing);
     if (mesh::looks_like_tet_mesh(*bytes)) return add_tets(*bytes, path.string(), material, drawing);
     return add_surface(*bytes, path, material, drawing);
 }

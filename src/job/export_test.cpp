@@ -91,6 +91,26 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(format_from("png").error().message == "format \"png\": must be sl1, nanodlp, zip or vats");
 }
 
+TEST_CASE("layers of many heights go only where each layer stands alone") {
+    const TemporaryFolder folder;
+    JobSettings s = settings();
+    s.slicing.tops_um = {50, 150};
+    const fs::path path = folder.path / "many.zip";
+    auto writer = Writer::create(path);
+    Progress progress;
+    const auto made =
+        slice_to_job(std::vector<slice::Body>{{"soft", slice::test::box({-500, -500, 0}, {500, 500, 400}), ""}}, s,
+                     *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->finish(made->manifest).has_value());
+    const Archive archive = Archive::open(path).value();
+    const auto refused = export_job(archive, Format::sl1, folder.path / "a");
+    REQUIRE(!refused.has_value());
+    CHECK(refused.error().message ==
+          "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
+    CHECK(export_job(archive, Format::vats, folder.path / "b").has_value());
+}
+
 TEST_CASE("equal jobs give equal bytes") {
     const TemporaryFolder folder;
     const Archive archive = make(folder.path / "two.zip");

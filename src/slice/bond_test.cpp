@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "slice/inspect.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
 
@@ -34,6 +35,20 @@ TEST_CASE("a bond lights a strip of the neighbour twice and changes no owner") {
     CHECK(layer.images[1].shared_sum == 0);
     CHECK(layer.images[0].image.at(24, 34) == 255);
     CHECK(layer.images[0].image.at(24, 35) == 0);
+}
+
+TEST_CASE("checks see a pixel that is lit twice once") {
+    const std::vector<Body> halves{{"soft", box({-2000, -1000, 0}, {0, 1000, 200}), ""},
+                                   {"firm", box({0, -1000, 0}, {2000, 1000, 200}), ""}};
+    const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
+    REQUIRE(slicer.has_value());
+    Inspector inspector;
+    for (int k = 0; k < 4; ++k) inspector.add(shape_of(slicer->layer(k), raster.width_px));
+    const Findings findings = inspector.finish();
+    CHECK(findings.islands.empty());
+    CHECK(findings.cavities.empty());
+    REQUIRE(findings.pieces.size() == 1);
+    CHECK(findings.pieces[0].voxels == 4 * 800);
 }
 
 TEST_CASE("a bond over layers lights what lies right above and below") {

@@ -262,8 +262,8 @@ private:
         }
     }
 
-    /// The shortest way, at slab `z`, from above or below the cavity's cells in slab `end` to where nothing is solid: so
-    /// the hole reaches the cavity's very end, however narrow that is.
+    /// The shortest way, at slab `z`, from above or below the cavity's cells in slab `end` to where nothing is solid:
+    /// so the hole reaches the cavity's very end, however narrow that is.
     [[nodiscard]] std::optional<Drain> shortest(const std::vector<Cell>& cavity, int end, int z, double z_um) const {
         const CellGrid& g = cells_.grid;
         std::optional<Drain> best;

@@ -27,7 +27,7 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// The solid stretches of a row: runs of all images, joined where they touch.
+/// The solid stretches of a row: runs of all images, joined where they touch or, lit twice, overlap.
 void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretches) {
     const std::size_t first = stretches.size();
     for (const MaterialImage& m : layer.images) {
@@ -40,8 +40,8 @@ void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretc
         std::sort(begin, stretches.end(), [](const Stretch& l, const Stretch& r) { return l.begin < r.begin; });
     auto last = begin;
     for (auto it = begin; it != stretches.end(); ++it) {
-        if (it != begin && it->begin == last->end) {
-            last->end = it->end;
+        if (it != begin && it->begin <= last->end) {
+            last->end = std::max(last->end, it->end);
         } else {
             if (it != begin) ++last;
             *last = *it;

@@ -203,7 +203,7 @@ private:
             all.insert(all.end(), part_.begin(), part_.end());
             const auto slicer = Slicer::prepare(all, settings_);
             if (!slicer) return tl::unexpected(slicer.error());
-            const std::vector<Island> islands = islands_of(*slicer);
+            const std::vector<Island> islands = islands_of(*slicer, supports.volume_mm3);
             supports.islands_left = static_cast<int>(islands.size());
             if (islands.empty() || round == support_rounds) return supports;
             if (progress.cancelled()) return cancelled();
@@ -211,18 +211,35 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<Island> islands_of(const Slicer& slicer) const {
+    [[nodiscard]] std::vector<Island> islands_of(const Slicer& slicer, double& filled_mm3) const {
+        Tally tally(slicer);
         Inspector inspector;
         constexpr int batch = layers_at_once;
         for (int first = 0; first < slicer.layer_count(); first += batch) {
+            std::vector<SlicedLayer> layers(static_cast<std::size_t>(std::min(batch, slicer.layer_count() - first)));
             std::vector<LayerShape> shapes(static_cast<std::size_t>(std::min(batch, slicer.layer_count() - first)));
             parallel_for(shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i)
-                    shapes[i] = shape_of(slicer.layer(first + static_cast<int>(i)), settings_.raster.width_px);
+                for (std::size_t i = begin; i < end; ++i) {
+                    layers[i] = slicer.layer(first + static_cast<int>(i));
+                    shapes[i] = shape_of(layers[i], settings_.raster.width_px);
+                }
             });
-            for (LayerShape& shape : shapes) inspector.add(std::move(shape));
+            for (std::size_t i = 0; i < shapes.size(); ++i) {
+                tally.add(first + static_cast<int>(i), layers[i]);
+                inspector.add(std::move(shapes[i]));
+            }
         }
+        filled_mm3 = volume_of_fillers(slicer, tally.summary());
         return inspector.finish().islands;
+    }
+
+    static double volume_of_fillers(const Slicer& slicer, const Summary& summary) {
+        double volume = 0;
+        for (std::size_t b = 0; b < slicer.fillers().size(); ++b) {
+            if (slicer.fillers()[b])
+                volume += slicer.measures()[b].volume_mm3 - summary.lost_mm3[b] - summary.doubled_mm3[b];
+        }
+        return volume;
     }
 
     [[nodiscard]] Supports built() const {

@@ -28,6 +28,7 @@ struct Supports {
     int tips = 0;
     int on_part = 0;  ///< of those, tips whose pillar stands on the part, as the way to the platform is barred
     int islands_left = 0;
+    double volume_mm3 = 0;  ///< of the fillers, less what the part keeps
 };
 
 /// Supports of a part that stands on the platform or, with `settings` as it will be sliced, hangs above it. Each tip

@@ -93,6 +93,7 @@ TEST_CASE("a table in mid-air stands on tips, no island is left, and the part ke
     const double foot = std::numbers::pi / 3 * 0.5 * (0.75 * 0.75 + 0.75 * 0.5 + 0.25);
     const double pillar = std::numbers::pi * 0.25 * 2.5;
     CHECK(o.support_mm3 == doctest::Approx(o.supports.tips * (cone + foot + pillar)).epsilon(0.03));
+    CHECK(o.supports.volume_mm3 == doctest::Approx(o.support_mm3).epsilon(0.01));
     CHECK(o.warnings.empty());
 }
 
