@@ -257,6 +257,7 @@ public:
             if (host.succeeded()) break;
             const std::string said = read_file(folder_ / "host.log").value_or("");
             if (said.find("half-way on the hooks") != std::string::npos) return ++count.refused, "";
+            if (said.find("it is complete") != std::string::npos) break;  // killed after the last record
             if (last) return "the print failed: " + said;
             begun = fs::exists(folder_ / "halves.zip.journal") && fs::file_size(folder_ / "halves.zip.journal") > 0;
         }

@@ -8,6 +8,7 @@
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
+#include "step/read_step.hpp"
 #include "threemf/read_3mf.hpp"
 
 namespace pliant::app {
@@ -21,6 +22,20 @@ void add_resin(Drawing& drawing, const std::string& material, const std::string&
         drawing.resin_of_material.emplace_back(material, resin);
 }
 
+const robot::BodySpec& body_named(const robot::Robot& robot, const std::string& name) {
+    return *std::find_if(robot.bodies.begin(), robot.bodies.end(),
+                         [&](const robot::BodySpec& body) { return body.name == name; });
+}
+
+/// Squares of a length become whole pixels once the printer is known.
+slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend) {
+    const double um = robot.unit_m * 1e6;
+    slice::Blend result{robot.materials[static_cast<std::size_t>(blend.material)].name, um * blend.from, um * blend.to,
+                        blend.shares, 1};
+    result.cell_um = um * blend.cell;
+    return result;
+}
+
 Result<Drawing> read_robot(const std::string& path, const std::vector<std::string>& assignments, Progress& progress) {
     const Result<robot::Robot> robot = robot::load_robot(path, assignments);
     if (!robot) return tl::unexpected(robot.error());
@@ -30,9 +45,22 @@ Result<Drawing> read_robot(const std::string& path, const std::vector<std::strin
     drawing.name = robot->name;
     for (robot::BodySurface& body : *surfaces) {
         const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
-        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        const robot::BodySpec& spec = body_named(*robot, body.body);
+        std::string name = material.name;
+        // A body with light of its own is a material of its own in the same resin.
+        if (spec.exposure_s > 0) {
+            name += " of " + spec.name;
+            add_resin(drawing, name, material.resin);
+            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
+        }
+        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        if (spec.blend) drawing.bodies.back().blend = blend_of(*robot, *spec.blend);
     }
-    for (const robot::MaterialSpec& material : robot->materials) add_resin(drawing, material.name, material.resin);
+    for (const robot::MaterialSpec& material : robot->materials) {
+        add_resin(drawing, material.name, material.resin);
+        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
+            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
+    }
     return drawing;
 }
 
@@ -85,6 +113,15 @@ Status add_surface(std::string_view bytes, const std::filesystem::path& path, co
     return {};
 }
 
+Status add_step(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    Result<step::StepFile> file = step::read_step(path);
+    if (!file) return tl::unexpected(file.error());
+    drawing.bodies.push_back({material, mesh::scaled(std::move(file->surface_mm), um_per_mm), path.stem().string()});
+    return {};
+}
+
 Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
     if (material.empty())
         return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
@@ -110,6 +147,7 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
+    if (step::looks_like_step(*bytes)) return add_step(path, material, drawing);
     if (mesh::looks_like_tet_mesh(*bytes)) return add_tets(*bytes, path.string(), material, drawing);
     return add_surface(*bytes, path, material, drawing);
 }

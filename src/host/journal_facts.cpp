@@ -23,9 +23,11 @@ std::string_view take(std::string_view& rest, char end) {
     return part;
 }
 
+/// Positions and the like, in micrometres: up to 100 m.
 bool read_int(std::string_view text, int& value) {
+    constexpr int most = 100'000'000;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return code == std::errc() && end == text.data() + text.size();
+    return code == std::errc() && end == text.data() + text.size() && value >= -most && value <= most;
 }
 
 bool read_vat(std::string_view text, std::optional<int>& vat) {

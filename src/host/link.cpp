@@ -38,11 +38,13 @@ std::optional<long> whole_number(std::string_view text) {
     return value;
 }
 
+/// A line with a line end at both ends. If the one between two lines were lost or damaged, they would become one, and
+/// one in 256 of such passes the checksum; empty lines do nothing.
 std::string framed(long number, std::string_view command) {
-    std::string line = fmt::format("N{} {}", number, command);
+    const std::string line = fmt::format("N{} {}", number, command);
     int sum = 0;
     for (const char c : line) sum ^= static_cast<unsigned char>(c);
-    return fmt::format("{}*{}\n", line, sum);
+    return fmt::format("\n{}*{}\n", line, sum);
 }
 
 bool is_restart(std::string_view line) {
@@ -94,9 +96,8 @@ Result<long> Link::last_line() {
     for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
         if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
         wanted_.reset();
-        // Number 0 follows no line: it is refused, and the refusal names the last one. The line end before it ends
-        // whatever an earlier host has left half-sent.
-        if (Status status = put("\n" + framed(0, "M400")); !status) return tl::unexpected(status.error());
+        // Number 0 follows no line: it is refused, and the refusal names the last one.
+        if (Status status = put(framed(0, "M400")); !status) return tl::unexpected(status.error());
         double end = clock_.now() + options_.boot_s;
         while (!wanted_ && clock_.now() < end) {
             const auto heard = hear(end - clock_.now());

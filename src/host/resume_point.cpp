@@ -35,6 +35,22 @@ std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& fac
     return commands;
 }
 
+/// What the journal asks for, against what the machine allows.
+Status check_lights(const JournalFacts& facts, const machine::Printer& printer) {
+    const auto allowed = [&](double seconds) { return seconds >= 0 && seconds <= printer.limits.exposure_s; };
+    for (const auto& [step, light] : facts.lights) {
+        if (!allowed(light.planned_s))
+            return input_error("the journal asks for {:g} s of light, {} allows up to {:g} s", light.planned_s,
+                               printer.name, printer.limits.exposure_s);
+    }
+    for (const ChangeFact& change : facts.changes) {
+        if (!allowed(change.seconds))
+            return input_error("the journal changes an exposure to {:g} s, {} allows up to {:g} s", change.seconds,
+                               printer.name, printer.limits.exposure_s);
+    }
+    return {};
+}
+
 Interlock without_position(const Interlock& state) {
     Interlock lost = state;
     lost.stopped_at(state.position());
@@ -120,6 +136,7 @@ std::size_t next_light(const JournalFacts& facts, const Script& script) {
 
 Result<Recovery> recovery_of(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
                              const Standing& standing) {
+    if (Status status = check_lights(facts, printer); !status) return tl::unexpected(status.error());
     const std::size_t step = next_light(facts, script);
     Recovery recovery{standing.state, state_before(script, printer, step), step == script.steps.size(), -1,
                       standing.on_hooks};
