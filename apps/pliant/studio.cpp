@@ -49,7 +49,8 @@ Result<int> run_studio(const Options& options) {
     if (!studio::is_loopback(options.address)) settings.token = studio::random_key();
     const auto server = start(**studio, options, settings);
     if (!server) return tl::unexpected(server.error());
-    const std::string host = options.address.find(':') == std::string::npos ? options.address : "[" + options.address + "]";
+    const std::string host =
+        options.address.find(':') == std::string::npos ? options.address : "[" + options.address + "]";
     const std::string address = fmt::format("http://{}:{}/{}", host, (*server)->port(),
                                             settings.token.empty() ? "" : "?token=" + settings.token);
     if (options.output.quiet)

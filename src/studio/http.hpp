@@ -22,9 +22,9 @@ struct Response {
     int status = 200;
     std::string type = "application/json";
     std::string body{};
-    std::string file_name{};      ///< not empty: the browser saves it under this name
-    bool packed = false;          ///< body is gzip
-    bool keep = false;            ///< may be kept for good: its address changes with its content
+    std::string file_name{};  ///< not empty: the browser saves it under this name
+    bool packed = false;      ///< body is gzip
+    bool keep = false;        ///< may be kept for good: its address changes with its content
 };
 
 [[nodiscard]] Response json_response(std::string json);

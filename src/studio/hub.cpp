@@ -127,9 +127,9 @@ void Hub::tell_everybody() {
         if (connection->page.empty()) continue;
         const bool you = connection->page == helm_;
         const bool waiting = std::find(asking_.begin(), asking_.end(), connection->page) != asking_.end();
-        connection->send_text(std::make_shared<const std::string>(fmt::format(
-            R"({{"type":"helm","you":{},"held":{},"asked":{},"waiting":{},"pages":{}}})", you,
-            !helm_.empty() && !helm_lost_, you && !asking_.empty(), waiting, connections_.size())));
+        connection->send_text(std::make_shared<const std::string>(
+            fmt::format(R"({{"type":"helm","you":{},"held":{},"asked":{},"waiting":{},"pages":{}}})", you,
+                        !helm_.empty() && !helm_lost_, you && !asking_.empty(), waiting, connections_.size())));
     }
 }
 

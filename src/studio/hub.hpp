@@ -77,8 +77,8 @@ private:
     std::function<Clock::time_point()> now_;
     std::mutex mutex_;
     std::set<std::shared_ptr<Connection>> connections_;
-    std::string helm_;                             ///< page that steers; empty: nobody
-    std::optional<Clock::time_point> helm_lost_;   ///< when its last connection went
+    std::string helm_;                            ///< page that steers; empty: nobody
+    std::optional<Clock::time_point> helm_lost_;  ///< when its last connection went
     std::deque<std::string> asking_;
 };
 

@@ -27,7 +27,8 @@ struct Hello {
 };
 struct ActuatorValue {
     std::string name;
-    std::string kind;  ///< length_ratio, shortening_mm, tension_N; volume_ratio, volume_change_mm3, pressure_kPa, gas_ratio
+    std::string
+        kind;  ///< length_ratio, shortening_mm, tension_N; volume_ratio, volume_change_mm3, pressure_kPa, gas_ratio
     double value = 0;
 };
 struct DriveMessage {
@@ -57,8 +58,7 @@ struct Steer {
 };
 struct Ping {};
 
-using Message =
-    std::variant<Hello, DriveMessage, Follow, Play, Rest, PullMessage, Release, FieldsMessage, Steer, Ping>;
+using Message = std::variant<Hello, DriveMessage, Follow, Play, Rest, PullMessage, Release, FieldsMessage, Steer, Ping>;
 
 /// Errors name the key. Numbers are finite and within +-1e9, lists at most 256 long, names at most 200 bytes.
 [[nodiscard]] Result<Message> parse_message(std::string_view text);

@@ -52,8 +52,7 @@ void Pace::wait_for(double virtual_s) {
            std::chrono::duration_cast<std::chrono::steady_clock::duration>(owed);
     while (!free_ && std::chrono::steady_clock::now() < due_) {
         const auto rest = due_ - std::chrono::steady_clock::now();
-        std::this_thread::sleep_for(
-            std::min<std::chrono::steady_clock::duration>(rest, std::chrono::milliseconds(20)));
+        std::this_thread::sleep_for(std::min<std::chrono::steady_clock::duration>(rest, std::chrono::milliseconds(20)));
     }
 }
 

@@ -1,5 +1,5 @@
-// The virtual printer in this program, in the time of people: its clock runs at most `speed` times as fast as the wall's,
-// so that a print can be watched. All of it belongs to the thread that serves the print.
+// The virtual printer in this program, in the time of people: its clock runs at most `speed` times as fast as the
+// wall's, so that a print can be watched. All of it belongs to the thread that serves the print.
 #pragma once
 
 #include <atomic>

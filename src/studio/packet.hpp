@@ -3,8 +3,8 @@
 //
 //     bytes 0-3    "PLN1"
 //     bytes 4-7    length of the head, a multiple of 4
-//     head         JSON, {"head": ..., "arrays": [{"name": "positions", "type": "f32", "count": 300}, ...]}, then blanks
-//     arrays       one after the other, 4 bytes a number
+//     head         JSON, {"head": ..., "arrays": [{"name": "positions", "type": "f32", "count": 300}, ...]}, then
+//     blanks arrays       one after the other, 4 bytes a number
 #pragma once
 
 #include <cstdint>

@@ -28,8 +28,8 @@ std::string event_of(const std::string& message) {
 
 bool under_way(host::State state) {
     using host::State;
-    return state == State::printing || state == State::pausing || state == State::paused || state == State::cancelling ||
-           state == State::working;
+    return state == State::printing || state == State::pausing || state == State::paused ||
+           state == State::cancelling || state == State::working;
 }
 
 host::LinkOptions link_options(const machine::Controller& controller) {
@@ -45,22 +45,26 @@ Json printer_json(const machine::Printer& p) {
     for (const machine::Axis axis : machine::all_axes) {
         const machine::AxisSpec& spec = p.axis(axis);
         if (!spec.present()) continue;
-        axes[std::string(machine::axis_name(axis))] = {{"min", mm(spec.min_um)},
-                                                       {"max", mm(spec.max_um)},
-                                                       {"speed", spec.speed_mm_s},
-                                                       {"rotary", spec.rotary}};
+        axes[std::string(machine::axis_name(axis))] = {
+            {"min", mm(spec.min_um)}, {"max", mm(spec.max_um)}, {"speed", spec.speed_mm_s}, {"rotary", spec.rotary}};
     }
     for (const machine::Vat& vat : p.vats)
         vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}, {"fill_ml", vat.fill_ml}});
-    const char* store = p.store() == machine::Store::tower ? "tower" : p.store() == machine::Store::table ? "table" : "none";
-    return {{"name", p.name},
-            {"store", store},
-            {"axes", axes},
-            {"vats", vats},
-            {"carriage", {{"print", mm(p.carriage.print_um)}, {"tower", mm(p.carriage.tower_um)}}},
-            {"platform", {{"width", mm(p.platform.width_um)}, {"depth", mm(p.platform.depth_um)}, {"height", mm(p.platform.build_height_um)}}},
-            {"tower", {{"slots", p.tower.slots}, {"first", mm(p.tower.first_slot_um)}, {"pitch", mm(p.tower.pitch_um)}}},
-            {"wall", mm(p.vat_shape.wall_um)}};
+    const char* store = p.store() == machine::Store::tower   ? "tower"
+                        : p.store() == machine::Store::table ? "table"
+                                                             : "none";
+    return {
+        {"name", p.name},
+        {"store", store},
+        {"axes", axes},
+        {"vats", vats},
+        {"carriage", {{"print", mm(p.carriage.print_um)}, {"tower", mm(p.carriage.tower_um)}}},
+        {"platform",
+         {{"width", mm(p.platform.width_um)},
+          {"depth", mm(p.platform.depth_um)},
+          {"height", mm(p.platform.build_height_um)}}},
+        {"tower", {{"slots", p.tower.slots}, {"first", mm(p.tower.first_slot_um)}, {"pitch", mm(p.tower.pitch_um)}}},
+        {"wall", mm(p.vat_shape.wall_um)}};
 }
 
 }  // namespace

@@ -19,8 +19,9 @@ struct Place {
     Place() {
         fs::create_directories(project / "parts" / "deep" / "deeper");
         fs::create_directories(base / "project_secret");
-        for (const char* name : {"project/a.toml", "project/b.txt", "project/.hidden.toml", "project/parts/c.zip",
-                                 "project/parts/deep/d.toml", "project/parts/deep/deeper/e.toml", "project_secret/s.toml"})
+        for (const char* name :
+             {"project/a.toml", "project/b.txt", "project/.hidden.toml", "project/parts/c.zip",
+              "project/parts/deep/d.toml", "project/parts/deep/deeper/e.toml", "project_secret/s.toml"})
             std::ofstream(base / name) << "x";
         fs::create_directory_symlink(base / "project_secret", project / "way_out");
         fs::create_symlink(base / "project_secret" / "s.toml", project / "link.toml");
@@ -42,10 +43,9 @@ TEST_CASE("paths within the folder are found, all others refused") {
         CHECK_MESSAGE(path, good);
         if (path) CHECK(*path == fs::canonical(place.project) / good);
     }
-    for (const char* bad :
-         {"", "/etc/passwd", "..", "../project_secret/s.toml", "parts/../../project_secret/s.toml", "./a.toml",
-          "parts/./c.zip", "way_out/s.toml", "link.toml", "parts//c.zip/", "a\\..\\b", "a\nb.toml", "\x7f", "parts/",
-          "way_out/new.toml", "../project_secret"})
+    for (const char* bad : {"", "/etc/passwd", "..", "../project_secret/s.toml", "parts/../../project_secret/s.toml",
+                            "./a.toml", "parts/./c.zip", "way_out/s.toml", "link.toml", "parts//c.zip/", "a\\..\\b",
+                            "a\nb.toml", "\x7f", "parts/", "way_out/new.toml", "../project_secret"})
         CHECK_MESSAGE(!folder->resolve(bad), bad);
     CHECK_FALSE(folder->resolve(std::string_view("a.toml\0/../../x", 15)));
     CHECK_FALSE(folder->resolve(std::string(5000, 'a')));

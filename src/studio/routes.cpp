@@ -26,10 +26,9 @@ std::vector<Route> all_routes() {
     add_simulation_routes(routes);
     add_make_routes(routes);
     add_print_routes(routes);
-    routes.push_back({"GET", "/api/openapi.json", "this description", "application/json", false,
-                      [](Studio& studio, const Request&) {
-                          return json_response(open_api(studio.routes(), studio.version()));
-                      }});
+    routes.push_back(
+        {"GET", "/api/openapi.json", "this description", "application/json", false,
+         [](Studio& studio, const Request&) { return json_response(open_api(studio.routes(), studio.version())); }});
     return routes;
 }
 
@@ -59,7 +58,8 @@ std::string open_api(const std::vector<Route>& routes, const std::string& versio
         if (!route.takes.empty())
             operation["requestBody"] = {{"required", true}, {"content", {{route.takes, Json::object()}}}};
         Json parameters = Json::array();
-        for (std::size_t open = route.path.find('{'); open != std::string::npos; open = route.path.find('{', open + 1)) {
+        for (std::size_t open = route.path.find('{'); open != std::string::npos;
+             open = route.path.find('{', open + 1)) {
             const std::size_t close = route.path.find('}', open);
             parameters.push_back({{"name", route.path.substr(open + 1, close - open - 1)},
                                   {"in", "path"},
@@ -71,12 +71,13 @@ std::string open_api(const std::vector<Route>& routes, const std::string& versio
         for (char& c : method) c = static_cast<char>(c - 'A' + 'a');
         paths[route.path][method] = operation;
     }
-    const Json json = {{"openapi", "3.0.3"},
-                       {"info",
-                        {{"title", "Pliant studio"},
-                         {"version", version},
-                         {"description", "Frames and live input go over the WebSocket at /live: docs/reference/studio.md"}}},
-                       {"paths", paths}};
+    const Json json = {
+        {"openapi", "3.0.3"},
+        {"info",
+         {{"title", "Pliant studio"},
+          {"version", version},
+          {"description", "Frames and live input go over the WebSocket at /live: docs/reference/studio.md"}}},
+        {"paths", paths}};
     return json.dump(1);
 }
 

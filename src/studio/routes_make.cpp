@@ -1,5 +1,7 @@
 // The job: slicing, its layers, its plan.
+#include <algorithm>
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
@@ -39,13 +41,37 @@ int layer_of(const std::string& remark) {
     return -1;
 }
 
+/// What the slicer has found, with a place; then its remarks.
+Json issues_json(const job::Manifest& manifest) {
+    static const std::map<std::string, const char*> names = {{"island", "island, begins in mid-air"},
+                                                             {"trap", "trap, closed for good around resin"},
+                                                             {"cup", "cup, holds on to the vat until it opens"},
+                                                             {"thin", "thin, narrower than asked for"}};
+    Json issues = Json::array();
+    for (const job::Finding& f : manifest.findings) {
+        const auto name = names.find(f.kind);
+        const std::string size =
+            f.volume_mm3 > 0 ? fmt::format("{:.3g} mm³", f.volume_mm3) : fmt::format("{:.3g} mm²", f.area_mm2);
+        issues.push_back({{"text", fmt::format("{}: {}", name == names.end() ? f.kind : name->second, size)},
+                          {"layer", f.first_layer},
+                          {"row", f.row},
+                          {"column", f.column}});
+    }
+    for (const std::string& warning : manifest.warnings)
+        issues.push_back({{"text", warning}, {"layer", layer_of(warning)}});
+    return issues;
+}
+
 Json swap_json(const plan::Plan& plan, const machine::Printer& printer) {
     const plan::SwapTimeline swap = plan::longest_swap(plan, printer);
     Json devices = Json::array(), stretches = Json::array();
     for (const plan::Device device : swap.devices) devices.push_back(plan::device_name(device));
     for (const plan::Stretch& s : swap.stretches)
         stretches.push_back({{"device", plan::device_name(s.device)}, {"begin", s.begin_s}, {"end", s.end_s}});
-    return {{"from", swap.from_slot}, {"to", swap.to_slot}, {"seconds", swap.seconds}, {"devices", devices},
+    return {{"from", swap.from_slot},
+            {"to", swap.to_slot},
+            {"seconds", swap.seconds},
+            {"devices", devices},
             {"stretches", stretches}};
 }
 
@@ -54,14 +80,12 @@ Response job(Studio& studio, const Request&) {
     if (!open) return no_job();
     const job::Manifest& manifest = open->archive.manifest();
     const Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
-    Json issues = Json::array();
-    for (const std::string& warning : manifest.warnings) issues.push_back({{"text", warning}, {"layer", layer_of(warning)}});
     const auto& p = open->printer;
     Json json = {{"revision", open->revision},
                  {"file", open->file.filename().string()},
                  {"manifest", Json::parse(job::to_json(manifest))},
                  {"colours", open->colours},
-                 {"issues", issues},
+                 {"issues", issues_json(manifest)},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
                  {"printer", p.name}};
     if (plan) {
@@ -76,7 +100,8 @@ Response job(Studio& studio, const Request&) {
 Response image(Studio& studio, const Request& request) {
     const auto open = studio.make().job();
     if (!open) return no_job();
-    const int layer = number_behind(request.parts.at("layer"), ""), material = number_behind(request.parts.at("material"), "");
+    const int layer = number_behind(request.parts.at("layer"), ""),
+              material = number_behind(request.parts.at("material"), "");
     const auto& layers = open->archive.manifest().layers;
     if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
     for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
@@ -103,9 +128,8 @@ Response save(Studio& studio, const Request& request) {
     const auto open = studio.make().job();
     if (!open) return no_job();
     const Json json = Json::parse(request.body, nullptr, false);
-    const std::string name = json.is_object() && json.contains("name") && json["name"].is_string()
-                                 ? json["name"].get<std::string>()
-                                 : "";
+    const std::string name =
+        json.is_object() && json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : "";
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return error_response(path.error());
     if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
@@ -128,8 +152,12 @@ Response compare(Studio& studio, const Request&) {
         const Result<plan::Plan> plan = plan::make_plan(open->archive.manifest(), *printer);
         Json row = {{"file", file.name}, {"printer", printer->name}};
         if (plan)
-            row.update({{"swaps", plan->swaps}, {"total_s", plan->seconds.total}, {"swap_s", plan->seconds.swap},
-                        {"clean_s", plan->seconds.clean}, {"waste_ml", plan->waste_ml}, {"solvent_ml", plan->solvent_ml}});
+            row.update({{"swaps", plan->swaps},
+                        {"total_s", plan->seconds.total},
+                        {"swap_s", plan->seconds.swap},
+                        {"clean_s", plan->seconds.clean},
+                        {"waste_ml", plan->waste_ml},
+                        {"solvent_ml", plan->solvent_ml}});
         else
             row["error"] = plan.error().message;
         rows.push_back(row);
@@ -191,8 +219,8 @@ Response cancel(Studio& studio, const Request&) {
 
 void add_make_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
-    routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\", \"layer_um\", \"copies\", \"turn\"}", json,
-                      true, slice, json});
+    routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\", \"layer_um\", \"copies\", \"turn\"}",
+                      json, true, slice, json});
     routes.push_back({"POST", "/api/job/cancel", "gives up slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});

@@ -38,21 +38,23 @@ void add_print_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
     routes.push_back({"GET", "/api/print", "the machine, its job, where both stand", json, false,
                       [](Studio& s, const Request&) { return json_response(s.print().describe()); }});
-    routes.push_back({"POST", "/api/print/twin", "takes a virtual printer for the job: {\"speed\"} times as fast as the wall's clock",
-                      json, true, take_twin, json});
+    routes.push_back({"POST", "/api/print/twin",
+                      "takes a virtual printer for the job: {\"speed\"} times as fast as the wall's clock", json, true,
+                      take_twin, json});
     routes.push_back({"POST", "/api/print/speed", "another {\"speed\"} of the virtual printer", json, true,
                       [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
     routes.push_back({"POST", "/api/print/leave", "gives the machine back", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
     // Whoever sees that something goes wrong may stop it.
-    routes.push_back({"POST", "/api/print/stop", "emergency stop, by any page", json, false,
-                      [](Studio& s, const Request&) {
-                          const host::ApiAnswer answer = s.print().ask("POST", "/api/printer/stop", "");
-                          return answer.status == 204 ? json_response("{}") : error_response(404, "no machine has been taken");
-                      }});
+    routes.push_back(
+        {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {
+             const host::ApiAnswer answer = s.print().ask("POST", "/api/printer/stop", "");
+             return answer.status == 204 ? json_response("{}") : error_response(404, "no machine has been taken");
+         }});
     routes.push_back({"GET", "/api/print/host/{what}", "the host's GET /api/{what}", json, false, forward});
     routes.push_back({"POST", "/api/print/host/{what}", "the host's POST /api/{what}", json, true, forward, json});
-    routes.push_back({"POST", "/api/print/host/{what}/{more}", "the host's POST /api/{what}/{more}", json, true, forward, json});
+    routes.push_back(
+        {"POST", "/api/print/host/{what}/{more}", "the host's POST /api/{what}/{more}", json, true, forward, json});
 }
 
 }  // namespace pliant::studio

@@ -25,8 +25,9 @@ Response project(Studio& studio, const Request&) {
     Json examples = Json::array(), printers = Json::array();
     for (const BuiltInFile& file : example_robots()) examples.push_back(file.name);
     for (const BuiltInFile& file : example_printers()) printers.push_back(file.name);
-    const Json json = {{"version", studio.version()}, {"name", d.name},         {"folder", studio.folder().path().string()},
-                       {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers}};
+    const Json json = {
+        {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},
+        {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers}};
     return json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -53,7 +54,8 @@ Response open_example(Studio& studio, const Request& request) {
 
 void add_project_routes(std::vector<Route>& routes) {
     const std::string json = "application/json", text = "text/plain";
-    routes.push_back({"GET", "/api/project", "the folder, its files, built-in examples and printers", json, false, project});
+    routes.push_back(
+        {"GET", "/api/project", "the folder, its files, built-in examples and printers", json, false, project});
     routes.push_back({"GET", "/api/robot", "the robot file as it stands in the editor", text, false, robot_text});
     routes.push_back({"PUT", "/api/robot", "another text for the robot file: checked, built, shown", json, true,
                       [](Studio& s, const Request& r) { return done(s.edit(r.body)); }, text});
@@ -65,9 +67,11 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.save(body_text(r, "name"))); }, json});
     routes.push_back({"POST", "/api/open", "opens {\"name\"}, a robot file or job of the folder", json, true,
                       [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
-    routes.push_back({"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
-    routes.push_back({"POST", "/api/accuracy", "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones",
-                      json, true, set_accuracy, json});
+    routes.push_back(
+        {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
+    routes.push_back({"POST", "/api/accuracy",
+                      "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones", json, true,
+                      set_accuracy, json});
 }
 
 }  // namespace pliant::studio

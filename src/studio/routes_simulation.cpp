@@ -70,16 +70,18 @@ Response vtu(Studio& studio, const Request&) {
 }  // namespace
 
 void add_simulation_routes(std::vector<Route>& routes) {
-    routes.push_back({"GET", "/api/scene", "what does not move: surfaces, materials, actuators", "application/octet-stream",
-                      false, scene});
+    routes.push_back({"GET", "/api/scene", "what does not move: surfaces, materials, actuators",
+                      "application/octet-stream", false, scene});
     routes.push_back({"GET", "/api/frame", "the latest state", "application/octet-stream", false, frame});
-    routes.push_back({"GET", "/api/export/steps.csv", "tensions, pressures, reactions of the states since rest", "text/csv",
-                      false,
+    routes.push_back({"GET", "/api/export/steps.csv", "tensions, pressures, reactions of the states since rest",
+                      "text/csv", false,
                       [](Studio& s, const Request&) { return table(s, report::steps_csv, "steps.csv"); }});
     routes.push_back({"GET", "/api/export/markers.csv", "markers of the states since rest", "text/csv", false,
                       [](Studio& s, const Request&) { return table(s, report::markers_csv, "markers.csv"); }});
-    routes.push_back({"GET", "/api/export/robot.glb", "the motion since rest, animated", "model/gltf-binary", false, glb});
-    routes.push_back({"GET", "/api/export/robot.vtu", "the latest state with its fields", "application/xml", false, vtu});
+    routes.push_back(
+        {"GET", "/api/export/robot.glb", "the motion since rest, animated", "model/gltf-binary", false, glb});
+    routes.push_back(
+        {"GET", "/api/export/robot.vtu", "the latest state with its fields", "application/xml", false, vtu});
 }
 
 }  // namespace pliant::studio

@@ -168,7 +168,8 @@ std::string Scene::head() const {
     for (const sim::Marker& marker : d.markers)
         markers.push_back({{"name", marker.name},
                            {"rest", vector_json(mm * sim::position(marker.point, flat(model_.mesh().points)))}});
-    for (const report::Obstacle& obstacle : obstacles_) obstacles.push_back({{"name", obstacle.name}, {"open", obstacle.open}});
+    for (const report::Obstacle& obstacle : obstacles_)
+        obstacles.push_back({{"name", obstacle.name}, {"open", obstacle.open}});
     const bool loaded = !d.loads.empty() || !d.pressures.empty() || norm(d.gravity_m_s2) > 0 ||
                         std::any_of(d.supports.begin(), d.supports.end(), [](const auto& s) { return s.moves(); });
     const Json json = {{"robot", robot_.name},

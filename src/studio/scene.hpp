@@ -1,5 +1,5 @@
-// What the page draws of a robot: surfaces of every material, cables, chambers, supports, obstacles, markers. Built once
-// for a model; a frame moves it. Lengths leave in mm.
+// What the page draws of a robot: surfaces of every material, cables, chambers, supports, obstacles, markers. Built
+// once for a model; a frame moves it. Lengths leave in mm.
 #pragma once
 
 #include <set>
@@ -46,10 +46,10 @@ private:
     const robot::Robot& robot_;
     const sim::Model& model_;
     std::vector<int> region_material_;
-    report::Surface surface_;               ///< of all materials, one after the other
-    std::vector<report::Surface> parts_;    ///< (materials)
-    std::vector<std::vector<int>> shown_;   ///< (materials) region_material with all others void
-    std::vector<std::uint32_t> material_;   ///< (vertices)
+    report::Surface surface_;              ///< of all materials, one after the other
+    std::vector<report::Surface> parts_;   ///< (materials)
+    std::vector<std::vector<int>> shown_;  ///< (materials) region_material with all others void
+    std::vector<std::uint32_t> material_;  ///< (vertices)
     std::vector<report::Obstacle> obstacles_;
 };
 

@@ -21,17 +21,28 @@ std::string_view header(mg_connection* wire, const char* name) {
 
 const char* reason(int status) {
     switch (status) {
-        case 200: return "OK";
-        case 302: return "Found";
-        case 401: return "Unauthorized";
-        case 403: return "Forbidden";
-        case 404: return "Not Found";
-        case 405: return "Method Not Allowed";
-        case 409: return "Conflict";
-        case 413: return "Content Too Large";
-        case 422: return "Unprocessable Content";
-        case 423: return "Locked";
-        default: return "Error";
+        case 200:
+            return "OK";
+        case 302:
+            return "Found";
+        case 401:
+            return "Unauthorized";
+        case 403:
+            return "Forbidden";
+        case 404:
+            return "Not Found";
+        case 405:
+            return "Method Not Allowed";
+        case 409:
+            return "Conflict";
+        case 413:
+            return "Content Too Large";
+        case 422:
+            return "Unprocessable Content";
+        case 423:
+            return "Locked";
+        default:
+            return "Error";
     }
 }
 
@@ -138,8 +149,9 @@ struct Server::State {
 
     /// From the address bar into a cookie, so that it does not stay in the history.
     static int settle_token(mg_connection* wire, const std::string& token) {
-        write(wire, {302, "text/plain", ""},
-              fmt::format("Location: /\r\nSet-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
+        write(
+            wire, {302, "text/plain", ""},
+            fmt::format("Location: /\r\nSet-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
         return 302;
     }
 
@@ -191,10 +203,25 @@ Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettin
     mg_init_library(MG_FEATURES_DEFAULT);
     std::unique_ptr<Server> server(new Server(std::make_unique<State>(State{studio, {0, settings.token}})));
     const bool six = settings.address.find(':') != std::string::npos;
-    const std::string ports = fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
-    const char* options[] = {"listening_ports", ports.c_str(), "num_threads", "32", "request_timeout_ms", "10000",
-                             "websocket_timeout_ms", "20000", "enable_keep_alive", "yes", "keep_alive_timeout_ms", "5000",
-                             "linger_timeout_ms", "0", "tcp_nodelay", "1", nullptr};
+    const std::string ports =
+        fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
+    const char* options[] = {"listening_ports",
+                             ports.c_str(),
+                             "num_threads",
+                             "32",
+                             "request_timeout_ms",
+                             "10000",
+                             "websocket_timeout_ms",
+                             "20000",
+                             "enable_keep_alive",
+                             "yes",
+                             "keep_alive_timeout_ms",
+                             "5000",
+                             "linger_timeout_ms",
+                             "0",
+                             "tcp_nodelay",
+                             "1",
+                             nullptr};
     mg_callbacks callbacks{};
     callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
     State* state = server->state_.get();

@@ -11,8 +11,8 @@ namespace pliant::studio {
 
 struct ServerSettings {
     std::string address = "127.0.0.1";
-    int port = 0;             ///< 0: any that is free
-    std::string token;        ///< needed from every page; must not be empty unless the address is loopback
+    int port = 0;       ///< 0: any that is free
+    std::string token;  ///< needed from every page; must not be empty unless the address is loopback
 };
 
 class Server {

@@ -97,9 +97,7 @@ SimulationSession::SimulationSession(SessionEvents events) : events_(std::move(e
 
 SimulationSession::~SimulationSession() {
     stopping_ = true;
-    {
-        const std::lock_guard lock(mutex_);
-    }
+    { const std::lock_guard lock(mutex_); }
     changed_.notify_all();
     thread_.join();
 }
@@ -339,8 +337,7 @@ void SimulationSession::set_actuator(const ActuatorValue& value) {
         const std::size_t a = d.cables.size() + k;
         sim::Drive& drive = target_.drives[a];
         if (value.kind == "volume_ratio" && v > 0) drive = {Kind::measure, v * rest[a]};
-        if (value.kind == "volume_change_mm3" && rest[a] + 1e-9 * v > 0)
-            drive = {Kind::measure, rest[a] + 1e-9 * v};
+        if (value.kind == "volume_change_mm3" && rest[a] + 1e-9 * v > 0) drive = {Kind::measure, rest[a] + 1e-9 * v};
         if (value.kind == "pressure_kPa") drive = {Kind::multiplier, 0 - 1e3 * v};
         if (value.kind == "gas_ratio" && v > 0) drive = {Kind::gas, v * d.ambient_pressure_Pa * rest[a]};
     }
@@ -360,8 +357,7 @@ void SimulationSession::set_pull(const std::optional<PullMessage>& message) {
     pulled_vertex_ = message->vertex;
     const int node = built_->scene.node_of_vertex(static_cast<std::size_t>(message->vertex));
     const Vec3& rest = built_->model.mesh().points[static_cast<std::size_t>(node)];
-    Result<sim::Attachment> patch =
-        built_->attacher.spread(rest, patch_share * built_->size_m, 1e-3 * built_->size_m);
+    Result<sim::Attachment> patch = built_->attacher.spread(rest, patch_share * built_->size_m, 1e-3 * built_->size_m);
     target_.pull = sim::Pull{patch ? std::move(*patch) : sim::Attachment{{node}, {1.0}, {}}, to};
 }
 
@@ -399,8 +395,8 @@ void SimulationSession::publish(const sim::LiveProgress& progress) {
     last_frame_at_ = Clock::now();
     const sim::Step step = live_->describe();
     if (progress.moved) remember(step);
-    auto frame = std::make_shared<const std::string>(
-        built_->scene.frame(step, events_.fields(), frame_head(step, progress)));
+    auto frame =
+        std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), frame_head(step, progress)));
     {
         const std::lock_guard lock(mutex_);
         frame_ = frame;

@@ -16,12 +16,10 @@ constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
 
 std::string document_event(const Studio::Document& d) {
-    const nlohmann::json json = {{"type", "document"},
-                                 {"name", d.name},
-                                 {"unsaved", d.text != d.saved},
-                                 {"undo", d.undo.size()},
-                                 {"redo", d.redo.size()},
-                                 {"accuracy", d.accuracy == Accuracy::preview ? "preview" : "fine"}};
+    const nlohmann::json json = {
+        {"type", "document"},           {"name", d.name},
+        {"unsaved", d.text != d.saved}, {"undo", d.undo.size()},
+        {"redo", d.redo.size()},        {"accuracy", d.accuracy == Accuracy::preview ? "preview" : "fine"}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -144,7 +142,8 @@ Status Studio::open_file(const std::string& name) {
     const Result<std::filesystem::path> path = folder_.resolve(name);
     if (!path) return tl::unexpected(path.error());
     if (path->extension() == ".zip") return make_->open(*path);
-    if (path->extension() != ".toml") return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
+    if (path->extension() != ".toml")
+        return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
     const Result<std::string> text = read_file(*path, largest_robot);
     if (!text) return tl::unexpected(text.error());
     const std::lock_guard lock(mutex_);
@@ -202,8 +201,8 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
 void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
     const auto refuse = [&](const std::string& why) {
         const nlohmann::json json = {{"type", "error"}, {"error", why}};
-        connection->send_text(std::make_shared<const std::string>(
-            json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
+        connection->send_text(
+            std::make_shared<const std::string>(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
     };
     const Result<Message> message = parse_message(text);
     if (!message) return refuse(message.error().message);

@@ -208,14 +208,15 @@ TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be 
     const Response image = ask(studio, "GET", "/api/job/layers/3/0");
     CHECK(image.type == "image/png");
     CHECK(image.body.substr(1, 3) == "PNG");
-    for (const char* path : {"/api/job/layers/20/0", "/api/job/layers/-1/0", "/api/job/layers/0/7", "/api/job/layers/x/0"})
+    for (const char* path :
+         {"/api/job/layers/20/0", "/api/job/layers/-1/0", "/api/job/layers/0/7", "/api/job/layers/x/0"})
         CHECK_MESSAGE(ask(studio, "GET", path).status == 404, path);
     CHECK(Json::parse(ask(studio, "GET", "/api/job/compare").body).size() >= 5);
     CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"bar.zip"})").status == 200);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"bar.zip"})").status == 200);
 
-    for (const char* wrong : {R"({"printer":"no such"})", R"({"layer_um":-1})", R"({"copies":"two"})", R"({"turn":[1]})",
-                              "[]", R"({"printer":7})"})
+    for (const char* wrong : {R"({"printer":"no such"})", R"({"layer_um":-1})", R"({"copies":"two"})",
+                              R"({"turn":[1]})", "[]", R"({"printer":7})"})
         CHECK_MESSAGE(ask(studio, "POST", "/api/job/slice", wrong).status == 422, wrong);
 }
 

@@ -94,7 +94,7 @@ export interface Job {
   file: string;
   printer: string;
   colours: string[];
-  issues: { text: string; layer: number }[];
+  issues: { text: string; layer: number; row?: number; column?: number }[];
   platform: { width_mm: number; depth_mm: number };
   manifest: {
     name: string;

@@ -172,3 +172,35 @@ test('the robot is sliced, and its layers and plan are seen', async (t) => {
   assert.match(plan, new RegExp(`${swaps}swaps, never fewer than`));
   assert.deepEqual(wrong, []);
 });
+
+test('a print on the virtual printer is paused, goes on, and is cancelled', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await page.waitForFunction(() => window.pliant.job.value !== null);  // the job of the test before
+  await page.getByTestId('section-print').click();
+  await page.getByTestId('take-speed').selectOption('300');
+  await page.getByTestId('take-twin').click();
+  await page.waitForSelector('[data-testid=print-state]');
+  assert.ok(await page.getByTestId('start').isDisabled(), 'nothing starts unchecked');
+  for (const box of await page.locator('.checklist input').all()) await box.check();
+  await page.getByTestId('start').click();
+  const layer = () => page.getByTestId('print-layer').textContent().then(Number);
+  await page.waitForFunction(() => Number(document.querySelector('[data-testid=print-layer]').textContent) >= 2);
+  await page.getByTestId('pause').click();
+  await page.getByTestId('resume').waitFor();
+  assert.equal(await page.getByTestId('print-state').textContent(), 'Paused');
+  const paused = await layer();
+  await page.waitForTimeout(1000);  // five minutes on the machine's clock
+  assert.equal(await layer(), paused, 'nothing is printed in a pause');
+  const watcher = await openPage(browser, `${studio.address}#print`, t);
+  await watcher.page.waitForSelector('[data-testid=print-state]');
+  assert.equal(await watcher.page.getByTestId('print-state').textContent(), 'Paused');
+  assert.ok(await watcher.page.getByTestId('resume').isDisabled(), 'who looks on does not steer');
+  assert.ok(await watcher.page.getByTestId('emergency').isEnabled(), 'but may stop it');
+  await page.getByTestId('resume').click();
+  await page.waitForFunction((l) => Number(document.querySelector('[data-testid=print-layer]').textContent) > l, paused);
+  await page.getByTestId('cancel').click();
+  await page.getByTestId('cancel-sure').click();
+  await page.getByTestId('start').waitFor();
+  assert.match(await page.getByTestId('log').textContent(), /Paused/);
+  assert.deepEqual([...wrong, ...watcher.wrong], []);
+});

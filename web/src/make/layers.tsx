@@ -6,6 +6,8 @@ import type { Job } from '../types';
 
 export const layer = signal(0);
 const difference = signal(false);
+/// A pixel that the view shall go to.
+export const goal = signal<{ row: number; column: number } | null>(null);
 
 const cache = new Map<string, Promise<ImageData>>();
 
@@ -142,7 +144,8 @@ export function Layers({ job }: { job: Job }) {
 
   const fit = async () => {
     const [x0, y0, x1, y1] = await lit(job);
-    const box = canvas.current!.parentElement!.getBoundingClientRect();
+    const box = canvas.current?.parentElement?.getBoundingClientRect();
+    if (!box) return;
     place.current = { x: (x0 + x1) / 2, y: (y0 + y1) / 2, zoom: 0.8 * Math.min(box.width / (x1 - x0), box.height / (y1 - y0)) };
     draw();
   };
@@ -157,6 +160,10 @@ export function Layers({ job }: { job: Job }) {
       off.getContext('2d')!.putImageData(data, 0, 0);
       image.current = off;
       if (!place.current) await fit();
+      if (goal.value) {
+        place.current = { x: goal.value.column + 0.5, y: goal.value.row + 0.5, zoom: 12 };
+        goal.value = null;
+      }
       setLoading(false);
       draw();
     });
@@ -164,7 +171,7 @@ export function Layers({ job }: { job: Job }) {
       gone = true;
       clearTimeout(timer);
     };
-  }, [l, difference.value, job.revision]);
+  }, [l, difference.value, job.revision, goal.value]);
 
   useEffect(() => {
     draw();

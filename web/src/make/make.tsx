@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { api, documentState, job, mayDrive, post, say, scene, sliceError, slicing } from '../store';
-import { Layers, layer } from './layers';
+import { goal, Layers, layer } from './layers';
 import { PlanView } from './plan';
 import { Stack } from './stack';
 
@@ -91,6 +91,7 @@ function Issues() {
           onClick={() => {
             tab.value = 'layers';
             layer.value = Math.min(issue.layer, j.manifest.layers.length - 1);
+            goal.value = issue.row === undefined ? null : { row: issue.row, column: issue.column ?? 0 };
           }}
         >
           <Icon name="warn" />

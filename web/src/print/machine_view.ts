@@ -70,8 +70,8 @@ export class MachineView {
   private look(w: number) {
     const reach = this.machine.store === 'tower' ? this.machine.carriage.tower - this.machine.carriage.print : 0;
     const size = Math.abs(reach) + 1.6 * w;
-    this.controls.target.set(reach / 2, 0, 0.12 * size);
-    this.camera.position.set(reach / 2 - 0.35 * size, -1.75 * size, 0.85 * size);
+    this.controls.target.set(0.3 * reach, 0, -0.05 * size);
+    this.camera.position.set(0.3 * reach - 0.4 * size, -2.1 * size, 1.0 * size);
     this.controls.update();
   }
 

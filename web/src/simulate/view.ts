@@ -396,7 +396,10 @@ export class RobotView {
     });
     this.insides[0].visible = options.sectionAxis !== '';
     for (const line of this.cables) line.children[0].visible = options.inside;
-    if (this.chamberMesh) this.chamberMesh.visible = options.inside;
+    if (this.chamberMesh) {
+      this.chamberMesh.visible = options.inside;
+      (this.chamberMesh.material as THREE.Material).clippingPlanes = options.sectionAxis ? [this.plane] : [];
+    }
     this.placeSection(options);
     this.setWires(options.wireframe);
     this.ghostMesh!.visible = options.ghost;
