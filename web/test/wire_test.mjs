@@ -110,7 +110,7 @@ test('no path leads out of the project folder', async () => {
       assert.equal(answer.status, 422, `${where} ${name}: ${answer.text}`);
     }
   }
-  const outside = 'name="x"\nlength_unit="mm"\nmaterial.a={youngs_modulus="1 MPa",poisson_ratio=0.4}\nbody=[{name="b",material="a",geometry="../../../../etc/passwd.stl"}]\nfixed=[{name="f",box=[[0,0,0],[1,1,1]]}]\n';
+  const outside = 'name="x"\nlength_unit="mm"\nmaterial.a={youngs_modulus="1 MPa",poisson_ratio=0.4}\nbody=[{name="b",material="a",geometry="../../../../etc/passwd"}]\nfixed=[{name="f",box=[[0,0,0],[1,1,1]]}]\n';
   assert.equal((await ask('/api/robot', { method: 'PUT', body: outside })).status, 422);
 });
 
