@@ -10,8 +10,10 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/flat_faces.hpp"
 #include "mesh/gmsh_library.hpp"
 #include "mesh/mesh_report.hpp"
+#include "mesh/surface_orientation.hpp"
 #include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
@@ -64,6 +66,14 @@ auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
     } catch (...) {
         return failure("{}: Gmsh failed without a reason", task);
     }
+}
+
+/// The solids of a STEP file, in its order. Open CASCADE turns the file's unit into millimetres.
+Entities import_solids(const std::string& file, double scale) {
+    Entities solids = occ::import_shapes(file);
+    std::erase_if(solids, [](const auto& entity) { return entity.first != 3; });
+    if (scale != 1 && !solids.empty()) occ::dilate(solids, scale);
+    return solids;
 }
 
 bool boxes_meet(const Box3& a, const Box3& b, double margin) {
@@ -180,12 +190,85 @@ struct BuildSolid {
         return kept;
     }
 
+    Entities operator()(const NotchesSolid& s) const {
+        Entities hulls;
+        for (const Solid& hull : s.hulls) {
+            const Entities one = build(hull);
+            hulls.insert(hulls.end(), one.begin(), one.end());
+        }
+        Entities walls;
+        for (const Solid& wall : s.walls) {
+            const Entities one = build(wall);
+            walls.insert(walls.end(), one.begin(), one.end());
+        }
+        Entities kept;
+        const double radius = 1e-7 * bounds(s.hulls.front()).diagonal();
+        for (const auto& piece : occ::cut(hulls, walls).entities) {
+            const auto inside = [&](const Vec3& point) { return holds(piece, point, radius); };
+            if (std::any_of(s.points.begin(), s.points.end(), inside))
+                kept.push_back(piece);
+            else
+                occ::remove({piece}, true);
+        }
+        return kept;
+    }
+
+    Entities operator()(const PolyhedronSolid& s) const {
+        std::vector<int> points;
+        for (const Vec3& p : s.faces->points) points.push_back(occ::add_point(p.x, p.y, p.z));
+        std::map<std::pair<int, int>, int> lines;
+        const auto line = [&](int a, int b) {
+            const auto [entry, fresh] = lines.try_emplace(std::minmax(a, b), 0);
+            if (fresh)
+                entry->second = occ::add_line(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)]);
+            return entry->second;
+        };
+        Entities volumes;
+        for (const FacetedSurface::Piece& piece : s.faces->pieces) {
+            Entities shells;
+            for (const FacetedSurface::Shell& shell : piece) {
+                std::vector<int> faces;
+                for (const FacetedSurface::Face& face : shell) {
+                    std::vector<int> loops;
+                    for (const FacetedSurface::Loop& loop : face) {
+                        std::vector<int> curves;
+                        for (std::size_t i = 0; i < loop.size(); ++i)
+                            curves.push_back(line(loop[i], loop[(i + 1) % loop.size()]));
+                        loops.push_back(occ::add_curve_loop(curves));
+                    }
+                    faces.push_back(occ::add_plane_surface(loops));
+                }
+                shells.emplace_back(3, occ::add_volume({occ::add_surface_loop(faces)}));
+            }
+            const Entities outer = {shells.front()};
+            const Entities whole =
+                shells.size() == 1 ? outer : occ::cut(outer, {shells.begin() + 1, shells.end()}).entities;
+            volumes.insert(volumes.end(), whole.begin(), whole.end());
+        }
+        return volumes;
+    }
+    Entities operator()(const StepSolid& s) const {
+        const Entities all = import_solids(s.file, s.scale);
+        Entities kept;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (std::find(s.numbers.begin(), s.numbers.end(), static_cast<int>(i)) != s.numbers.end())
+                kept.push_back(all[i]);
+            else
+                occ::remove({all[i]}, true);
+        }
+        return kept;
+    }
+
     static bool reaches(const std::pair<int, int>& piece, const Vec3& low) {
         const auto [a, b] = occ::get_bounding_box(piece.first, piece.second);
         return a[0] < low.x + 1e-3 * (b[0] - a[0]);
     }
 
     static bool holds(const std::pair<int, int>& piece, const Vec3& point, double radius) {
+        const auto [low, high] = occ::get_bounding_box(piece.first, piece.second);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (point[k] < low[k] || point[k] > high[k]) return false;
+        }
         const int probe =
             occ::add_box(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
         const Entities common = intersect(occ::copy({piece}), {{3, probe}});
@@ -390,37 +473,18 @@ void append_face(int face, TriMesh& surface, std::map<std::size_t, int>& index) 
     }
 }
 
-/// 1 if triangle `t` on `face` looks out of the solid, -1 if into it, 0 if that cannot be told there. The question is
-/// put on the exact face: a chord's own middle lies on the same side of a curved face as both its neighbourhoods.
-int outward_vote(const Solid& solid, const TriMesh& surface, std::size_t t, int face, double step) {
-    const auto& [i, j, k] = surface.triangles[t];
-    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
-    const Vec3 middle = (a + b + c) / 3;
-    const auto [on_face, parameter] = gmsh::model::get_closest_point(2, face, {middle.x, middle.y, middle.z});
-    const std::vector<double> normal = gmsh::model::get_normal(face, parameter);
-    const Vec3 p{on_face[0], on_face[1], on_face[2]};
-    const Vec3 n{normal[0], normal[1], normal[2]};
-    const int along = static_cast<int>(contains(solid, p - step * n)) - static_cast<int>(contains(solid, p + step * n));
-    return dot(cross(b - a, c - a), n) > 0 ? along : -along;
-}
-
-/// The triangles on the faces of `volumes`, turned outwards face by face (Open CASCADE's faces look either way).
-TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
-    constexpr std::size_t voters = 9;
-    const Entities faces = gmsh::model::get_boundary(volumes, true);
+/// The triangles on the faces of `volumes`, normals outwards.
+TriMesh collect_surface(const Entities& volumes) {
     TriMesh surface;
-    std::map<std::size_t, int> index;
-    const double step = 1e-5 * bounds(solid).diagonal();
-    for (const auto& [dimension, tag] : faces) {
-        const std::size_t first = surface.triangles.size();
-        append_face(std::abs(tag), surface, index);
-        const std::size_t count = surface.triangles.size() - first;
-        int votes = 0;
-        for (std::size_t v = 0; v < std::min(voters, count); ++v)
-            votes += outward_vote(solid, surface, first + v * count / std::min(voters, count), std::abs(tag), step);
-        if (votes >= 0) continue;
-        for (std::size_t t = first; t < surface.triangles.size(); ++t)
-            std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    for (const auto& volume : volumes) {
+        TriMesh one;
+        std::map<std::size_t, int> index;
+        for (const auto& [dimension, tag] : gmsh::model::get_boundary({volume}, true))
+            append_face(std::abs(tag), one, index);
+        orient_solid(one);  // Open CASCADE's faces look either way
+        const int offset = static_cast<int>(surface.points.size());
+        surface.points.insert(surface.points.end(), one.points.begin(), one.points.end());
+        for (const auto& [a, b, c] : one.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
     }
     return surface;
 }
@@ -563,12 +627,29 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         set_size(4 * reach);
         gmsh::option::set_number("Mesh.MeshSizeFromCurvature", segments);
         gmsh::model::mesh::generate(2);
-        TriMesh surface = collect_surface(solid, volumes);
+        TriMesh surface = collect_surface(volumes);
         const double exact = mass(volumes);
         const double found = signed_volume(surface);
         if (std::fabs(found - exact) > 4 * tolerance * surface_area(volumes) + 1e-6 * exact)
             return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
         return surface;
+    });
+}
+
+Result<StepContent> read_step(const std::string& file, double scale) {
+    return in_session("reading", [&]() -> Result<StepContent> {
+        const Entities solids = import_solids(file, scale);
+        if (solids.empty()) return input_error("{}: holds no solid", file);
+        occ::synchronize();
+        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 32);
+        gmsh::model::mesh::generate(2);
+        StepContent content;
+        for (const auto& solid : solids) {
+            const std::string path = gmsh::model::get_entity_name(3, solid.second);
+            content.names.push_back(path.substr(path.rfind('/') + 1));
+            content.surfaces.push_back(collect_surface({solid}));
+        }
+        return content;
     });
 }
 

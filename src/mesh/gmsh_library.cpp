@@ -269,6 +269,14 @@ int add_plane_surface(std::vector<int> loops) {
     return call(PLIANT_GMSH(gmshModelOccAddPlaneSurface), loops.data(), loops.size(), -1);
 }
 
+int add_surface_loop(std::vector<int> surfaces) {
+    return call(PLIANT_GMSH(gmshModelOccAddSurfaceLoop), surfaces.data(), surfaces.size(), -1, 0);
+}
+
+int add_volume(std::vector<int> shells) {
+    return call(PLIANT_GMSH(gmshModelOccAddVolume), shells.data(), shells.size(), -1);
+}
+
 Entities extrude(Entities what, double dx, double dy, double dz) {
     std::vector<int> in = flat(what);
     Given<int> out;

@@ -81,6 +81,8 @@ int add_point(double x, double y, double z);
 int add_line(int start, int end);
 int add_curve_loop(std::vector<int> curves);
 int add_plane_surface(std::vector<int> loops);
+int add_surface_loop(std::vector<int> surfaces);
+int add_volume(std::vector<int> shells);
 Entities extrude(Entities what, double dx, double dy, double dz);
 
 /// What a Boolean operation leaves, and what became of each entity that went in. Objects and tools are used up.
