@@ -9,6 +9,7 @@
 #include "mesh/narrow_gaps.hpp"
 #include "mesh/size_field.hpp"
 #include "mesh/surface_check.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
@@ -118,6 +119,11 @@ double surface_area(const TriMesh& surface) {
 Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings,
                                          const kernel::SizeAt& size_at) {
     if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
+    // Gmsh's recovery of the boundary may crash on what follows, rather than fail.
+    constexpr double finest = 5e-6;
+    if (cuts_itself(surface)) return input_error("the surface cuts through itself or touches itself");
+    if (finest_detail(surface) < finest)
+        return input_error("the surface has triangles lower than {:.0e} of its size", finest);
     const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
     if (!pieces) return tl::unexpected(pieces.error());
     std::vector<TetMesh> meshes;
@@ -176,6 +182,8 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
         Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg, progress);
         if (!mesh && mesh.error().cause == Cause::cancelled) return tl::unexpected(mesh.error());
         if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
+        if (std::string& note = mesh->notes.front(); note.find("is damaged") == std::string::npos)
+            note = meshes.error().message + ": " + note;
         meshes = std::vector<TetMesh>{std::move(*mesh)};
     } else {
         replace_slivers(*meshes, surface, settings, progress);

@@ -15,6 +15,8 @@ namespace {
 using Chain = std::vector<int>;
 
 constexpr double inside = 0.5;
+/// Between edges that do not meet, as a share of the mesh size.
+constexpr double least_room = 0.02;
 
 class EdgeFinder {
 public:
@@ -214,7 +216,7 @@ SharpEdges sharp_edges(const TriangleTree& tree, double size, double angle_deg) 
         if (chain.size() > 1) edges.chains.push_back(chain);
         chain.clear();
     };
-    CollisionFinder finder(points, chains, 0.1 * size);
+    CollisionFinder finder(points, chains, least_room * size);
     for (const Segment& segment : finder.find()) {
         if (segment.index == 0 || segment.dropped) end_chain();
         edges.dropped += segment.dropped ? 1 : 0;

@@ -8,10 +8,14 @@
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/perturb_mesh_3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "mesh/gmsh_kernel.hpp"
@@ -78,12 +82,31 @@ TetMesh collect(const Complex& complex, const Vec3& offset) {
     return mesh;
 }
 
+/// Several times what a mesh of this size has where nothing is finer than it, and room for what is.
+std::size_t node_limit(const TriMesh& surface, double size) {
+    double area = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
+        area += norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
+    }
+    const double nodes = std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
+    return 15000 + static_cast<std::size_t>(std::min(8 * nodes, 20e6));
+}
+
 /// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
 struct Cancelled {};
 
-/// Around the origin. CGAL's edge of a facet of circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
-Complex mesh_around_origin(const TriangleTree& tree, const Box3& box, const SharpEdges& edges, double size,
-                           Progress& progress) {
+/// What is asked of the mesh beside its size.
+struct Demands {
+    std::vector<std::vector<Vec3>> edges;  ///< that stay
+    double distance;                       ///< of the mesh's surface from the true one, as a share of the size
+    double facet_angle_deg;
+};
+
+/// Around the origin; nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of
+/// circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
+std::optional<Complex> mesh_around_origin(const TriangleTree& tree, const Box3& box, const Demands& demands,
+                                          double size, Progress& progress) {
     namespace params = CGAL::parameters;
     CGAL::get_default_random() = CGAL::Random(0);
     const double radius = 0.6 * box.diagonal();
@@ -94,16 +117,23 @@ Complex mesh_around_origin(const TriangleTree& tree, const Box3& box, const Shar
         },
         Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = 1e-5);
     std::vector<std::vector<Kernel::Point_3>> lines;
-    for (const std::vector<Vec3>& chain : edges.chains) {
+    for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
         for (const Vec3& p : chain) line.push_back(cgal(p));
     }
     domain.add_features(lines.begin(), lines.end());
-    const Criteria criteria(params::edge_size = size, params::facet_angle = 25, params::facet_size = 0.65 * size,
-                            params::facet_distance = 0.05 * size, params::cell_radius_edge_ratio = 2,
-                            params::cell_size = 0.75 * size);
-    return CGAL::make_mesh_3<Complex>(domain, criteria, params::perturb(params::sliver_bound = 12),
-                                      params::exude(params::sliver_bound = 12));
+    const Criteria criteria(params::edge_size = size, params::facet_angle = demands.facet_angle_deg,
+                            params::facet_size = 0.65 * size, params::facet_distance = demands.distance * size,
+                            params::cell_radius_edge_ratio = 2, params::cell_size = 0.75 * size);
+    CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
+    Complex complex = CGAL::make_mesh_3<Complex>(
+        domain, criteria, params::no_perturb(), params::no_exude(),
+        params::mesh_3_options(params::maximal_number_of_vertices = node_limit(tree.surface(), size),
+                               params::pointer_to_error_code = &code));
+    if (code != CGAL::CGAL_MESH_3_NO_ERROR) return std::nullopt;
+    CGAL::perturb_mesh_3(complex, domain, params::sliver_bound = 12);
+    CGAL::exude_mesh_3(complex, params::sliver_bound = 12);
+    return complex;
 }
 
 std::string damage_note(const SurfaceDamage& damage, double volume) {
@@ -117,8 +147,8 @@ std::string damage_note(const SurfaceDamage& damage, double volume) {
     add(damage.repeated, "repeated triangles");
     add(damage.flat, "flat triangles");
     add(damage.inside_out ? 1 : 0, "surface turned inside out");
-    return fmt::format("the surface is damaged ({}) and was meshed from its winding number; check its volume: {:.6g}",
-                       text.empty() ? "it cuts through itself" : text, volume);
+    const std::string is = text.empty() ? "" : fmt::format("is damaged ({}) and ", text);
+    return fmt::format("the surface {}was meshed from its winding number; check its volume: {:.6g}", is, volume);
 }
 
 }  // namespace
@@ -139,7 +169,12 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
     if (!few) return tl::unexpected(few.error());
     try {
         const SharpEdges edges = sharp_edges(tree, size, angle_deg);
-        TetMesh mesh = collect(mesh_around_origin(tree, box, edges, size, progress), middle);
+        std::optional<Complex> complex = mesh_around_origin(tree, box, {edges.chains, 0.05, 25}, size, progress);
+        const bool rounded = !complex;
+        if (rounded) complex = mesh_around_origin(tree, box, {{}, 0.15, 20}, size, progress);
+        if (!complex)
+            return failure("the mesh of the damaged surface does not come to an end; try a smaller mesh size");
+        TetMesh mesh = collect(*complex, middle);
         const double meshed = mesh::volume(mesh);
         if (!(std::fabs(meshed - volume) < 0.1 * volume))
             return failure(
@@ -147,7 +182,9 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
                 "mesh size",
                 meshed, volume);
         mesh.notes.push_back(damage_note(damage, meshed));
-        if (edges.dropped > 0)
+        if (rounded)
+            mesh.notes.emplace_back("its sharp edges are rounded off: with them the mesh does not come to an end");
+        else if (edges.dropped > 0)
             mesh.notes.push_back(
                 fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
         return mesh;
