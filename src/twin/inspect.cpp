@@ -167,6 +167,22 @@ std::string why_missing(Twin& twin, const job::Manifest& job, int z_um) {
     return fmt::format("nothing cured at {} um (exposure)", z_um);
 }
 
+double asked_s(const job::Manifest& job, int layer, int material) {
+    const job::Material& m = job.materials[static_cast<std::size_t>(material)];
+    return layer < job.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
+}
+
+/// A light that was given in several pieces must be no more than one light: a doubled exposure shows here.
+void count_too_long(Report& report, const CuredLayer& cured, const Runs& wanted, double seconds) {
+    constexpr double most_share = 1.5;
+    for (const VatLayer& vat : cured.vats) {
+        for (const Lit& lit : vat.lit) {
+            if (lit.pieces < 2 || lit.seconds <= most_share * seconds || lit.light != wanted) continue;
+            for (const Run& run : lit.light) report.pixels_lit_twice += run.end - run.begin;
+        }
+    }
+}
+
 Status compare_layer(Report& report, Twin& twin, const job::Manifest& job, const RunSource& images, Resins& resins,
                      int index, int below_um) {
     const job::Layer& layer = job.layers[static_cast<std::size_t>(index)];
@@ -193,6 +209,7 @@ Status compare_layer(Report& report, Twin& twin, const job::Manifest& job, const
         wanted.push_back(std::move(*image));
         comparison.add_wanted(listed.material, job.materials[static_cast<std::size_t>(listed.material)].resin,
                               wanted.back());
+        if (cured != nullptr) count_too_long(report, *cured, wanted.back(), asked_s(job, index, listed.material));
     }
     const double pixel_mm2 = projector.pixel_um * projector.pixel_um / 1e6;
     const long wrong_before = report.wrong_pixels;
@@ -288,7 +305,6 @@ void judge(Report& report, Twin& twin) {
     count(report.pixels_lit_twice, "pixels lit twice on one layer");
     count(report.contaminated_layers, "layers printed in a vat with more foreign resin than allowed");
     count(report.log.short_cleanings, "swaps with too little cleaning");
-    count(report.log.resets, "resets of the controller");
     for (const std::string& fault : twin.cured().faults()) report.reasons.push_back(fault);
     for (const std::string& violation : report.log.violations) report.reasons.push_back("interlock: " + violation);
     report.passed = report.reasons.empty();
@@ -304,7 +320,7 @@ Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& im
     }
     if (Status status = compare_layers(report, twin, job, images); !status) return tl::unexpected(status.error());
     report.layers = static_cast<int>(twin.cured().layers().size());
-    report.pixels_lit_twice = twin.cured().pixels_lit_twice();
+    report.pixels_lit_twice += twin.cured().pixels_lit_twice();
     report.deepest_overcure_um = twin.cured().deepest_overcure_um();
     report.log = twin.log();
     report.clock_s = twin.now();

@@ -109,6 +109,7 @@ void Twin::receive(std::string_view bytes) {
 
 /// A whole line has arrived: faults, then the emergency parser, then the receive buffer.
 void Twin::take_line(std::string line) {
+    if (line == "\n" || line == "\r\n") return;  // nothing at all, and no line for the faults either
     ++lines_;
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
@@ -50,7 +51,12 @@ struct Log {
     int bad_lines = 0;
     int resets = 0;
     int clamped_moves = 0;  ///< that asked for more than an axis' travel, and were cut without a word
+    long moves = 0;         ///< carried out; a repeated one changes nothing and is none
+    std::uint64_t path = 14695981039346656037ULL;  ///< hash (FNV-1a) of where they went, in order
 };
+
+/// Log::path after one more move.
+[[nodiscard]] std::uint64_t path_after(std::uint64_t path, const machine::Position& to);
 
 /// What a layer was printed in: shares from 0 to 1.
 struct Contamination {
