@@ -1,4 +1,5 @@
-// pliant print: prints a job. The virtual printer obeys the same G-code and sees the same images as the real one.
+// pliant print: prints a job, on a machine at a serial port or on the virtual printer, which obeys the same G-code and
+// sees the same images.
 #include "host/print.hpp"
 
 #include <fmt/core.h>
@@ -8,8 +9,10 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
+#include "host/serial.hpp"
 #include "job_tools.hpp"
 #include "plan/plan.hpp"
+#include "print_live.hpp"
 #include "twin/inspect.hpp"
 #include "twin_bench.hpp"
 
@@ -17,15 +20,16 @@ namespace pliant::app {
 namespace {
 
 struct Options {
-    std::string job;
+    LiveOptions live;
     std::string report_file;
     bool twin = false;
-    Output output;
+    bool list_ports = false;
+    bool given_speed = false;
 };
 
 Result<int> print_on_twin(const Options& options) {
-    const auto progress = terminal_progress(options.output);
-    const Result<OpenJob> job = open_job(options.job);
+    const auto progress = terminal_progress(options.live.output);
+    const Result<OpenJob> job = open_job(options.live.job);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
     const Result<std::string> gcode = job->archive.file("job.gcode");
@@ -33,7 +37,11 @@ Result<int> print_on_twin(const Options& options) {
     const Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
     if (!plan) return tl::unexpected(plan.error());
 
-    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
+    Result<std::optional<job::Image>> mask = mask_of(*job);
+    if (!mask) return tl::unexpected(mask.error());
+    twin::Options twin_options;
+    twin_options.mask = std::move(*mask);
+    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer), std::move(twin_options));
     // What has been shown is remembered: decoding is most of the work.
     std::map<std::pair<int, int>, twin::Runs> shown;
     const auto images = [&](int layer, int material) {
@@ -57,27 +65,60 @@ Result<int> print_on_twin(const Options& options) {
         if (Status written = write_file(options.report_file, json + "\n"); !written)
             return tl::unexpected(written.error());
     }
-    if (options.output.json)
+    if (options.live.output.json)
         fmt::print("{}\n", json);
-    else if (!options.output.quiet)
+    else if (!options.live.output.quiet)
         fmt::print("{} lines sent, {} exposures\n{}", record.lines_sent, record.exposures.size(),
                    twin::report_text(*report));
     return report->passed ? exit_done : exit_failed;
+}
+
+int list_ports() {
+    for (const host::SerialPort& port : host::serial_ports()) fmt::print("{}  {}\n", port.device, port.name);
+    return exit_done;
+}
+
+Result<int> print(const Options& options) {
+    if (options.list_ports) return list_ports();
+    if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
+    if (options.twin == !options.live.port.empty())
+        return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
+    if (options.twin && options.live.resume)
+        return input_error("--resume needs a printer that is still there: --port DEVICE");
+    if (!options.twin && options.live.projector.empty())
+        return input_error("say where the light comes from: --projector FOLDER");
+    if (options.twin && !options.given_speed) return print_on_twin(options);
+    return print_live(options.live);
 }
 
 }  // namespace
 
 void add_print(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("print", "print a job on the virtual printer and compare what cured with the model");
-    command->add_option("job", options->job, "job file (.zip)")->required();
-    command->add_flag("--twin", options->twin, "print on the virtual printer")->required();
-    command->add_option("-o,--output", options->report_file, "file for the report (.json)");
-    add_output_options(*command, options->output, true);
-    command->footer("Example: pliant print gripper.zip --twin");
-    command->callback([options, &status] {
-        const Result<int> result = print_on_twin(*options);
+    LiveOptions& live = options->live;
+    CLI::App* command = app.add_subcommand("print", "print a job on a machine, or on the virtual printer");
+    command->add_option("job", live.job, "job file (.zip)");
+    command->add_option("--port", live.port, "serial port of the machine");
+    command->add_flag("--twin", options->twin, "print on the virtual printer and compare what cured with the model");
+    command->add_flag("--list-ports", options->list_ports, "list the serial ports");
+    command->add_option("--projector", live.projector, "folder whose shown.png is the light");
+    command->add_flag("--resume", live.resume, "go on with an interrupted print");
+    command->add_option("--journal", live.journal, "file instead of JOB.zip.journal");
+    command->add_option("--assume-lit", live.assume_lit_s, "seconds that a light was on whose end nobody saw");
+    command->add_flag("--assume-vats-untouched", live.assume_vats_untouched,
+                      "another program has used the controller since, but moved no vat");
+    command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
+    CLI::Option* speed = command->add_option(
+        "--speed", live.speed, "seconds of the machine in one of the wall, for virtual printers; 1 is real time");
+    command->add_option("-o,--output", options->report_file, "file for the report of --twin (.json)");
+    add_output_options(*command, live.output, true);
+    command->footer(
+        "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume goes on.\n"
+        "Example: pliant print gripper.zip --port /dev/ttyACM0 --projector pictures\n"
+        "         pliant print gripper.zip --twin");
+    command->callback([options, speed, &status] {
+        options->given_speed = speed->count() > 0;
+        const Result<int> result = print(*options);
         status = result ? *result : report(result.error());
     });
 }

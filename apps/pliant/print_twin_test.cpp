@@ -89,7 +89,7 @@ class CountingWire final : public host::Wire {
 public:
     explicit CountingWire(host::Wire& wire) : wire_(wire) {}
     [[nodiscard]] Status write(std::string_view bytes) override {
-        under_way_ += static_cast<int>(std::count(bytes.begin(), bytes.end(), '\n'));
+        under_way_ += static_cast<int>(std::count(bytes.begin(), bytes.end(), '*'));
         most_ = std::max(most_, under_way_);
         return wire_.write(bytes);
     }

@@ -20,6 +20,17 @@ public:
     /// What has arrived; waits up to `timeout_s` for the first byte. "" if none came in time; an error if the wire
     /// broke.
     [[nodiscard]] virtual Result<std::string> read(double timeout_s) = 0;
+    /// Resets the controller, on purpose only: its position is lost.
+    [[nodiscard]] virtual Status reset() { return failure("this wire cannot reset the controller"); }
+};
+
+/// A light as the projector measured it, from the frames that it presented.
+struct Light {
+    double asked_s = 0;
+    double on_s = 0;             ///< from the first lit frame to the first black one
+    int frames = 0;              ///< that were lit
+    double frame_s = 0;          ///< nominal time of a frame
+    double longest_frame_s = 0;  ///< of those lit: over `frame_s` where the machine was late
 };
 
 /// A light as the projector measured it, from the frames that it presented.

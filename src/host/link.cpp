@@ -11,7 +11,8 @@ namespace pliant::host {
 namespace {
 
 constexpr std::size_t longest_command = 80;  // leaves room for N, number and checksum in Marlin's 95
-constexpr std::size_t history_lines = 256;
+constexpr double watch_every_s = 0.02;
+constexpr double echo_timeout_s = 4;  // the echo of a fence; `busy` comes every 2 s before it
 constexpr std::size_t longest_answer = 4096;
 
 bool begins(std::string_view text, std::string_view with) {
@@ -37,11 +38,13 @@ std::optional<long> whole_number(std::string_view text) {
     return value;
 }
 
+/// A line with a line end at both ends. If the one between two lines were lost or damaged, they would become one, and
+/// one in 256 of such passes the checksum; empty lines do nothing.
 std::string framed(long number, std::string_view command) {
-    std::string line = fmt::format("N{} {}", number, command);
+    const std::string line = fmt::format("N{} {}", number, command);
     int sum = 0;
     for (const char c : line) sum ^= static_cast<unsigned char>(c);
-    return fmt::format("{}*{}\n", line, sum);
+    return fmt::format("\n{}*{}\n", line, sum);
 }
 
 bool is_restart(std::string_view line) {
@@ -54,28 +57,78 @@ bool is_restart(std::string_view line) {
 
 }  // namespace
 
-Link::Link(Wire& wire, Clock& clock, LinkOptions options) : wire_(wire), clock_(clock), options_(options) {}
+bool Firmware::can(const std::string& capability) const {
+    const auto found = capabilities.find(capability);
+    return found != capabilities.end() && found->second;
+}
+
+Link::Link(Wire& wire, Clock& clock, LinkOptions options)
+    : wire_(wire), clock_(clock), options_(options), window_lines_(options.window_lines) {}
 
 // --- what the caller asks for --------------------------------------------------------------------------------------
 
-Status Link::connect() {
+Status Link::wait_for_boot() {
     const double boot_end = clock_.now() + options_.boot_s;
-    while (!started_ && clock_.now() < boot_end) {
+    while (!started_ && !no_start_ && clock_.now() < boot_end) {
         if (const auto heard = hear(boot_end - clock_.now()); !heard) return tl::unexpected(heard.error());
     }
+    return {};
+}
+
+Status Link::put(std::string_view bytes) {
+    Status status = wire_.write(bytes);
+    wire_failed_ = wire_failed_ || !status;
+    return status;
+}
+
+Status Link::wait_until_quiet() {
+    const double end = clock_.now() + options_.answer_timeout_s;
+    while (clock_.now() < end) {
+        const auto heard = hear(options_.quiet_s);
+        if (!heard) return tl::unexpected(heard.error());
+        if (!*heard) break;
+    }
+    return {};
+}
+
+Result<long> Link::last_line() {
+    if (Status status = wait_for_boot(); !status) return tl::unexpected(status.error());
     for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
-        for (bool more = true; more;) {
-            const auto heard = hear(options_.quiet_s);
+        if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
+        wanted_.reset();
+        // Number 0 follows no line: it is refused, and the refusal names the last one.
+        if (Status status = put(framed(0, "M400")); !status) return tl::unexpected(status.error());
+        double end = clock_.now() + options_.boot_s;
+        while (!wanted_ && clock_.now() < end) {
+            const auto heard = hear(end - clock_.now());
             if (!heard) return tl::unexpected(heard.error());
-            more = *heard;
+            if (*heard) end = clock_.now() + options_.boot_s;  // a busy one answers when it has a place for the line
         }
-        outstanding_.assign(1, 0);
+        if (!wanted_) continue;
+        const long last = *wanted_ - 1;
+        wanted_.reset();
+        ignore_ok_ = false;
+        return last;
+    }
+    return failure("the printer does not answer; is this its port and its baud rate?");
+}
+
+Status Link::connect(long base) {
+    if (Status status = wait_for_boot(); !status) return status;
+    base_ = base;
+    next_number_ = next_to_send_ = base + 1;
+    for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
+        if (Status status = wait_until_quiet(); !status) return status;
+        drop_outstanding([](long) { return true; });
+        outstanding_.push_back({base, 0});
         ignore_ok_ = false;
         wanted_.reset();
-        if (Status status = wire_.write(framed(0, "M110 N0")); !status) return status;
-        const double end = clock_.now() + options_.boot_s;
+        if (Status status = put(framed(base, fmt::format("M110 N{}", base))); !status) return status;
+        double end = clock_.now() + options_.boot_s;
         while (!outstanding_.empty() && !wanted_ && clock_.now() < end) {
-            if (const auto heard = hear(end - clock_.now()); !heard) return tl::unexpected(heard.error());
+            const auto heard = hear(end - clock_.now());
+            if (!heard) return tl::unexpected(heard.error());
+            if (*heard) end = clock_.now() + options_.boot_s;
         }
         connected_ = outstanding_.empty() && !wanted_;
         if (connected_) return {};
@@ -83,14 +136,43 @@ Status Link::connect() {
     return failure("the printer does not answer; is this its port and its baud rate?");
 }
 
+Result<Firmware> Link::introduce() {
+    firmware_ = {};
+    tolerant_ = true;
+    Status status = send("M115");
+    if (status) status = fence();
+    tolerant_ = false;
+    if (!status) return tl::unexpected(status.error());
+    return firmware_;
+}
+
 Status Link::send(std::string_view command) {
     if (command.empty() || command.size() > longest_command || contains(command, "\n") || contains(command, ";")) {
         return input_error("\"{}\" cannot be sent: a command has 1 to {} characters and no comment", command,
                            longest_command);
     }
-    history_.push_back({next_number_, framed(next_number_, command)});
+    history_.push_back(framed(next_number_, command));
     ++next_number_;
     return run_until([this] { return next_to_send_ == next_number_; });
+}
+
+Status Link::send_if_known(std::string_view command) {
+    tolerant_ = true;
+    Status status = send(command);
+    if (status) status = fence();
+    tolerant_ = false;
+    return status;
+}
+
+Result<std::vector<std::string>> Link::ask(std::string_view command) {
+    if (Status status = fence(); !status) return tl::unexpected(status.error());
+    std::vector<std::string> answers;
+    answers_ = &answers;
+    Status status = send(command);
+    if (status) status = fence();
+    answers_ = nullptr;
+    if (!status) return tl::unexpected(status.error());
+    return answers;
 }
 
 Status Link::fence() {
@@ -103,16 +185,35 @@ Status Link::fence() {
         if (Status status = run_until([this] { return fence_seen_ || silent_; }); !status) return status;
         if (!fence_seen_) continue;
         // Everything before the token has been executed, whatever became of its ok.
-        while (outstanding_.size() > 1) outstanding_.pop_front();
+        const long token_line = next_number_ - 1;
+        drop_outstanding([&](long number) { return number < token_line; });
         return {};
     }
     return failure("the printer answers, but never the echo that ends a move");
 }
 
+Status Link::listen_for(double seconds) {
+    const double end = clock_.now() + seconds;
+    do {
+        const auto heard = hear(std::max(0.0, end - clock_.now()));
+        if (!heard) return tl::unexpected(heard.error());
+        if (wanted_ && next_number_ > base_ + 1) {
+            if (Status status = resynchronise(); !status) return status;
+            if (Status status = transmit(); !status) return status;
+        }
+    } while (clock_.now() < end);
+    return {};
+}
+
+void Link::urgent(std::string_view command) {
+    (void)wire_.write(fmt::format("\n{}\n", command));
+}
+
 void Link::stop(const std::deque<std::string>& commands) {
     // Errors do not matter any more: everything possible is tried.
     connected_ = false;
-    (void)wire_.write("\nM410\n");
+    watch_ = nullptr;
+    urgent("M410");
     for (int i = 0; i < 50; ++i) {
         const auto heard = hear(options_.quiet_s);
         if (!heard || !*heard) break;
@@ -122,34 +223,32 @@ void Link::stop(const std::deque<std::string>& commands) {
 
 // --- sending -------------------------------------------------------------------------------------------------------
 
-const Link::Line& Link::line_to_send() const {
-    return history_[static_cast<std::size_t>(next_to_send_ - history_.front().number)];
+const std::string& Link::line_bytes(long number) const {
+    return history_[static_cast<std::size_t>(number - base_ - 1)];
 }
 
-bool Link::window_takes(const Line& line) const {
+bool Link::window_takes(const std::string& line) const {
     if (outstanding_.empty()) return true;
-    if (static_cast<int>(outstanding_.size()) >= options_.window_lines) return false;
-    std::size_t bytes = line.bytes.size();
-    for (const Line& old : history_) {
-        if (std::find(outstanding_.begin(), outstanding_.end(), old.number) != outstanding_.end()) {
-            bytes += old.bytes.size();
-        }
-    }
-    return bytes <= static_cast<std::size_t>(options_.window_bytes);
+    if (static_cast<int>(outstanding_.size()) >= window_lines_) return false;
+    return outstanding_bytes_ + line.size() <= static_cast<std::size_t>(options_.window_bytes);
 }
 
 Status Link::transmit() {
-    while (next_to_send_ < next_number_ && window_takes(line_to_send())) {
-        if (Status status = wire_.write(line_to_send().bytes); !status) return status;
-        outstanding_.push_back(next_to_send_);
+    while (next_to_send_ < next_number_ && window_takes(line_bytes(next_to_send_))) {
+        const std::string& line = line_bytes(next_to_send_);
+        if (Status status = put(line); !status) return status;
+        last_write_s_ = clock_.now();
+        outstanding_.push_back({next_to_send_, line.size()});
+        outstanding_bytes_ += line.size();
         ++next_to_send_;
     }
-    forget_old_lines();
     return {};
 }
 
-void Link::forget_old_lines() {
-    while (history_.size() > history_lines && history_.front().number < next_to_send_) history_.pop_front();
+void Link::drop_outstanding(const std::function<bool(long number)>& which) {
+    std::erase_if(outstanding_, [&](const Sent& sent) { return which(sent.number); });
+    outstanding_bytes_ = 0;
+    for (const Sent& sent : outstanding_) outstanding_bytes_ += sent.bytes;
 }
 
 Status Link::run_until(const std::function<bool()>& done) {
@@ -164,15 +263,27 @@ Status Link::run_until(const std::function<bool()>& done) {
 
 /// Handles the next answers; a long silence means that one was lost.
 Status Link::listen() {
-    const auto heard = hear(options_.answer_timeout_s);
+    const auto heard = hear(outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s);
     if (!heard) return tl::unexpected(heard.error());
     if (!*heard) return give_up_waiting();
     return wanted_ ? resynchronise() : Status{};
 }
 
-/// Reads once and handles every complete line; false if nothing came in time.
+/// Reads once and handles every complete line; false if nothing came in time. The watch is asked meanwhile.
 Result<bool> Link::hear(double timeout_s) {
+    if (!watch_) return hear_once(timeout_s);
+    const double end = clock_.now() + timeout_s;
+    for (;;) {
+        if (Status status = watch_(); !status) return tl::unexpected(status.error());
+        const auto heard = hear_once(std::clamp(end - clock_.now(), 0.0, watch_every_s));
+        if (!heard || *heard) return heard;
+        if (clock_.now() >= end) return false;
+    }
+}
+
+Result<bool> Link::hear_once(double timeout_s) {
     const auto bytes = wire_.read(timeout_s);
+    wire_failed_ = wire_failed_ || !bytes;
     if (!bytes) return tl::unexpected(bytes.error());
     if (bytes->empty()) return false;
     heard_ += *bytes;
@@ -186,25 +297,74 @@ Result<bool> Link::hear(double timeout_s) {
 }
 
 Status Link::handle(std::string_view line) {
-    if (is_restart(line)) {
-        started_ = true;
-        if (!connected_) return {};
-        was_reset_ = true;
-        return failure("the printer restarted in the middle of the print: its position is lost");
-    }
-    if (line == "ok" || begins(line, "ok ")) {
+    if (line.empty()) return {};
+    const bool plain_ok = line == "ok" || begins(line, "ok ");
+    if (listener_ && !plain_ok) listener_(line);
+    if (is_restart(line)) return handle_restart();
+    if (plain_ok) {
         handle_ok(line);
     } else if (begins(line, "Resend:")) {
         if (const auto number = whole_number(line.substr(7))) wanted_ = *number;
         ignore_ok_ = true;
     } else if (begins(line, "Error:")) {
         return handle_error(line);
-    } else if (connected_ && begins(line, "echo:Unknown command:")) {
-        return failure("the printer does not know a command of the job: {}", trim(line.substr(21)));
+    } else if (begins(line, "echo:Unknown command:")) {
+        return handle_unknown(line);
+    } else if (line == "wait") {
+        handle_wait();
     } else if (!awaited_.empty() && line == awaited_) {
         fence_seen_ = true;
+    } else {
+        handle_firmware(line);
+        if (answers_ != nullptr && !begins(line, "echo:")) answers_->emplace_back(line);
     }
     return {};
+}
+
+Status Link::handle_restart() {
+    started_ = true;
+    if (!connected_) return {};
+    was_reset_ = true;
+    connected_ = false;
+    return failure("the printer restarted in the middle of the print: its position is lost");
+}
+
+void Link::handle_firmware(std::string_view line) {
+    if (begins(line, "FIRMWARE_NAME:")) {
+        std::string_view name = line.substr(14);
+        for (const char* key : {" SOURCE_CODE_URL:", " PROTOCOL_VERSION:"}) name = name.substr(0, name.find(key));
+        firmware_.name = trim(name);
+    }
+    if (!begins(line, "Cap:")) return;
+    const std::string_view rest = line.substr(4);
+    const std::size_t colon = rest.find(':');
+    if (colon == std::string_view::npos || rest.size() != colon + 2) return;
+    firmware_.capabilities[std::string(rest.substr(0, colon))] = rest[colon + 1] == '1';
+}
+
+/// The quoted text is a command of ours: the firmware cannot do it. Anything else is what noise has made of a line, and
+/// that line will be asked for again.
+Status Link::handle_unknown(std::string_view line) {
+    if (!connected_ || tolerant_) return {};
+    const std::string_view text = trim(line.substr(21));
+    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+    const std::string_view command = quoted ? text.substr(1, text.size() - 2) : text;
+    if (!has_been_sent(command)) return {};
+    return failure("the printer does not know a command of the job: {}", text);
+}
+
+/// Whether a recent line carried it; a firmware may quote only the command's word.
+bool Link::has_been_sent(std::string_view command) const {
+    constexpr std::size_t recent = 64;
+    if (command.empty()) return false;
+    const std::size_t begin = history_.size() - std::min(history_.size(), recent);
+    for (std::size_t i = begin; i < history_.size(); ++i) {
+        const std::string_view line = history_[i];
+        std::string_view sent = line.substr(line.find(' ') + 1);
+        sent = sent.substr(0, sent.rfind('*'));
+        if (sent == command || sent.substr(0, sent.find(' ')) == command) return true;
+    }
+    return false;
 }
 
 /// A damaged line is asked for again; anything else that the firmware calls an error ends the print.
@@ -224,35 +384,52 @@ void Link::handle_ok(std::string_view line) {
     if (std::exchange(ignore_ok_, false)) return;
     silences_ = 0;
     probing_ = false;
+    adapt_window(line);
     if (begins(line, "ok N")) {
         const std::string_view rest = line.substr(4);
         if (const auto number = whole_number(rest.substr(0, rest.find(' ')))) {
-            while (!outstanding_.empty() && outstanding_.front() <= *number) outstanding_.pop_front();
+            while (!outstanding_.empty() && outstanding_.front().number <= *number) {
+                outstanding_bytes_ -= outstanding_.front().bytes;
+                outstanding_.pop_front();
+            }
             return;
         }
     }
-    if (!outstanding_.empty()) outstanding_.pop_front();
+    if (outstanding_.empty()) return;
+    outstanding_bytes_ -= outstanding_.front().bytes;
+    outstanding_.pop_front();
+}
+
+/// ADVANCED_OK: `B` is how many places are free. One that was free while nothing else was under way is all there are.
+void Link::adapt_window(std::string_view answer) {
+    const std::size_t at = answer.rfind(" B");
+    if (at == std::string_view::npos || outstanding_.size() > 1) return;
+    const auto places = whole_number(answer.substr(at + 2));
+    if (!places || *places > 64) return;
+    window_lines_ = std::clamp(static_cast<int>(*places), 1, options_.window_lines);
+}
+
+/// An idle firmware that waits has answered everything: what is still outstanding will not come.
+void Link::handle_wait() {
+    constexpr double under_way_s = 0.5;
+    if (connected_ && !outstanding_.empty() && !wanted_ && clock_.now() - last_write_s_ > under_way_s)
+        (void)give_up_waiting();
 }
 
 // --- recovering ----------------------------------------------------------------------------------------------------
 
 /// Lines in flight behind a bad one are refused one by one; only when the wire is quiet is the state known.
 Status Link::resynchronise() {
-    const double end = clock_.now() + options_.answer_timeout_s;
-    while (clock_.now() < end) {
-        const auto heard = hear(options_.quiet_s);
-        if (!heard) return tl::unexpected(heard.error());
-        if (!*heard) break;
-    }
+    if (Status status = wait_until_quiet(); !status) return status;
     ignore_ok_ = false;
     const long number = *std::exchange(wanted_, std::nullopt);
     return go_back_to(number);
 }
 
 Status Link::go_back_to(long number) {
-    const long oldest = history_.empty() ? next_number_ : history_.front().number;
-    if (number > next_number_ || number < oldest) {
-        return failure("the printer asks for line {}, lines {} to {} are at hand", number, oldest, next_number_ - 1);
+    if (number == 1 && base_ > 0) return handle_restart();  // its `start` was not heard
+    if (number > next_number_ || number <= base_) {
+        return failure("the printer asks for line {}, lines {} to {} are at hand", number, base_ + 1, next_number_ - 1);
     }
     repeats_ = number == repeated_ ? repeats_ + 1 : 0;
     repeated_ = number;
@@ -263,7 +440,7 @@ Status Link::go_back_to(long number) {
     next_to_send_ = number;
     // Lines before it have arrived and owe their ok still, unless a long silence has told that their oks are lost.
     const bool lost = std::exchange(probing_, false);
-    std::erase_if(outstanding_, [&](long n) { return lost || n >= number; });
+    drop_outstanding([&](long n) { return lost || n >= number; });
     return {};
 }
 
@@ -274,8 +451,8 @@ Status Link::give_up_waiting() {
         silent_ = true;
         return {};
     }
-    const long oldest = outstanding_.front();
-    outstanding_.clear();
+    const long oldest = outstanding_.front().number;
+    drop_outstanding([](long) { return true; });
     if (Status status = go_back_to(oldest); !status) return status;
     probing_ = true;
     return {};

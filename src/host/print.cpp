@@ -3,47 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <variant>
 
+#include "host/script.hpp"
 #include "machine/gcode.hpp"
 
 namespace pliant::host {
 namespace {
 
 constexpr double cancel_check_s = 0.1;
-
-struct Script {
-    std::vector<std::variant<std::string, machine::Expose>> steps;
-    std::deque<std::string> stop_commands;
-};
-
-Status read_directive(std::string_view line, Script& script) {
-    auto directive = machine::parse_directive(line);
-    if (!directive) return tl::unexpected(directive.error());
-    if (directive->expose) script.steps.emplace_back(*directive->expose);
-    if (directive->stop_command) script.stop_commands.push_back(*directive->stop_command);
-    return {};
-}
-
-Status read_command(std::string_view line, Script& script) {
-    if (line.empty()) return {};
-    if (const auto command = machine::parse_command(line); !command) return tl::unexpected(command.error());
-    script.steps.emplace_back(std::string(line));
-    return {};
-}
-
-Result<Script> read_script(std::string_view gcode) {
-    Script script;
-    for (int number = 1; !gcode.empty(); ++number) {
-        const std::string_view line = gcode.substr(0, gcode.find('\n'));
-        gcode.remove_prefix(std::min(gcode.size(), line.size() + 1));
-        const Status status = machine::is_directive(line) ? read_directive(line, script)
-                                                          : read_command(machine::strip_comment(line), script);
-        if (!status) return input_error("G-code line {}: {}", number, status.error().message);
-    }
-    return script;
-}
 
 /// One print from the first line to the last; the destructor leaves the projector black.
 class Run {

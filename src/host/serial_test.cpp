@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+
 using namespace pliant;
 using namespace pliant::host;
 
@@ -52,4 +55,36 @@ TEST_CASE("a device that is not there, is no terminal, or goes away is an error"
     REQUIRE(wire);
     pty.close_it();
     CHECK_FALSE(wire->read(1));
+}
+
+TEST_CASE("two hosts on one port are refused, and the next may have it") {
+    Pty pty;
+    {
+        auto wire = SerialWire::open(pty.name, 115200);
+        REQUIRE(wire);
+        const auto second = SerialWire::open(pty.name, 115200);
+        REQUIRE_FALSE(second);
+        CHECK(second.error().message == pty.name + ": another host has it open");
+        const SerialWire moved = std::move(*wire);
+        CHECK_FALSE(SerialWire::open(pty.name, 115200));
+    }
+    CHECK(SerialWire::open(pty.name, 115200));
+}
+
+TEST_CASE("ports are listed by the boards behind them") {
+    std::string pattern = (std::filesystem::temp_directory_path() / "pliant_ports_XXXXXX").string();
+    const std::filesystem::path folder = ::mkdtemp(pattern.data());
+    std::filesystem::create_directories(folder / "usb" / "1-1" / "1-1:1.0");
+    std::ofstream(folder / "usb" / "1-1" / "product") << "Arduino Mega 2560\n";
+    std::filesystem::create_directories(folder / "tty" / "ttyACM0");
+    std::filesystem::create_directory_symlink(folder / "usb" / "1-1" / "1-1:1.0",
+                                              folder / "tty" / "ttyACM0" / "device");
+    std::filesystem::create_directories(folder / "tty" / "tty1");              // a console: no device
+    std::filesystem::create_directories(folder / "tty" / "ttyS0" / "device");  // a port that is not there
+    std::ofstream(folder / "tty" / "ttyS0" / "type") << "0\n";
+    const auto ports = serial_ports((folder / "tty").string());
+    REQUIRE(ports.size() == 1);
+    CHECK(ports[0].device == "/dev/ttyACM0");
+    CHECK(ports[0].name == "Arduino Mega 2560");
+    std::filesystem::remove_all(folder);
 }

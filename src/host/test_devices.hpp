@@ -31,6 +31,7 @@ public:
                 line_ += c;
                 continue;
             }
+            if (line_.empty()) continue;  // a firmware gives no answer to an empty line
             written.push_back(line_);
             pending_ += answer_(line_);
             line_.clear();

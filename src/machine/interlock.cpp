@@ -18,6 +18,25 @@ Interlock::Interlock(const Printer& printer, const Position& start)
     }
 }
 
+Interlock::State Interlock::state() const {
+    return {position_, homed_, slots_, hooked_vat_, part_height_um_, pump_};
+}
+
+Result<Interlock> Interlock::restored(const Printer& printer, const State& state) {
+    Interlock lock(printer, state.position);
+    const int vats = static_cast<int>(printer.vats.size());
+    const auto known = [&](const std::optional<int>& vat) { return !vat || (*vat >= 0 && *vat < vats); };
+    const bool fits = state.slots.size() == lock.slots_.size() && known(state.hooked_vat) &&
+                      std::all_of(state.slots.begin(), state.slots.end(), known);
+    if (!fits) return input_error("slots or vats that {} does not have", printer.name);
+    lock.homed_ = state.homed;
+    lock.slots_ = state.slots;
+    lock.hooked_vat_ = state.hooked_vat;
+    lock.part_height_um_ = state.part_height_um;
+    lock.pump_ = state.pump;
+    return lock;
+}
+
 bool Interlock::in_print_window(int carriage_um) const {
     const Carriage& c = printer_->carriage;
     return carriage_um >= c.print_um && carriage_um <= c.print_um + c.shear_um;
@@ -84,11 +103,12 @@ Status Interlock::home(Axis axis) {
         return failure("homing the {} before the platform is homed and clear of the vat", axis_name(axis));
     }
     const bool stores = axis == Axis::tower || (axis == Axis::table && printer_->store() == Store::tower);
-    if (stores && (!homed(Axis::carriage) || !tower_free(position_))) {
+    if (stores && (!homed(Axis::carriage) || !(tower_free(position_) || vat_out_of_tower()))) {
         return failure("homing the {} before the carriage stands back without a vat", axis_name(axis));
     }
-    if (axis == Axis::carriage && hooked_vat_ && !in_print_window(position_[Axis::carriage])) {
-        return failure("homing the carriage with a vat in the tower");
+    const bool held = hooked_vat_ && !in_print_window(position_[Axis::carriage]) && !level_slot(position_);
+    if (axis == Axis::carriage && held) {
+        return failure("homing the carriage with a vat in the tower, which does not stand level");
     }
     position_[axis] = printer_->axis(axis).home_um();
     homed_[static_cast<std::size_t>(axis)] = true;
@@ -147,9 +167,25 @@ bool Interlock::tower_free(const Position& to) const {
     return !hooked_vat_ && nearest <= printer_->carriage.tower_um - printer_->carriage.back_off_um;
 }
 
+/// The vat in use lies under the platform.
+bool Interlock::vat_out_of_tower() const {
+    return hooked_vat_ && in_print_window(position_[Axis::carriage]);
+}
+
+/// The tower comes level with an empty slot for the vat that lies under the platform.
+bool Interlock::takes_vat_back(const Position& to) const {
+    const auto slot = level_slot(to);
+    return vat_out_of_tower() && in_print_window(to[Axis::carriage]) && slot && !vat_in_slot(*slot);
+}
+
+bool Interlock::in_hooks_stroke() const {
+    return printer_->store() == Store::tower && position_[Axis::carriage] == printer_->carriage.tower_um &&
+           slot_in_hook_stroke(position_).has_value();
+}
+
 Status Interlock::check_tower(const Position& to) const {
     if (position_[Axis::tower] == to[Axis::tower]) return {};
-    if (tower_free(to)) return {};
+    if (tower_free(to) || takes_vat_back(to)) return {};
     const bool at_tower = to[Axis::carriage] == printer_->carriage.tower_um &&
                           position_[Axis::carriage] == printer_->carriage.tower_um &&
                           to[Axis::table] == position_[Axis::table];
@@ -161,6 +197,8 @@ Status Interlock::check_tower(const Position& to) const {
 
 Status Interlock::check_table(const Position& to) const {
     if (position_[Axis::table] == to[Axis::table] || printer_->store() != Store::tower || tower_free(to)) return {};
+    // On the way back to the tower that a vat came from; which slot it will be, the tower's move says.
+    if (vat_out_of_tower() && in_print_window(to[Axis::carriage])) return {};
     return failure("the table moves while {}",
                    hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands at a tower");
 }

@@ -4,7 +4,10 @@
 //   - move or light anything before the axis is homed; move beyond an axis' travel
 //   - move the carriage while the platform or the part hangs in the vat (but for the shear stroke)
 //   - lower the platform into anything but the vat under it, or press the part on the vat's floor
-//   - move the tower while a vat is hooked or half in (but for the stroke of the hooks, carriage at the tower)
+//   - move the tower while a vat is hooked or half in (but for the stroke of the hooks, carriage at the tower; and
+//   while
+//     the vat lies under the platform, out of the tower, to home it and to bring it level with an empty slot again: so
+//     a print goes on after the controller has lost its position)
 //   - enter or leave the tower unless a slot stands level (with a vat) or the hooks are clear (without)
 //   - push a vat into a slot that is taken
 //   - turn or shift the table unless the platform is clear of everything on it, and no vat is hooked or half in a tower
@@ -29,6 +32,19 @@ public:
     /// Nothing homed, every vat in its slot, no part on the platform, axes at `start`.
     explicit Interlock(const Printer& printer, const Position& start = {});
 
+    /// All that it knows, to be kept and restored; positions of axes that are not homed mean nothing.
+    struct State {
+        Position position;
+        std::array<bool, axis_count> homed{};
+        std::vector<std::optional<int>> slots;  ///< the vat in each slot, by index
+        std::optional<int> hooked_vat;
+        int part_height_um = 0;
+        bool pump = false;
+    };
+    [[nodiscard]] State state() const;
+    /// Errors: numbers of slots or vats that the printer does not have.
+    [[nodiscard]] static Result<Interlock> restored(const Printer& printer, const State& state);
+
     /// Each checks one command and carries it out on this state; a refused command changes nothing.
     [[nodiscard]] Status home(Axis axis);
     [[nodiscard]] Status move(const Position& to);
@@ -50,6 +66,9 @@ public:
     /// Vat that has been pushed into a slot and let go, by index; nullopt for an empty slot (from 1).
     [[nodiscard]] std::optional<int> vat_in_slot(int slot) const { return slots_[static_cast<std::size_t>(slot - 1)]; }
     [[nodiscard]] int part_height_um() const { return part_height_um_; }
+    /// Whether the carriage stands at the tower with the tower within the stroke of the hooks: a vat is being taken or
+    /// left.
+    [[nodiscard]] bool in_hooks_stroke() const;
 
 private:
     [[nodiscard]] Status check_travel(const Position& to) const;
@@ -61,6 +80,8 @@ private:
     [[nodiscard]] Status check_table(const Position& to) const;
     [[nodiscard]] Status check_pump(const Position& to) const;
     [[nodiscard]] bool tower_free(const Position& to) const;
+    [[nodiscard]] bool vat_out_of_tower() const;
+    [[nodiscard]] bool takes_vat_back(const Position& to) const;
     [[nodiscard]] std::optional<int> vat_at_station(int table_um) const;
     [[nodiscard]] std::optional<int> slot_in_hook_stroke(const Position& at) const;
     [[nodiscard]] std::optional<int> level_slot(const Position& at) const;

@@ -159,3 +159,51 @@ TEST_CASE("after an emergency stop the axes must be homed again") {
     CHECK(b.refused(Axis::carriage, 0, "before"));
     CHECK(b.lock.position()[Axis::platform] == 300000);
 }
+
+TEST_CASE(
+    "after a restart a vat under the platform or half-way is not lost: it is pulled out, and the tower comes back") {
+    Bench b;
+    b.home();
+    b.load();
+    b.must(Axis::carriage, 100000);  // half-way back into the tower, which stands level
+    b.lock.stopped_at({{90000, 200000, 30000}});
+    REQUIRE(b.lock.home(Axis::platform));
+    REQUIRE(b.lock.home(Axis::carriage));
+    CHECK(b.lock.hooked_vat() == 0);
+    REQUIRE(b.lock.home(Axis::tower));
+    CHECK(b.refused(Axis::tower, 40000, "a vat is hooked"));   // no slot is level there
+    CHECK(b.refused(Axis::tower, 233200, "a vat is hooked"));  // slot 2 is taken
+    b.must(Axis::tower, 30000);
+    b.must(Axis::carriage, 355600);
+}
+
+TEST_CASE("homing does not tear a vat that hangs half on its hooks") {
+    Bench b;
+    b.home();
+    b.load();
+    b.must(Axis::carriage, 355600);
+    b.lock.stopped_at({{355600, 200000, 20000}});
+    CHECK(b.lock.in_hooks_stroke());
+    REQUIRE(b.lock.home(Axis::platform));
+    CHECK_FALSE(b.lock.home(Axis::carriage));
+    CHECK_FALSE(b.lock.home(Axis::tower));
+}
+
+TEST_CASE("a state is kept and restored") {
+    Bench b;
+    b.home();
+    b.load();
+    const Interlock::State state = b.lock.state();
+    const Interlock again = Interlock::restored(b.printer, state).value();
+    CHECK(again.hooked_vat() == 0);
+    CHECK_FALSE(again.vat_in_slot(1));
+    CHECK(again.vat_in_slot(2) == 1);
+    CHECK(again.homed(Axis::tower));
+    CHECK(again.position() == b.lock.position());
+    Interlock::State wrong = state;
+    wrong.hooked_vat = 9;
+    CHECK_FALSE(Interlock::restored(b.printer, wrong));
+    wrong = state;
+    wrong.slots.pop_back();
+    CHECK_FALSE(Interlock::restored(b.printer, wrong));
+}

@@ -131,6 +131,8 @@ private:
         }
         if (ml > supply.left_ml) {
             refills_[s].push_back(layer);
+            const int slot = vat_at(printer_, supply.vats[supply.in_use]).slot;
+            assignment_.refills.push_back({layer, slot, supply.resin});
             supply.left_ml = std::max(ml, usable_ml(printer_, supply.vats[supply.in_use]));
         }
         supply.left_ml -= ml;

@@ -15,6 +15,7 @@ struct Assignment {
     std::vector<VatUse> vats;
     std::vector<int> vat_of_material;            ///< the first one; -1 for a material without images
     std::vector<std::vector<int>> vat_of_image;  ///< for each layer, in the order of its images
+    std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;
 };
 

@@ -182,6 +182,7 @@ Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRu
     plan.layers = static_cast<int>(job.layers.size());
     plan.vats = std::move(assignment->vats);
     plan.vat_of_material = std::move(assignment->vat_of_material);
+    plan.refills = std::move(assignment->refills);
     plan.warnings = std::move(assignment->warnings);
     plan.vat_of_image = std::move(assignment->vat_of_image);
     choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);

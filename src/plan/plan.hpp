@@ -25,6 +25,13 @@ struct VatUse {
     double waste_ml = 0;  ///< resin that clings to the part when this vat leaves it, and is washed off
 };
 
+/// A vat that is empty before a layer.
+struct RefillBefore {
+    int layer = 0;
+    int slot = 0;
+    std::string resin;
+};
+
 /// One way to order the vats, for comparison: all changes of vat, the first loading and the last storing included.
 struct OrderCost {
     OrderRule rule = OrderRule::naive;
@@ -49,6 +56,7 @@ struct Plan {
     std::vector<Seconds> layer_seconds;          ///< of each layer, with the changes of vat before and within it
     double waste_ml = 0;                         ///< resin washed off
     double solvent_ml = 0;                       ///< cleaning solution used
+    std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;
 };
 

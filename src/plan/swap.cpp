@@ -210,6 +210,31 @@ void store_vat(Sequence& s, int slot) {
     }
 }
 
+void clean_part(Sequence& s, double seconds) {
+    const Printer& p = s.printer();
+    if (p.store() == Store::table) {
+        const int table_um = s.position()[Axis::table];
+        clean_on_table(s, seconds);
+        dry_while(s, [&] { s.move(Axis::table, table_um); });
+    }
+    if (p.store() != Store::tower) return;
+    s.activity(Activity::swap);
+    s.comment("clean the part over the drain");
+    s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
+    s.switch_to(p.pump.on);
+    s.activity(Activity::clean);
+    oscillate(s, s.position()[Axis::tower], seconds);
+    pump_off(s);
+    dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
+}
+
+void meet_vat(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    if (p.store() != Store::tower) return;
+    if (!p.table.stations_um.empty()) table_to(s, p.station_um(slot));
+    s.move(Axis::tower, p.level_um(slot));
+}
+
 Sequence standing_at(const machine::Printer& printer, int slot) {
     Sequence s(printer);
     s.mute();

@@ -29,6 +29,13 @@ void swap_vat(Sequence& sequence, int from_slot, int to_slot);
 /// Puts the vat of `slot` away, cleans and dries the part; the carriage comes back empty.
 void store_vat(Sequence& sequence, int slot);
 
+/// Cleans and dries the part for `seconds` with no vat at the carriage (of a table: at the cleaning station), which is
+/// back at the print position afterwards. Nothing on a machine with a single vat.
+void clean_part(Sequence& sequence, double seconds);
+
+/// The vat of `slot` lies under the platform and the tower stands anywhere: brings the tower level with the slot.
+void meet_vat(Sequence& sequence, int slot);
+
 /// A muted sequence that stands with the vat of `slot` under a platform that is clear of it.
 [[nodiscard]] Sequence standing_at(const machine::Printer& printer, int slot);
 

@@ -28,6 +28,14 @@ double dwell_seconds(const Command& c) {
 
 }  // namespace
 
+std::uint64_t path_after(std::uint64_t path, const machine::Position& to) {
+    for (const int um : to.um) {
+        for (int shift = 0; shift < 32; shift += 8)
+            path = (path ^ (static_cast<std::uint32_t>(um) >> shift & 255U)) * 1099511628211ULL;
+    }
+    return path;
+}
+
 std::vector<Axis> Twin::axes_to_home(const Command& command) const {
     std::vector<Axis> axes;
     for (const machine::Word& word : command.words) {
@@ -92,6 +100,8 @@ void Twin::execute_move(const Command& c) {
     if (target == from) return;
     const std::optional<int> vat = interlock().hooked_vat();
     if (Status status = motors_.move(now_s_, target, feed_mm_s_); !status) return violation(status.error().message);
+    ++log_.moves;
+    log_.path = path_after(log_.path, target);
     miss_steps(from, target);
     note_vat(vat);
 }

@@ -11,26 +11,7 @@ namespace {
 constexpr std::size_t most_faults = 1000;
 constexpr double rounding_um = 0.01;
 
-/// Light of an irradiance that the printer file leaves open: all that matters is its share of the exposure.
-double irradiance(const machine::Printer& printer) {
-    return printer.projector.irradiance_W_m2 > 0 ? printer.projector.irradiance_W_m2 : 1;
-}
-
 }  // namespace
-
-double WorkingCurve::depth_um(double dose_J_m2) const {
-    return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
-}
-
-WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin) {
-    if (resin.penetration_um > 0) return {resin.penetration_um, resin.critical_J_m2};
-    const double dose = irradiance(printer) * resin.exposure_s;
-    const double depth = resin.cure_depth_um;
-    const double layer = std::min<double>(printer.layer_um, depth / 2);
-    const double share = resin.critical_share;
-    const double penetration = share < 1 ? (depth - layer) / std::log(1 / share) : depth;
-    return {penetration, dose * std::exp(-depth / penetration)};
-}
 
 Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
     for (const machine::Vat& vat : printer.vats) {
@@ -49,25 +30,20 @@ void Cure::fault(std::string text) {
     if (faults_.size() < most_faults) faults_.push_back(std::move(text));
 }
 
-/// The dose, if the exposure leaves something solid that holds on to the part; if not, why not is recorded.
-std::optional<double> Cure::cures(int vat, double seconds, int z_um, double area_mm2) {
+/// Why so much light leaves nothing solid that holds on to the part; "": it does.
+std::string Cure::why_not(int vat, double seconds, int z_um, double area_mm2) const {
     const machine::Vat& place = printer_->vats[static_cast<std::size_t>(vat)];
     const machine::Resin* resin = printer_->find_resin(place.resin);
-    const double dose = irradiance(*printer_) * seconds;
-    const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(dose);
-    if (resin == nullptr) {
-        fault(fmt::format("slot {} holds no resin", place.slot));
-    } else if (z_um <= top_um_) {
-        fault(fmt::format("no gap is left at {} um", z_um));
-    } else if (depth + rounding_um < z_um - top_um_) {
-        fault(fmt::format("{:.3f} s of light cure {:.0f} um of {}, the gap at {} um is {} um", seconds, depth,
-                          resin->name, z_um, z_um - top_um_));
-    } else if (left_ml_[static_cast<std::size_t>(vat)] < area_mm2 * (z_um - top_um_) / 1e6) {
-        fault(fmt::format("the vat of slot {} has run dry at {} um", place.slot, z_um));
-    } else {
-        return dose;
+    const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(machine::irradiance_W_m2(*printer_) * seconds);
+    if (resin == nullptr) return fmt::format("slot {} holds no resin", place.slot);
+    if (z_um <= top_um_) return fmt::format("no gap is left at {} um", z_um);
+    if (depth + rounding_um < z_um - top_um_) {
+        return fmt::format("{:.3f} s of light cure {:.0f} um of {}, the gap at {} um is {} um", seconds, depth,
+                           resin->name, z_um, z_um - top_um_);
     }
-    return std::nullopt;
+    if (left_ml_[static_cast<std::size_t>(vat)] < area_mm2 * (z_um - top_um_) / 1e6)
+        return fmt::format("the vat of slot {} has run dry at {} um", place.slot, z_um);
+    return "";
 }
 
 void Cure::open(int z_um) {
@@ -78,16 +54,44 @@ void Cure::open(int z_um) {
     section_mm2_ = 0;
 }
 
+/// What this light goes on with, if it has cured already.
+Lit* Cure::lit_before(const Runs& light, int vat, int z_um) {
+    if (!open_ || open_->top_um != z_um) return nullptr;
+    std::vector<Lit>& all = open_->lit[static_cast<std::size_t>(vat)];
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Lit& lit) { return lit.light == light; });
+    return same == all.end() ? nullptr : &*same;
+}
+
+void Cure::give_up_faint() {
+    if (faint_) fault(std::move(faint_->why));
+    faint_.reset();
+}
+
 void Cure::expose(const Runs& light, int vat, double seconds, int z_um) {
     if (open_ && open_->top_um != z_um) finish();
+    const double dose = machine::irradiance_W_m2(*printer_) * seconds;
+    if (Lit* before = lit_before(light, vat, z_um)) {
+        before->seconds += seconds;
+        ++before->pieces;
+        return shine_through(light, vat, dose);
+    }
+    Lit lit{light, seconds, 1};
+    if (faint_ && faint_->vat == vat && faint_->z_um == z_um && faint_->lit.light == light) {
+        lit.seconds += faint_->lit.seconds;
+        lit.pieces += faint_->lit.pieces;
+        faint_.reset();
+    }
+    give_up_faint();
     const double area_mm2 = static_cast<double>(light_of(light)) / 255 * pixel_mm2();
-    const auto dose = cures(vat, seconds, z_um, area_mm2);
-    if (!dose) return;
+    if (std::string why = why_not(vat, lit.seconds, z_um, area_mm2); !why.empty()) {
+        faint_ = Faint{std::move(lit), vat, z_um, std::move(why)};
+        return;
+    }
     open(z_um);
-    open_->lit[static_cast<std::size_t>(vat)].push_back(light);
     section_mm2_ += area_mm2;
     left_ml_[static_cast<std::size_t>(vat)] -= area_mm2 * open_->thickness_um / 1e6;
-    shine_through(light, vat, *dose);
+    shine_through(light, vat, machine::irradiance_W_m2(*printer_) * lit.seconds);
+    open_->lit[static_cast<std::size_t>(vat)].push_back(std::move(lit));
 }
 
 /// How far below the ceiling of a column resin has cured.
@@ -134,7 +138,9 @@ void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
 
 void Cure::count_double(const OpenLayer& layer) {
     std::vector<Runs> all;
-    for (const std::vector<Runs>& of_vat : layer.lit) all.insert(all.end(), of_vat.begin(), of_vat.end());
+    for (const std::vector<Lit>& of_vat : layer.lit) {
+        for (const Lit& lit : of_vat) all.push_back(lit.light);
+    }
     if (all.size() < 2) return;
     for (const Run& run : sum_of(all, printer_->projector.width_px)) {
         if (run.value > 255) pixels_lit_twice_ += run.end - run.begin;
@@ -142,11 +148,14 @@ void Cure::count_double(const OpenLayer& layer) {
 }
 
 void Cure::finish() {
+    give_up_faint();
     if (!open_) return;
     CuredLayer layer{open_->top_um, open_->thickness_um, {}};
     for (std::size_t vat = 0; vat < open_->lit.size(); ++vat) {
         if (open_->lit[vat].empty()) continue;
-        layer.vats.push_back({static_cast<int>(vat), sum_of(open_->lit[vat], printer_->projector.width_px)});
+        std::vector<Runs> lights;
+        for (const Lit& lit : open_->lit[vat]) lights.push_back(lit.light);
+        layer.vats.push_back({static_cast<int>(vat), sum_of(lights, printer_->projector.width_px), open_->lit[vat]});
     }
     count_double(*open_);
     top_um_ = layer.top_um;

@@ -18,25 +18,26 @@
 
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "machine/working_curve.hpp"
 #include "twin/runs.hpp"
 
 namespace pliant::twin {
 
-/// Depth over dose of one resin.
-struct WorkingCurve {
-    double penetration_um = 1;
-    double critical_J_m2 = 1;
-    [[nodiscard]] double depth_um(double dose_J_m2) const;
-};
+using machine::working_curve;
+using machine::WorkingCurve;
 
-/// The resin's own curve, or one through the two points that the printer file gives: the exposure cures `cure_depth`,
-/// and its critical share just one layer.
-[[nodiscard]] WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin);
+/// Light of one picture from one vat on one layer, given in one piece or in several: doses add up.
+struct Lit {
+    Runs light;
+    double seconds = 0;
+    int pieces = 1;
+};
 
 /// What cured from one vat on one layer.
 struct VatLayer {
     int vat = 0;  ///< index into Printer::vats
-    Runs runs;    ///< values above 255 only if lit twice
+    Runs runs;    ///< values above 255 only if different pictures lit a pixel
+    std::vector<Lit> lit;
 };
 
 struct CuredLayer {
@@ -49,7 +50,8 @@ class Cure {
 public:
     explicit Cure(const machine::Printer& printer);
 
-    /// One exposure with a vat and the platform at `z_um`; light through an image of the projector's size.
+    /// One exposure with a vat and the platform at `z_um`; light through an image of the projector's size. The same
+    /// light again on the same layer goes on with the one before: their doses add up.
     void expose(const Runs& light, int vat, double seconds, int z_um);
     void expose(const job::Image& image, int vat, double seconds, int z_um) {
         expose(runs_of(image), vat, seconds, z_um);
@@ -75,7 +77,14 @@ private:
     struct OpenLayer {
         int top_um = 0;
         int thickness_um = 0;
-        std::vector<std::vector<Runs>> lit;  ///< by vat, each exposure
+        std::vector<std::vector<Lit>> lit;  ///< by vat
+    };
+    /// Light that has cured nothing yet; more of it may.
+    struct Faint {
+        Lit lit;
+        int vat = 0;
+        int z_um = 0;
+        std::string why;
     };
     /// The lowest solid stack of a column of pixels: a ceiling for what is free beyond it.
     struct Column {
@@ -85,8 +94,10 @@ private:
         float dose_J_m2 = 0;         ///< that has arrived at `bottom_um`
         std::int16_t vat = 0;        ///< that lit the ceiling
     };
-    [[nodiscard]] std::optional<double> cures(int vat, double seconds, int z_um, double area_mm2);
+    [[nodiscard]] std::string why_not(int vat, double seconds, int z_um, double area_mm2) const;
+    [[nodiscard]] Lit* lit_before(const Runs& light, int vat, int z_um);
     void fault(std::string text);
+    void give_up_faint();
     void open(int z_um);
     void shine_through(const Runs& light, int vat, double dose_J_m2);
     void add_dose(Column& column, double dose_J_m2);
@@ -97,6 +108,7 @@ private:
     const machine::Printer* printer_;
     std::vector<WorkingCurve> curves_;  ///< by vat
     std::optional<OpenLayer> open_;
+    std::optional<Faint> faint_;
     int top_um_ = 0;  ///< of the part
     std::vector<CuredLayer> layers_;
     std::vector<Column> columns_;  ///< (height, width); empty until something is lit

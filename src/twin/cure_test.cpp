@@ -47,13 +47,36 @@ TEST_CASE("light cures the gap under the platform, in runs of equal pixels") {
 
 TEST_CASE("too short a light leaves nothing, the critical share is enough") {
     const auto printer = small();
-    Cure cure(printer);
-    cure.expose(left, 0, 1.59, 50);
-    cure.expose(left, 0, 1.6, 50);
-    cure.finish();
-    REQUIRE(cure.faults().size() == 1);
-    CHECK(cure.layers().size() == 1);
-    CHECK(cure.pixels_lit_twice() == 0);
+    for (const double seconds : {1.59, 1.6}) {
+        Cure cure(printer);
+        cure.expose(left, 0, seconds, 50);
+        cure.finish();
+        CHECK(cure.faults().size() == (seconds < 1.6 ? 1 : 0));
+        CHECK(cure.layers().size() == (seconds < 1.6 ? 0 : 1));
+    }
+}
+
+TEST_CASE("a light given in pieces adds up, whether the first piece cures or not, and takes its resin once") {
+    const auto printer = small();
+    for (const double first : {0.3, 1.7}) {
+        Cure cure(printer);
+        cure.expose(left, 0, first, 50);
+        cure.expose(left, 0, 2 - first, 50);
+        cure.finish();
+        CHECK(cure.faults().empty());
+        REQUIRE(cure.layers().size() == 1);
+        REQUIRE(cure.layers()[0].vats[0].lit.size() == 1);
+        CHECK(cure.layers()[0].vats[0].lit[0].seconds == doctest::Approx(2));
+        CHECK(cure.layers()[0].vats[0].lit[0].pieces == 2);
+        CHECK(cure.pixels_lit_twice() == 0);
+        CHECK(cure.left_ml()[0] == doctest::Approx(1 - 0.0016e-3));
+    }
+    Cure elsewhere(printer);  // another picture, vat or height does not go on with it
+    elsewhere.expose(left, 0, 0.3, 50);
+    elsewhere.expose(left, 1, 1.7, 50);
+    elsewhere.expose(left, 0, 1.5, 50);
+    elsewhere.finish();
+    CHECK(elsewhere.faults().size() == 2);
 }
 
 TEST_CASE("a second light on the same pixels is counted") {
@@ -84,8 +107,8 @@ TEST_CASE("what a vat no longer holds does not cure") {
     cure.expose(left, 0, 2, 50);
     CHECK(cure.faults().empty());
     cure.expose(left, 0, 2, 100);
-    CHECK(cure.faults().size() == 1);
     cure.finish();
+    CHECK(cure.faults().size() == 1);
     CHECK(cure.layers().size() == 1);
 }
 

@@ -7,6 +7,7 @@ namespace pliant::twin {
 namespace {
 
 constexpr double longest_wait_s = 0.02;
+constexpr double shortest_wait_s = 0.001;
 
 double wall_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -18,18 +19,22 @@ Status serve(Twin& twin, Pty& pty, const ServeOptions& options) {
     const double wall_start_s = wall_s();
     const double twin_start_s = twin.now();
     const auto twin_now = [&] { return twin_start_s + (wall_s() - wall_start_s) * options.speed; };
+    // Light that is looked at every 20 ms would be seconds off on a fast machine.
+    const double look_every_s =
+        options.lights ? std::clamp(longest_wait_s / options.speed, shortest_wait_s, longest_wait_s) : longest_wait_s;
     while (!options.stop()) {
         const auto next = twin.next_event();
-        const double until_s = next ? (*next - twin_now()) / options.speed : longest_wait_s;
-        const Result<std::string> bytes = pty.read(std::clamp(until_s, 0.001, longest_wait_s));
+        const double until_s = next ? (*next - twin_now()) / options.speed : look_every_s;
+        const Result<std::string> bytes = pty.read(std::clamp(until_s, shortest_wait_s, look_every_s));
         if (!bytes) return tl::unexpected(bytes.error());
         twin.advance_to(std::max(twin.now(), twin_now()));
+        // A host makes dark before it sends the next move: so the light comes first here too.
+        if (options.lights) {
+            if (Status status = options.lights(twin); !status) return status;
+        }
         if (!bytes->empty()) {
             if (options.log) options.log(*bytes, true);
             twin.receive(*bytes);
-        }
-        if (options.lights) {
-            if (Status status = options.lights(twin); !status) return status;
         }
         const std::string said = twin.take_output();
         if (said.empty()) continue;

@@ -38,6 +38,7 @@ std::string_view without_blanks(std::string_view line) {
 Twin::Twin(const machine::Printer& printer, Options options)
     : printer_(printer),
       options_(std::move(options)),
+      screen_(printer_.projector, options_.mask),
       motors_(printer_, unknown_start(printer_)),
       cure_(printer_),
       fluids_(printer_),
@@ -109,6 +110,7 @@ void Twin::receive(std::string_view bytes) {
 
 /// A whole line has arrived: faults, then the emergency parser, then the receive buffer.
 void Twin::take_line(std::string line) {
+    if (line == "\n" || line == "\r\n") return;  // nothing at all, and no line for the faults either
     ++lines_;
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;
@@ -287,7 +289,9 @@ void Twin::light_on(const job::Image& image) {
         return violation(status.error().message);
     }
     if (last_vat_ < 0) last_vat_ = interlock().hooked_vat().value_or(-1);
-    shown_ = runs_of(image);
+    Screen::Picture picture = screen_.coverage(runs_of(image));
+    log_.overlit_pixels += picture.overlit_px;
+    shown_ = std::move(picture.runs);
     shown_since_s_ = now_s_;
     shown_vat_ = vat_under_light();
     if (shown_vat_ >= 0) change_vat_part(shown_vat_);

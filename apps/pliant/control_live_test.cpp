@@ -1,0 +1,170 @@
+// A print under control as it really runs: a thread that works, others that look and ask, a virtual printer on a
+// pseudo-terminal in a thread of its own, thousands of times as fast.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "control_bench.hpp"
+#include "host/control_api.hpp"
+#include "host/scaled_time.hpp"
+#include "host/serial.hpp"
+#include "host/steady_clock.hpp"
+#include "twin/serve.hpp"
+
+using namespace pliant;
+using namespace pliant::app;
+
+namespace {
+
+constexpr double speed = 200;
+
+class SharedLight final : public host::Projector {
+public:
+    [[nodiscard]] Status show(const job::Image& image) override {
+        const std::scoped_lock lock(mutex_);
+        image_ = image;
+        return {};
+    }
+    [[nodiscard]] Status black() override {
+        const std::scoped_lock lock(mutex_);
+        image_.reset();
+        return {};
+    }
+    [[nodiscard]] bool lit() const {
+        const std::scoped_lock lock(mutex_);
+        return image_.has_value();
+    }
+    Status look(twin::Twin& twin) {
+        const std::scoped_lock lock(mutex_);
+        if (image_.has_value() == seen_) return {};
+        seen_ = image_.has_value();
+        seen_ ? twin.light_on(*image_) : twin.light_off();
+        return {};
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::optional<job::Image> image_;
+    bool seen_ = false;
+};
+
+struct Live {
+    ControlBench small;  // for its job and its printer
+    SharedLight light;
+    host::SteadyClock steady;
+    host::ScaledClock clock{steady, speed};
+    twin::Pty pty = twin::Pty::open().value();
+    twin::Twin twin{small.printer};
+    std::atomic<bool> stop = false;
+    host::Control control{setup()};
+    std::thread machine{[this] {
+        twin::ServeOptions options;
+        options.speed = speed;
+        options.stop = [this] { return stop.load(); };
+        options.lights = [this](twin::Twin& t) { return light.look(t); };
+        CHECK(twin::serve(twin, pty, options));
+    }};
+    std::thread worker{[this] { control.serve(); }};
+
+    host::ControlSetup setup() {
+        return {small.printer,
+                [this]() -> Result<std::unique_ptr<host::Wire>> {
+                    auto port = host::SerialWire::open(pty.device(), 115200);
+                    if (!port) return tl::unexpected(port.error());
+                    return std::make_unique<host::ScaledWire>(std::make_unique<host::SerialWire>(std::move(*port)),
+                                                              speed);
+                },
+                light,
+                clock,
+                operate::programs_of(small.printer),
+                link_options(small.printer.controller),
+                {},
+                {},
+                nullptr};
+    }
+    ~Live() { end(); }
+    void end() {
+        control.quit();
+        if (worker.joinable()) worker.join();
+        stop = true;
+        if (machine.joinable()) machine.join();
+    }
+    bool reaches(const std::function<bool()>& what) const {
+        for (int i = 0; i < 60000; ++i) {
+            if (what()) return true;
+            ::usleep(1000);
+        }
+        return false;
+    }
+    bool reaches(host::State state) const {
+        return reaches([&] { return control.snapshot().state == state; });
+    }
+};
+
+}  // namespace
+
+TEST_CASE("an emergency stop from another thread makes dark and reaches the machine") {
+    Live live;
+    REQUIRE(live.control.connect());
+    REQUIRE(live.reaches(host::State::idle));
+    REQUIRE(live.control.expose_test(ControlBench::image(0, 0).value(), 60));
+    REQUIRE(live.reaches([&] { return live.light.lit(); }));
+    live.control.emergency_stop();
+    CHECK(live.reaches(host::State::halted));
+    CHECK_FALSE(live.light.lit());
+    live.end();
+    live.twin.receive("M105\n");
+    CHECK(live.twin.take_output().find("ok") == std::string::npos);  // dead until it is reset
+}
+
+TEST_CASE("a second host on the same port is refused while the first has it") {
+    Live live;
+    REQUIRE(live.control.connect());
+    REQUIRE(live.reaches(host::State::idle));
+    CHECK_FALSE(host::SerialWire::open(live.pty.device(), 115200));
+    REQUIRE(live.control.disconnect());
+    CHECK(live.reaches([&] { return host::SerialWire::open(live.pty.device(), 115200).has_value(); }));
+}
+
+TEST_CASE("a print, looked at and paused from other threads, is quit, and the next host finds it parked") {
+    Live live;
+    host::PrintJob job;
+    job.name = "halves";
+    job.digest = "x";
+    job.gcode = live.small.gcode;
+    job.images = ControlBench::image;
+    job.materials = {"soft", "rigid"};
+    job.layers = 5;
+    job.journal = live.small.folder / "live.journal";
+    job.sync_journal = false;
+    REQUIRE(live.control.load(job));
+    REQUIRE(live.control.start({}));
+    std::atomic<bool> looking = true;
+    std::thread looker([&] {
+        long seen = 0;
+        while (looking) {
+            (void)host::current_message(live.control, seen);
+            (void)host::handle_api(live.control, "GET", "/api/printer", "");
+            ::usleep(500);
+        }
+    });
+    CHECK(live.reaches([&] { return live.control.snapshot().layer >= 0; }));
+    CHECK(live.control.pause(host::PauseWhen::now));
+    CHECK(live.reaches(host::State::paused));
+    CHECK_FALSE(live.light.lit());
+    CHECK(live.control.set_exposure(0, 3));
+    CHECK(live.control.resume());
+    CHECK(live.reaches(host::State::printing));
+    live.control.quit();
+    live.worker.join();
+    looking = false;
+    looker.join();
+    CHECK(live.control.snapshot().can_resume);
+    live.end();
+    CHECK_FALSE(live.light.lit());
+    CHECK_FALSE(live.twin.interlock().hooked_vat());
+    CHECK(live.twin.log().violations.empty());
+}

@@ -1,0 +1,485 @@
+// A print under control against the virtual printer, in one thread and on its clock: pauses, changes, cancelling, and
+// resuming after every way to end.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+#include "control_bench.hpp"
+
+using namespace pliant;
+using namespace pliant::app;
+
+TEST_CASE("a print under control comes out as the plain one, and keeps a journal") {
+    ControlBench b;
+    b.start();
+    CHECK(b.snapshot().finished);
+    INFO(b.last_error());
+    b.must_be_whole();
+    CHECK(b.lights() == 10);
+}
+
+namespace {
+
+/// Every deed of the host at its devices is a moment at which it may end; bench/kill_print.cpp takes all of them.
+const long every = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
+
+/// What cured, to be held against an undisturbed print.
+std::string block_of(twin::Twin& twin) {
+    std::string text;
+    for (const twin::CuredLayer& layer : twin.cured().layers()) {
+        text += fmt::format("{} {}\n", layer.top_um, layer.thickness_um);
+        for (const twin::VatLayer& vat : layer.vats) {
+            text += fmt::format(" vat {}:", vat.vat);
+            for (const twin::Run& run : vat.runs)
+                text += fmt::format(" {}/{}-{}={}", run.row, run.begin, run.end, run.value);
+            text += "\n";
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a host that is killed anywhere is followed by one that finishes the same part") {
+    ControlBench undisturbed;
+    undisturbed.start();
+    const std::string whole = block_of(*undisturbed.twin);
+    const long deeds = undisturbed.life->deeds;
+    MESSAGE(deeds << " deeds in a print");
+    int resumed = 0;
+    for (long n = 1; n < deeds; n += every) {
+        ControlBench b;
+        b.life->dies_at = n;
+        CAPTURE(n);
+        REQUIRE_FALSE(b.start());
+        b.new_host();
+        if (!b.snapshot().can_resume) {
+            b.start();  // nothing had begun
+        } else {
+            ++resumed;
+            b.start({true, {}});
+        }
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        CHECK(block_of(*b.twin) == whole);
+        b.must_be_whole();
+    }
+    CHECK(resumed > deeds / every / 2);
+}
+
+TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on if no vat hung half on its hooks") {
+    ControlBench undisturbed;
+    undisturbed.start();
+    const std::string whole = block_of(*undisturbed.twin);
+    const long deeds = undisturbed.life->deeds;
+    int resumed = 0, refused = 0, before = 0;
+    for (long n = 1; n < deeds; n += every) {
+        ControlBench b;
+        b.life->at_deed = [&](long deed) {
+            if (deed == n) b.twin->reset();
+        };
+        CAPTURE(n);
+        REQUIRE(b.start());
+        if (b.snapshot().finished) {  // before anything had moved, or after it had
+            ++before;
+            CHECK(block_of(*b.twin) == whole);
+            continue;
+        }
+        CHECK_FALSE(b.projector->lit);
+        b.life->at_deed = {};
+        REQUIRE(b.snapshot().can_resume);
+        b.start({true, {}});
+        INFO(b.last_error());
+        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
+            ++refused;
+            continue;
+        }
+        ++resumed;
+        CHECK(b.snapshot().finished);
+        CHECK(block_of(*b.twin) == whole);
+        b.must_be_whole();
+    }
+    MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
+    CHECK(resumed > deeds / every / 2);
+    CHECK(refused < deeds / every / 10);
+}
+
+TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked about, all else goes on") {
+    ControlBench undisturbed;
+    undisturbed.start();
+    const std::string whole = block_of(*undisturbed.twin);
+    const long deeds = undisturbed.life->deeds;
+    int asked = 0, refused = 0, resumed = 0;
+    for (long n = 1; n < deeds; n += every) {
+        ControlBench b;
+        b.guarded = false;
+        b.new_host();
+        double lit_since_s = 0, lit_s = 0;
+        b.life->dies_at = n;
+        b.life->at_deed = [&](long) {
+            if (!b.projector->lit) lit_since_s = b.twin->now();
+        };
+        b.life->on_death = [&] {
+            lit_s = b.projector->lit ? b.twin->now() - lit_since_s : 0;
+            b.twin->light_off();
+            b.twin->reset();
+        };
+        CAPTURE(n);
+        REQUIRE_FALSE(b.start());
+        b.new_host();
+        if (!b.snapshot().can_resume) continue;
+        b.start({true, {}});
+        if (b.last_error().find("nobody saw how long") != std::string::npos) {
+            ++asked;
+            CHECK(b.snapshot().state == host::State::offline);  // nothing has been touched
+            b.start({true, {lit_s, false}});
+        }
+        INFO(b.last_error());
+        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
+            ++refused;
+            continue;
+        }
+        ++resumed;
+        CHECK(b.snapshot().finished);
+        CHECK(block_of(*b.twin) == whole);
+        b.must_be_whole();
+    }
+    MESSAGE(resumed << " resumed, " << asked << " asked about, " << refused << " refused");
+    CHECK(asked > 10 / every);
+}
+
+namespace {
+
+using host::PauseWhen;
+using host::Snapshot;
+using host::State;
+
+/// Somebody at the machine: does something once, when the print has got so far, and resumes every pause.
+struct Person {
+    ControlBench& b;
+    std::function<bool(const Snapshot&)> reached;
+    std::function<void()> action;
+    bool acted = false;
+    bool was_paused = false;
+    int pauses = 0;
+    bool lit_while_paused = false;
+    std::vector<std::string> prompts;
+
+    Person(ControlBench& bench, std::function<bool(const Snapshot&)> when, std::function<void()> what)
+        : b(bench), reached(std::move(when)), action(std::move(what)) {
+        b.life->at_look = [this] { look(); };
+    }
+    void look() {
+        const Snapshot s = b.snapshot();
+        if (!acted && reached(s)) acted = true, action();
+        const bool paused = s.state == State::paused;
+        lit_while_paused = lit_while_paused || (paused && b.projector->lit);
+        if (paused && !was_paused) {
+            ++pauses;
+            prompts.push_back(s.prompt);
+            CHECK(b.control->resume());
+        }
+        was_paused = paused;
+    }
+};
+
+std::function<bool(const Snapshot&)> completion_above(double share) {
+    return [share](const Snapshot& s) { return s.completion > share; };
+}
+
+std::function<bool(const Snapshot&)> lit_on_layer(int layer, double for_s = 0.5) {
+    return [layer, for_s](const Snapshot& s) { return s.lit && s.layer == layer && s.lit_s > for_s; };
+}
+
+bool has_event(const ControlBench& b, const std::string& kind, const std::string& part) {
+    for (const host::Event& event : b.control->events_since(0)) {
+        if (event.kind == kind && event.text.find(part) != std::string::npos) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("pausing, now or after the exposure, changes nothing in the part") {
+    for (const auto how : {PauseWhen::now, PauseWhen::after_exposure}) {
+        for (const double at : {0.05, 0.2, 0.31, 0.5, 0.77, 0.9}) {
+            CAPTURE(at);
+            ControlBench b;
+            Person person(b, completion_above(at), [&] { CHECK(b.control->pause(how)); });
+            b.start();
+            INFO(b.last_error());
+            CHECK(person.pauses == 1);
+            CHECK_FALSE(person.lit_while_paused);
+            CHECK(b.snapshot().finished);
+            b.must_be_whole();
+            CHECK(b.lights() == 10);
+        }
+    }
+}
+
+TEST_CASE("a pause in the light: at once and made up later, or after it and the layer peeled") {
+    for (const auto how : {PauseWhen::now, PauseWhen::after_exposure}) {
+        ControlBench b;
+        Person person(b, lit_on_layer(3), [&] { CHECK(b.control->pause(how)); });
+        b.start();
+        CHECK(person.pauses == 1);
+        CHECK_FALSE(person.lit_while_paused);
+        CHECK(b.lights() == (how == PauseWhen::now ? 11 : 10));
+        b.must_be_whole();
+        const twin::VatLayer& vat = b.twin->cured().layers()[3].vats[0];
+        CHECK(vat.lit[0].seconds == doctest::Approx(2.5).epsilon(0.01));
+    }
+}
+
+TEST_CASE("cancelling anywhere leaves the machine dark and parked, every vat in its slot") {
+    for (double at = 0.02; at < 1; at += 0.07) {
+        CAPTURE(at);
+        ControlBench b;
+        Person person(b, completion_above(at), [&] { CHECK(b.control->cancel()); });
+        b.start();
+        INFO(b.last_error());
+        CHECK(b.snapshot().state == State::idle);
+        CHECK_FALSE(b.snapshot().finished);
+        CHECK_FALSE(b.snapshot().can_resume);
+        CHECK_FALSE(b.projector->lit);
+        CHECK_FALSE(b.twin->interlock().hooked_vat());
+        CHECK_FALSE(b.twin->interlock().pump_runs());
+        CHECK(b.twin->log().violations.empty());
+        b.start({true, {}});
+        CHECK(b.last_error().find("cancelled") != std::string::npos);
+    }
+}
+
+TEST_CASE("a suspended print is parked, and goes on where it was") {
+    for (const double at : {0.1, 0.35, 0.6, 0.85}) {
+        CAPTURE(at);
+        ControlBench b;
+        Person person(b, completion_above(at), [&] { CHECK(b.control->suspend()); });
+        b.start();
+        CHECK_FALSE(b.twin->interlock().hooked_vat());
+        REQUIRE(b.snapshot().can_resume);
+        CHECK_FALSE(b.control->home({}));  // nothing by hand while a print waits
+        b.start({true, {}});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        b.must_be_whole();
+    }
+}
+
+TEST_CASE("an interrupted print can be put away for good") {
+    ControlBench b;
+    b.life->dies_at = 300;
+    REQUIRE_FALSE(b.start());
+    b.new_host();
+    REQUIRE(b.control->connect());
+    b.control->serve_until_idle();
+    REQUIRE(b.control->cancel());
+    b.control->serve_until_idle();
+    INFO(b.last_error());
+    CHECK_FALSE(b.snapshot().can_resume);
+    CHECK_FALSE(b.twin->interlock().hooked_vat());
+    CHECK(b.twin->log().violations.empty());
+}
+
+TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print goes on") {
+    ControlBench b;
+    double stopped_s = 0, dark_s = 0;
+    Person person(b, lit_on_layer(2), [&] {
+        stopped_s = b.twin->now();
+        b.control->emergency_stop();
+    });
+    b.life->at_deed = [&](long) {};
+    b.start();
+    dark_s = b.twin->now();
+    CHECK(b.snapshot().state == State::halted);
+    CHECK_FALSE(b.projector->lit);
+    CHECK(dark_s - stopped_s < 0.1);
+    CHECK(b.last_error() == "emergency stop");
+    b.twin->reset();
+    b.life->at_look = {};
+    b.start({true, {}});
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    CHECK(b.lights() == 11);
+    b.must_be_whole();
+}
+
+TEST_CASE("a changed exposure takes effect at the next layer and is kept across a restart of the host") {
+    ControlBench b;
+    Person person(b, lit_on_layer(2), [&] {
+        CHECK(b.control->set_exposure(0, 3.5));
+        CHECK_FALSE(b.control->set_exposure(2, 3));
+        CHECK_FALSE(b.control->set_exposure(0, 61));  // the machine's limit is 60 s
+    });
+    b.life->on_death = [&] { b.guard.host_died(b.twin->now()), b.twin->light_off(); };
+    b.life->at_deed = [&](long deed) {
+        if (person.acted && b.life->dies_at < 0 && b.snapshot().layer == 3) b.life->dies_at = deed + 20;
+    };
+    REQUIRE_FALSE(b.start());
+    b.new_host();
+    b.start({true, {}});
+    INFO(b.last_error());
+    REQUIRE(b.snapshot().finished);
+    CHECK(b.snapshot().exposures_s[0] == 3.5);
+    const auto& layers = b.twin->cured().layers();
+    REQUIRE(layers.size() == 5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        const double bottom = i < 2 ? 12 : 2.5;
+        CHECK(layers[i].vats[0].lit[0].seconds == doctest::Approx(i > 2 ? 3.5 : bottom).epsilon(0.001));
+        CHECK(layers[i].vats[1].lit[0].seconds == doctest::Approx(bottom).epsilon(0.001));
+    }
+}
+
+TEST_CASE("a skipped layer gets no light") {
+    ControlBench b;
+    Person person(b, lit_on_layer(1), [&] {
+        CHECK(b.control->skip_layer(3));
+        CHECK_FALSE(b.control->skip_layer(1));
+        CHECK_FALSE(b.control->skip_layer(5));
+    });
+    b.start();
+    CHECK(b.snapshot().finished);
+    CHECK(b.lights() == 8);
+    CHECK(has_event(b, "log", "the light of layer 3 is left out"));
+    CHECK(b.report().missing_layers == 1);
+}
+
+TEST_CASE("resin is asked for before its layer, a picture is taken after every one") {
+    ControlBench b;
+    b.refills = {{3, "refill the vat of slot 1 with x"}};
+    std::vector<int> pictures;
+    b.after_layer = [&](int layer) { pictures.push_back(layer); };
+    b.new_host();
+    Person person(
+        b, [](const Snapshot&) { return false; }, [] {});
+    b.start();
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    REQUIRE(person.prompts.size() == 1);
+    CHECK(person.prompts[0] == "refill the vat of slot 1 with x");
+    CHECK(pictures == std::vector<int>{0, 1, 2, 3, 4});
+    b.must_be_whole();
+}
+
+TEST_CASE("by hand: home, bring and put away a vat, clean, jog, test light; what the interlocks forbid is refused") {
+    ControlBench b;
+    const auto done = [&](Status status) {
+        if (status) b.control->serve_until_idle();
+        INFO((status ? "" : status.error().message) << b.snapshot().message);
+        CHECK(status);
+        CHECK(b.snapshot().message.empty());
+    };
+    done(b.control->connect());
+    CHECK(b.snapshot().firmware == "Pliant twin, Marlin dialect");
+    REQUIRE(b.control->jog(machine::Axis::platform, -1000, 5));
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().message.find("before it is homed") != std::string::npos);
+    done(b.control->home({}));
+    done(b.control->bring_vat(2));
+    CHECK(b.snapshot().slot == 2);
+    done(b.control->bring_vat(1));
+    CHECK(b.snapshot().slot == 1);
+    REQUIRE(b.control->clean(5));
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().message.find("put away first") != std::string::npos);
+    done(b.control->bring_vat(0));
+    done(b.control->clean(5));
+    done(b.control->prime(3));
+    done(b.control->jog(machine::Axis::platform, 1500, 5));
+    CHECK(b.snapshot().position[machine::Axis::platform] == b.twin->interlock().position()[machine::Axis::platform]);
+    CHECK_FALSE(b.control->expose_test({1, 1, {255}}, 1));
+    CHECK(b.twin->log().violations.empty());
+    CHECK(b.twin->log().homings == 3);
+}
+
+TEST_CASE("what cannot be had now is refused") {
+    ControlBench b;
+    CHECK_FALSE(b.control->pause(PauseWhen::now));
+    CHECK_FALSE(b.control->resume());
+    CHECK_FALSE(b.control->cancel());
+    CHECK_FALSE(b.control->home({}));
+    CHECK_FALSE(b.control->set_exposure(0, 2));
+    Person person(b, completion_above(0.3), [&] {
+        CHECK_FALSE(b.control->start({}));
+        CHECK_FALSE(b.control->home({}));
+        CHECK_FALSE(b.control->disconnect());
+        CHECK_FALSE(b.control->load({}));
+        CHECK_FALSE(b.control->resume());
+    });
+    b.start();
+    CHECK(b.snapshot().finished);
+}
+
+TEST_CASE("a second host on the same job is refused, and so is starting an interrupted job anew") {
+    ControlBench b;
+    Person person(b, completion_above(0.3), [&] {
+        CHECK(host::Journal::open(b.journal(), false).error().message.find("another host") != std::string::npos);
+    });
+    b.life->dies_at = 400;
+    REQUIRE_FALSE(b.start());
+    CHECK(person.acted);
+    b.new_host();
+    b.start();
+    CHECK(b.last_error().find("--resume") != std::string::npos);
+    CHECK(b.snapshot().state == State::offline);
+}
+
+TEST_CASE("another program that has spoken to the controller in between is noticed") {
+    ControlBench b;
+    b.life->dies_at = 400;
+    REQUIRE_FALSE(b.start());
+    b.twin->receive("M110 N500\n");
+    b.twin->advance_to(b.twin->now() + 30);
+    b.new_host();
+    b.start({true, {}});
+    CHECK(b.last_error().find("another program has spoken") != std::string::npos);
+    b.start({true, {std::nullopt, true}});
+    CHECK(b.snapshot().finished);
+    b.must_be_whole();
+}
+
+TEST_CASE("every fault of the wire is survived under control too") {
+    using twin::Fault;
+    for (const auto kind : {Fault::Kind::corrupt_byte, Fault::Kind::lose_line, Fault::Kind::lose_ok,
+                            Fault::Kind::lose_byte, Fault::Kind::flip_byte, Fault::Kind::resend_loop}) {
+        for (const int n : {7, 40, 123, 260, 391}) {
+            CAPTURE(static_cast<int>(kind));
+            CAPTURE(n);
+            ControlBench b({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}});
+            b.start();
+            INFO(b.last_error());
+            CHECK(b.snapshot().finished);
+            b.must_be_whole();
+        }
+    }
+}
+
+TEST_CASE("every kind of machine is resumed after its host was killed") {
+    for (const char* name : {"tower8", "two_towers", "carousel", "rotary", "linear"}) {
+        CAPTURE(std::string(name));
+        long deeds = 0;
+        {
+            ControlBench b({}, name, 3);
+            b.start();
+            CHECK(b.snapshot().finished);
+            deeds = b.life->deeds;
+        }
+        for (long n = 20; n < deeds; n += deeds / 6) {
+            for (const bool reset : {false, true}) {
+                CAPTURE(n);
+                CAPTURE(reset);
+                ControlBench b({}, name, 3);
+                b.life->dies_at = n;
+                REQUIRE_FALSE(b.start());
+                if (reset) b.twin->reset();
+                b.new_host();
+                if (!b.snapshot().can_resume) continue;
+                b.start({true, {}});
+                INFO(b.last_error());
+                if (b.last_error().find("half-way on the hooks") != std::string::npos) continue;
+                CHECK(b.snapshot().finished);
+                b.must_be_whole();
+            }
+        }
+    }
+}

@@ -1,0 +1,333 @@
+// Kills the host of a print again and again, or resets its controller, and holds what cured in the end against an
+// undisturbed print. Everything is as in a workshop: `pliant print` is a process of its own, killed with SIGKILL at
+// random moments; the virtual printer is at the other end of a pseudo-terminal and sees the light through a folder.
+//
+//   pliant_kill_print PLIANT [--kills N] [--resets N] [--speed X] [--seed S] [--per-print N]
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/files.hpp"
+#include "job/png.hpp"
+#include "machine/printer.hpp"
+#include "plan/plan.hpp"
+#include "twin/inspect.hpp"
+#include "twin/serve.hpp"
+
+extern char** environ;
+
+namespace {
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+constexpr int width = 8, height = 6, layers = 3;
+
+struct Wanted {
+    std::string program;
+    int kills = 0;
+    int resets = 0;
+    double speed = 50;
+    unsigned seed = 1;
+    int per_print = 5;
+};
+
+[[noreturn]] void stop(const std::string& why) {
+    fmt::print(stderr, "{}\n", why);
+    std::exit(2);
+}
+
+template <class T>
+T need(Result<T> result) {
+    if (!result) stop(result.error().message);
+    return std::move(*result);
+}
+
+/// Left half soft, right half rigid, with a grey column between them that both share.
+Result<job::Image> image_of(int, int material) {
+    job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
+    for (int i = 0; i < width * height; ++i) {
+        const int x = i % width;
+        const int soft = x < 4 ? 255 : (x == 4 ? 100 : 0);
+        image.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(material == 0 ? soft : 255 - soft);
+    }
+    return image;
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) stop("the printer file has changed: no " + from);
+    text.replace(at, from.size(), to);
+}
+
+struct Job {
+    machine::Printer printer;
+    job::Manifest manifest;
+    fs::path file;
+};
+
+/// A small job on the tower of the thesis, with a projector of a few pixels.
+Job make_job(const fs::path& folder) {
+    std::string text = need(read_file("examples/printers/tower.toml"));
+    replace(text, "width = 1920", fmt::format("width = {}", width));
+    replace(text, "height = 1080", fmt::format("height = {}", height));
+    Job made;
+    made.printer = need(machine::parse_printer(text, "printer.toml"));
+    job::Manifest& job = made.manifest;
+    job.name = "halves";
+    job.pliant_version = "0";
+    job.width_px = width;
+    job.height_px = height;
+    job.pixel_um = 158.75;
+    job.bottom_layers = 1;
+    const double pixel_mm2 = 0.15875 * 0.15875;
+    const double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255), rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
+    job.materials = {{"soft", "semi-flex", soft_mm2 * 0.05 * layers, 1, 2.5, 6},
+                     {"rigid", "rigid-flex", rigid_mm2 * 0.05 * layers, 1, 2.5, 6}};
+    made.file = folder / "halves.zip";
+    job::Writer writer = need(job::Writer::create(made.file));
+    for (int layer = 0; layer < layers; ++layer) {
+        job.layers.push_back({50 * (layer + 1), 50, {}});
+        for (int material = 0; material < 2; ++material) {
+            const std::string name = fmt::format("layers/{:05}_{}.png", layer, material);
+            job.layers.back().images.push_back({material, name, material == 0 ? soft_mm2 : rigid_mm2});
+            if (!writer.add_image(name, *image_of(layer, material))) stop("the job cannot be written");
+        }
+    }
+    const plan::Plan plan = need(plan::make_plan(job, made.printer));
+    const bool added = writer.add_file("printer.toml", text) &&
+                       writer.add_file("job.gcode", plan::write_gcode(plan, job, made.printer));
+    if (!added) stop("the job cannot be written");
+    if (const Status done = writer.finish(job); !done) stop(done.error().message);
+    return made;
+}
+
+twin::Options booting() {
+    twin::Options options;
+    options.boot_s = 1;
+    return options;
+}
+
+/// The virtual printer with a folder for its light, in a thread.
+class Machine {
+public:
+    Machine(const machine::Printer& printer, const fs::path& folder, double speed)
+        : shown_(folder / "shown.png"),
+          pty_(need(twin::Pty::open())),
+          twin_(printer, booting()),
+          thread_([this, speed] {
+              twin::ServeOptions options;
+              options.speed = speed;
+              options.stop = [this] { return stop_.load(); };
+              options.lights = [this](twin::Twin&) { return look(); };
+              (void)twin::serve(twin_, pty_, options);
+          }) {}
+    ~Machine() { (void)end(); }
+    Machine(const Machine&) = delete;
+    Machine& operator=(const Machine&) = delete;
+
+    [[nodiscard]] const std::string& device() const { return pty_.device(); }
+    void reset() { reset_ = true; }
+    twin::Twin& end() {
+        stop_ = true;
+        if (thread_.joinable()) thread_.join();
+        return twin_;
+    }
+
+private:
+    Status look() {
+        if (reset_.exchange(false)) twin_.reset();
+        const bool is_lit = ::access(shown_.c_str(), F_OK) == 0;
+        if (is_lit == lit_) return {};
+        if (is_lit) {
+            const auto bytes = read_file(shown_);
+            if (!bytes) return {};
+            const auto image = job::decode_png(*bytes, {width, height}, "shown.png");
+            if (!image) return {};
+            twin_.light_on(*image);
+        } else {
+            twin_.light_off();
+        }
+        lit_ = is_lit;
+        return {};
+    }
+
+    fs::path shown_;
+    twin::Pty pty_;
+    twin::Twin twin_;
+    std::atomic<bool> stop_ = false, reset_ = false;
+    bool lit_ = false;
+    std::thread thread_;
+};
+
+/// `pliant print` as a process; what it says goes to a file.
+class Host {
+public:
+    Host(const Wanted& wanted, const Job& job, const std::string& device, const fs::path& folder, bool resume) {
+        std::vector<std::string> words = {wanted.program,  "print",   job.file.string(),
+                                          "--port",        device,    "--projector",
+                                          folder.string(), "--speed", fmt::format("{}", wanted.speed)};
+        if (resume) words.emplace_back("--resume");
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        const std::string log = (folder / "host.log").string();
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+        if (::posix_spawn(&process_, words[0].c_str(), &actions, nullptr, arguments.data(), environ) != 0)
+            stop(wanted.program + ": cannot be started");
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    /// True if it has ended within so long.
+    bool ends_within(double seconds) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        do {
+            if (::waitpid(process_, &status_, WNOHANG) == process_) return true;
+            ::usleep(1000);
+        } while (std::chrono::steady_clock::now() < end);
+        return false;
+    }
+    void kill() {
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, &status_, 0);
+    }
+    [[nodiscard]] bool succeeded() const { return WIFEXITED(status_) && WEXITSTATUS(status_) == 0; }
+
+private:
+    pid_t process_ = 0;
+    int status_ = 0;
+};
+
+std::string block_of(twin::Twin& twin) {
+    std::string text;
+    for (const twin::CuredLayer& layer : twin.cured().layers()) {
+        text += fmt::format("{} {}:", layer.top_um, layer.thickness_um);
+        for (const twin::VatLayer& vat : layer.vats) {
+            for (const twin::Run& run : vat.runs)
+                text += fmt::format(" {}/{}/{}-{}={}", vat.vat, run.row, run.begin, run.end, run.value);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+struct Count {
+    int kills = 0, resets = 0, prints = 0, refused = 0, wrong = 0, pieces = 0;
+};
+
+/// A print with some ends in the middle. False if it came out otherwise than undisturbed.
+class Round {
+public:
+    Round(const Wanted& wanted, const Job& job, const fs::path& folder, std::mt19937& random, double print_s)
+        : wanted_(wanted), job_(job), folder_(folder), random_(random), print_s_(print_s) {}
+
+    std::string print(int ends, bool resets, Count& count) {
+        constexpr double longest_s = 300;
+        for (const char* rest : {"halves.zip.journal", "halves.zip.journal.guard", "shown.png"})
+            fs::remove(folder_ / rest);
+        Machine machine(job_.printer, folder_, wanted_.speed);
+        bool begun = false;
+        std::uniform_real_distribution<double> when(0.05, print_s_ * 0.9);
+        for (int i = 0; i <= ends; ++i) {
+            Host host(wanted_, job_, machine.device(), folder_, begun);
+            const bool last = i == ends;
+            if (!host.ends_within(last ? longest_s : when(random_))) {
+                if (last) host.kill(), stop("the print does not end");
+                if (resets)
+                    machine.reset(), ++count.resets;
+                else
+                    host.kill(), ++count.kills;
+                if (resets && !host.ends_within(longest_s)) stop("the host does not notice the reset");
+            }
+            if (host.succeeded()) break;
+            const std::string said = read_file(folder_ / "host.log").value_or("");
+            if (said.find("half-way on the hooks") != std::string::npos) return ++count.refused, "";
+            if (said.find("it is complete") != std::string::npos) break;  // killed after the last record
+            if (last) return "the print failed: " + said;
+            begun = fs::exists(folder_ / "halves.zip.journal") && fs::file_size(folder_ / "halves.zip.journal") > 0;
+        }
+        return judge(machine.end(), count);
+    }
+
+    std::string undisturbed;
+
+private:
+    std::string judge(twin::Twin& twin, Count& count) {
+        const twin::Report report = need(twin::inspect(twin, job_.manifest, twin::ImageSource(image_of)));
+        for (const twin::CuredLayer& layer : twin.cured().layers()) {
+            for (const twin::VatLayer& vat : layer.vats) {
+                for (const twin::Lit& lit : vat.lit) count.pieces += lit.pieces > 1 ? 1 : 0;
+            }
+        }
+        if (!report.passed) return twin::report_text(report);
+        if (undisturbed.empty()) undisturbed = block_of(twin);
+        return undisturbed == block_of(twin) ? "" : "another part than the undisturbed print";
+    }
+
+    const Wanted& wanted_;
+    const Job& job_;
+    const fs::path& folder_;
+    std::mt19937& random_;
+    double print_s_;
+};
+
+int run(const Wanted& wanted) {
+    std::string pattern = (fs::temp_directory_path() / "pliant_kill_XXXXXX").string();
+    const fs::path folder = ::mkdtemp(pattern.data());
+    const Job job = make_job(folder);
+    std::mt19937 random(wanted.seed);
+    Count count;
+    const auto begin = std::chrono::steady_clock::now();
+    Round first(wanted, job, folder, random, 1);
+    if (const std::string wrong = first.print(0, false, count); !wrong.empty()) stop(wrong);
+    const double print_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    fmt::print("an undisturbed print takes {:.1f} s at {:g} times the speed\n", print_s, wanted.speed);
+    while (count.kills < wanted.kills || count.resets < wanted.resets) {
+        const bool resets = count.kills >= wanted.kills;
+        Round round(wanted, job, folder, random, print_s);
+        round.undisturbed = first.undisturbed;
+        const int left = resets ? wanted.resets - count.resets : wanted.kills - count.kills;
+        const std::string wrong = round.print(std::min(left, wanted.per_print), resets, count);
+        ++count.prints;
+        if (!wrong.empty()) ++count.wrong, fmt::print("print {}: {}\n", count.prints, wrong);
+        std::fflush(stdout);
+    }
+    fmt::print(
+        "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
+        count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
+    fs::remove_all(folder);
+    return count.wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) stop("pliant_kill_print PLIANT [--kills N] [--resets N] [--speed X] [--seed S] [--per-print N]");
+    Wanted wanted;
+    wanted.program = argv[1];
+    for (int i = 2; i + 1 < argc; i += 2) {
+        const std::string key = argv[i];
+        const double value = std::atof(argv[i + 1]);
+        if (key == "--kills") wanted.kills = static_cast<int>(value);
+        if (key == "--resets") wanted.resets = static_cast<int>(value);
+        if (key == "--speed") wanted.speed = value;
+        if (key == "--seed") wanted.seed = static_cast<unsigned>(value);
+        if (key == "--per-print") wanted.per_print = static_cast<int>(value);
+    }
+    return run(wanted);
+}

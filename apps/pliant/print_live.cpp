@@ -1,0 +1,293 @@
+#include "print_live.hpp"
+
+#include <fmt/core.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+#include "host/control.hpp"
+#include "host/scaled_time.hpp"
+#include "host/serial.hpp"
+#include "host/steady_clock.hpp"
+#include "operate/layer_command.hpp"
+#include "operate/picture_projector.hpp"
+#include "operate/print_job.hpp"
+#include "operate/process_guard.hpp"
+#include "operate/programs.hpp"
+#include "plan/plan.hpp"
+#include "twin/inspect.hpp"
+#include "twin/serve.hpp"
+#include "twin_bench.hpp"
+
+namespace pliant::app {
+namespace {
+
+// A signal handler can reach nothing but a global.
+volatile std::sig_atomic_t interrupts = 0;
+
+void on_interrupt(int) {
+    interrupts = interrupts + 1;
+}
+
+/// Keys one by one while it lives, if standard input is a terminal.
+class Keys {
+public:
+    Keys() {
+        if (isatty(STDIN_FILENO) != 1 || tcgetattr(STDIN_FILENO, &before_) != 0) return;
+        termios raw = before_;
+        raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+        active_ = tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
+    }
+    ~Keys() {
+        if (active_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+    }
+    Keys(const Keys&) = delete;
+    Keys& operator=(const Keys&) = delete;
+
+    /// Waits so long; 0: none was pressed.
+    [[nodiscard]] char next(int timeout_ms) const {
+        pollfd wait{active_ ? STDIN_FILENO : -1, POLLIN, 0};
+        char key = 0;
+        if (::poll(&wait, 1, timeout_ms) <= 0 || ::read(STDIN_FILENO, &key, 1) != 1) return 0;
+        return key;
+    }
+
+private:
+    termios before_{};
+    bool active_ = false;
+};
+
+/// The projector of the virtual printer in this program: what the host shows, the machine's thread looks at.
+class SharedLight final : public host::Projector {
+public:
+    [[nodiscard]] Status show(const job::Image& image) override {
+        const std::scoped_lock lock(mutex_);
+        image_ = image;
+        return {};
+    }
+    [[nodiscard]] Status black() override {
+        const std::scoped_lock lock(mutex_);
+        image_.reset();
+        return {};
+    }
+    Status look(twin::Twin& twin) {
+        const std::scoped_lock lock(mutex_);
+        if (image_.has_value() == lit_) return {};
+        lit_ = image_.has_value();
+        if (lit_)
+            twin.light_on(*image_);
+        else
+            twin.light_off();
+        return {};
+    }
+
+private:
+    std::mutex mutex_;
+    std::optional<job::Image> image_;
+    bool lit_ = false;
+};
+
+/// The virtual printer on a pseudo-terminal, in a thread of its own.
+class LiveTwin {
+public:
+    LiveTwin(const machine::Printer& printer, twin::Pty pty, double speed)
+        : pty_(std::move(pty)), twin_(printer), thread_([this, speed] {
+              twin::ServeOptions options;
+              options.speed = speed;
+              options.stop = [this] { return stop_.load(); };
+              options.lights = [this](twin::Twin& t) { return light.look(t); };
+              (void)twin::serve(twin_, pty_, options);
+          }) {}
+    ~LiveTwin() { end(); }
+    LiveTwin(const LiveTwin&) = delete;
+    LiveTwin& operator=(const LiveTwin&) = delete;
+
+    [[nodiscard]] const std::string& device() const { return pty_.device(); }
+    twin::Twin& end() {
+        stop_ = true;
+        if (thread_.joinable()) thread_.join();
+        return twin_;
+    }
+
+    SharedLight light;
+
+private:
+    twin::Pty pty_;
+    twin::Twin twin_;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+/// What a person sees: a line that is rewritten on a terminal, the events otherwise.
+class Display {
+public:
+    explicit Display(const Output& output) : quiet_(output.quiet), line_(!output.quiet && isatty(STDERR_FILENO) == 1) {}
+
+    void show(host::Control& control) {
+        for (const host::Event& event : control.events_since(seen_)) {
+            seen_ = event.number;
+            const bool tell = event.kind == "error" || event.kind == "log" || event.kind == "prompt" ||
+                              event.kind == "state" || (event.kind == "layer" && !line_);
+            if (!tell || (quiet_ && event.kind != "error")) continue;
+            clear();
+            fmt::print(stderr, "{} {}\n", event.kind, event.text);
+        }
+        if (line_) progress(control.snapshot());
+        std::fflush(stderr);
+    }
+    void clear() {
+        if (shown_) std::fputs("\r\033[K", stderr);
+        shown_ = false;
+    }
+
+private:
+    void progress(const host::Snapshot& s) {
+        using host::State;
+        if (s.state != State::printing && s.state != State::paused && s.state != State::pausing) return clear();
+        shown_ = true;
+        fmt::print(stderr, "\r\033[Klayer {}/{}  {:4.1f} %  {} left  {}{}", s.layer + 1, s.layers, 100 * s.completion,
+                   plan::clock_text(s.seconds_left), host::state_text(s.state),
+                   s.lit ? fmt::format("  light {:.1f}/{:.1f} s", s.lit_s, s.exposure_s) : "");
+    }
+
+    bool quiet_;
+    bool line_;
+    bool shown_ = false;
+    long seen_ = 0;
+};
+
+bool is_over(const host::Snapshot& s) {
+    return s.state == host::State::idle || s.state == host::State::offline || s.state == host::State::halted;
+}
+
+void press(host::Control& control, char key) {
+    if (key == ' ' && control.snapshot().state == host::State::paused)
+        (void)control.resume();
+    else if (key == ' ')
+        (void)control.pause(host::PauseWhen::after_exposure);
+    if (key == 'c') (void)control.cancel();
+    if (key == 'e') control.emergency_stop();
+}
+
+/// Until the print has ended. Ctrl-C suspends it; once more is an emergency stop.
+void attend(host::Control& control, const Output& output) {
+    const Keys keys;
+    Display display(output);
+    int served = 0;
+    do {
+        press(control, keys.next(100));
+        if (interrupts > served) {
+            ++served;
+            if (served == 1)
+                (void)control.suspend();
+            else
+                control.emergency_stop();
+        }
+        display.show(control);
+    } while (!is_over(control.snapshot()));
+    display.show(control);
+    display.clear();
+}
+
+host::ControlSetup setup_of(const LiveOptions& options, const operate::ReadyJob& ready, const std::string& device,
+                            host::Projector& projector, host::Clock& clock, host::Guard* guard) {
+    const int baud = ready.printer.controller.baud_rate;
+    const double speed = options.speed;
+    host::ControlSetup setup{ready.printer, {}, projector, clock, operate::programs_of(ready.printer), {}, {}, {},
+                             guard};
+    setup.open_wire = [device, baud, speed]() -> Result<std::unique_ptr<host::Wire>> {
+        auto wire = host::SerialWire::open(device, baud);
+        if (!wire) return tl::unexpected(wire.error());
+        std::unique_ptr<host::Wire> port = std::make_unique<host::SerialWire>(std::move(*wire));
+        if (speed == 1) return port;
+        return std::make_unique<host::ScaledWire>(std::move(port), speed);
+    };
+    setup.link = link_options(ready.printer.controller);
+    if (!options.after_layer.empty()) {
+        setup.after_layer = [command = options.after_layer](int layer) {
+            if (const Status status = operate::run_layer_command(command, layer); !status)
+                fmt::print(stderr, "{}\n", status.error().message);
+        };
+    }
+    return setup;
+}
+
+Result<int> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
+    if (Status status = control.load(ready.job); !status) return tl::unexpected(status.error());
+    control.serve_until_idle();
+    host::StartOptions start;
+    start.resume = options.resume;
+    start.assume.lit_s = options.assume_lit_s;
+    start.assume.vats_untouched = options.assume_vats_untouched;
+    if (Status status = control.start(start); !status) return tl::unexpected(status.error());
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    std::thread worker([&] { control.serve(); });
+    attend(control, options.output);
+    const host::Snapshot end = control.snapshot();
+    control.quit();
+    worker.join();
+    if (end.can_resume && !options.output.quiet)
+        fmt::print(stderr, "go on with: pliant print {} {} --resume\n", options.job,
+                   options.port.empty() ? "--twin" : "--port " + options.port);
+    return end.finished ? exit_done : exit_failed;
+}
+
+/// The virtual printer's block against the job.
+Result<int> report_twin(twin::Twin& twin, const operate::ReadyJob& ready, const Output& output, int status) {
+    const auto images = [&](int layer, int material) { return operate::image_of(*ready.archive, layer, material); };
+    const Result<twin::Report> report = twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
+    if (!report) return tl::unexpected(report.error());
+    if (output.json)
+        fmt::print("{}\n", twin::report_json(*report));
+    else if (!output.quiet)
+        fmt::print("{}", twin::report_text(*report));
+    return report->passed ? status : static_cast<int>(exit_failed);
+}
+
+Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+    Result<twin::Pty> pty = twin::Pty::open();
+    if (!pty) return tl::unexpected(pty.error());
+    LiveTwin machine(ready.printer, std::move(*pty), options.speed);
+    ready.job.journal.clear();  // this printer is gone when the program ends
+    host::Control control(setup_of(options, ready, machine.device(), machine.light, clock, nullptr));
+    const Result<int> status = run(control, options, ready);
+    if (!status) return status;
+    return report_twin(machine.end(), ready, options.output, *status);
+}
+
+Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(options.projector, error))
+        return input_error("--projector {}: no such folder", options.projector);
+    operate::PictureProjector projector(options.projector);
+    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard", projector.shown(),
+                                                       options.speed};
+    auto guard = operate::ProcessGuard::start(guard_options);
+    if (!guard) return tl::unexpected(guard.error());
+    if (Status dark = projector.black(); !dark) return tl::unexpected(dark.error());
+    host::Control control(setup_of(options, ready, options.port, projector, clock, &*guard));
+    return run(control, options, ready);
+}
+
+}  // namespace
+
+Result<int> print_live(const LiveOptions& options) {
+    if (!(options.speed > 0 && options.speed <= 1e6))
+        return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
+    Result<operate::ReadyJob> ready = operate::load_job(options.job);
+    if (!ready) return tl::unexpected(ready.error());
+    if (!options.journal.empty()) ready->job.journal = options.journal;
+    host::SteadyClock steady;
+    host::ScaledClock clock(steady, options.speed);
+    return options.port.empty() ? print_on_live_twin(options, *ready, clock) : print_on_port(options, *ready, clock);
+}
+
+}  // namespace pliant::app

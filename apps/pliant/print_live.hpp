@@ -1,0 +1,28 @@
+// A print on a machine that takes real time: progress, keys, Ctrl-C.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "command.hpp"
+#include "core/error.hpp"
+
+namespace pliant::app {
+
+struct LiveOptions {
+    std::string job;
+    std::string port;       ///< device; "": the virtual printer in this program
+    std::string projector;  ///< folder for the pictures
+    std::string journal;    ///< "": beside the job
+    std::string after_layer;
+    bool resume = false;
+    std::optional<double> assume_lit_s;
+    bool assume_vats_untouched = false;
+    double speed = 1;
+    Output output;
+};
+
+/// The exit status.
+[[nodiscard]] Result<int> print_live(const LiveOptions& options);
+
+}  // namespace pliant::app

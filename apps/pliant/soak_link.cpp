@@ -1,0 +1,240 @@
+// The host's link on a wire that damages lines, loses bytes and swallows answers: many lines, each carried out exactly
+// once in effect, the end position exact; then whole prints on the same wire, which the oracle must pass.
+//
+//   pliant_soak_link [LINES] [SEED] [PER]       PER "line" (default): noise hits so many lines; "byte": so many bytes
+//   pliant_soak_link throughput [LINES]         lines a second over a pseudo-terminal to a fast virtual printer
+#include <fmt/core.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "host/link.hpp"
+#include "host/serial.hpp"
+#include "host/steady_clock.hpp"
+#include "machine/gcode.hpp"
+#include "plan/plan.hpp"
+#include "twin/inspect.hpp"
+#include "twin/serve.hpp"
+#include "twin_bench.hpp"
+
+namespace {
+
+using namespace pliant;
+using machine::Axis;
+
+struct Noise {
+    double flipped = 0.01;  ///< share of lines (or bytes) with a flipped bit
+    double lost = 0.01;     ///< share of lines (or bytes) that lose a byte
+    double lost_oks = 0.005;
+    bool per_byte = false;
+};
+
+struct Damage {
+    long flipped = 0, lost = 0, lost_oks = 0;
+};
+
+class NoisyWire final : public host::Wire {
+public:
+    NoisyWire(twin::Twin& twin, const Noise& noise, unsigned seed) : wire_(twin), noise_(noise), random_(seed) {}
+
+    [[nodiscard]] Status write(std::string_view bytes) override {
+        std::string line(bytes);
+        if (noise_.per_byte) {
+            for (std::size_t i = line.size(); i-- > 0;) damage(line, i);
+        } else if (!line.empty()) {
+            damage(line, random_() % line.size());
+        }
+        return wire_.write(line);
+    }
+    [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        auto said = wire_.read(timeout_s);
+        if (!said) return said;
+        std::string heard;
+        for (std::string_view rest = *said; !rest.empty();) {
+            const std::string_view line = rest.substr(0, rest.find('\n') + 1);
+            rest.remove_prefix(line.size());
+            if (line.substr(0, 2) == "ok" && hits(noise_.lost_oks))
+                ++damage_.lost_oks;
+            else
+                heard += line;
+        }
+        return heard;
+    }
+    [[nodiscard]] const Damage& damage() const { return damage_; }
+
+private:
+    bool hits(double share) { return std::uniform_real_distribution<double>(0, 1)(random_) < share; }
+    void damage(std::string& line, std::size_t at) {
+        if (hits(noise_.flipped)) {
+            line[at] = static_cast<char>(line[at] ^ (1 << random_() % 7));
+            ++damage_.flipped;
+        }
+        if (hits(noise_.lost)) {
+            line.erase(at, 1);
+            ++damage_.lost;
+        }
+    }
+
+    app::TwinWire wire_;
+    Noise noise_;
+    std::mt19937 random_;
+    Damage damage_;
+};
+
+host::LinkOptions patient() {
+    host::LinkOptions options;
+    options.most_repeats = 60;
+    return options;
+}
+
+/// Random heights of the platform, one line each; true if all is well.
+bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, bool advanced_ok) {
+    twin::Options twin_options;
+    twin_options.advanced_ok = advanced_ok;
+    twin::Twin twin(printer, twin_options);
+    NoisyWire wire(twin, noise, seed);
+    app::TwinClock clock(twin);
+    host::Link link(wire, clock, patient());
+    const auto begin = std::chrono::steady_clock::now();
+    Status status = link.connect();
+    for (const char* line : {"M84 S0", "G90", "G28 Z", "G28 X"}) {
+        if (status) status = link.send(line);
+    }
+    if (status) status = link.fence();
+    std::mt19937 random(seed);
+    machine::Position at = twin.interlock().position();
+    std::uint64_t path = twin.log().path;
+    long moves = twin.log().moves;
+    for (long i = 0; status && i < lines; ++i) {
+        machine::Position to = at;
+        to[Axis::platform] = 100000 + static_cast<int>(random() % 290000);
+        if (to == at) continue;
+        status = link.send(machine::write_move(printer, at, to, printer.axis(Axis::platform).speed_mm_s));
+        at = to;
+        path = twin::path_after(path, to);
+        ++moves;
+    }
+    if (status) status = link.fence();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const bool exact = twin.interlock().position() == at && twin.log().path == path && twin.log().moves == moves &&
+                       twin.log().violations.empty();
+    fmt::print("{} lines{}: {} bits flipped, {} bytes lost, {} oks lost; {} bad lines, {} resent, {:.1f} s: {}\n",
+               lines, advanced_ok ? " (ADVANCED_OK)" : "", wire.damage().flipped, wire.damage().lost,
+               wire.damage().lost_oks, twin.log().bad_lines, link.resends(), seconds,
+               !status ? status.error().message
+               : exact ? "each carried out once, end position exact"
+                       : "WRONG");
+    if (!exact && status)
+        fmt::print("  {} moves of {}, path {}, {} violations\n", twin.log().moves, moves,
+                   twin.log().path == path ? "right" : "other", twin.log().violations.size());
+    return status && exact;
+}
+
+constexpr int width = 8, height = 6;
+
+Result<job::Image> image_of(int, int material) {
+    job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
+    for (int i = 0; i < width * height; ++i)
+        image.pixels[static_cast<std::size_t>(i)] = (i % width < 4) == (material == 0) ? 255 : 0;
+    return image;
+}
+
+/// Prints until so many lines have been sent.
+bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Noise& noise) {
+    printer.projector.width_px = width;
+    printer.projector.height_px = height;
+    job::Manifest job;
+    job.name = "halves";
+    job.width_px = width;
+    job.height_px = height;
+    job.pixel_um = printer.projector.pixel_um;
+    const double half_mm2 = 24 * job.pixel_um * job.pixel_um / 1e6;
+    job.materials = {{"soft", "semi-flex", half_mm2 * 0.25, 0, 2.5, 2.5},
+                     {"rigid", "rigid-flex", half_mm2 * 0.25, 0, 2.5, 2.5}};
+    for (int i = 0; i < 5; ++i)
+        job.layers.push_back({50 * (i + 1), 50, {{0, "a.png", half_mm2}, {1, "b.png", half_mm2}}});
+    const auto plan = plan::make_plan(job, printer);
+    if (!plan) return false;
+    const std::string gcode = plan::write_gcode(*plan, job, printer);
+    long sent = 0, resent = 0;
+    int prints = 0, wrong = 0;
+    for (; sent < lines; ++prints) {
+        twin::Twin twin(printer);
+        NoisyWire wire(twin, noise, seed + static_cast<unsigned>(prints));
+        app::TwinProjector projector(twin);
+        app::TwinClock clock(twin);
+        Progress silent;
+        host::PrintRecord record;
+        const Status status = host::print_job(gcode, image_of, {wire, projector, clock}, silent, record, patient());
+        const auto report = twin::inspect(twin, job, twin::ImageSource(image_of));
+        sent += record.lines_sent;
+        resent += record.resends;
+        if (status && report && report->passed) continue;
+        ++wrong;
+        fmt::print("print {}: {}\n", prints, !status ? status.error().message : report->first_deviation);
+    }
+    fmt::print("{} prints of {} lines in all, {} resent: {} wrong\n", prints, sent, resent, wrong);
+    return wrong == 0;
+}
+
+/// How many lines a second are acknowledged over a pseudo-terminal, with a machine that takes no time.
+bool measure_throughput(const machine::Printer& printer, long lines) {
+    auto pty = twin::Pty::open();
+    if (!pty) return false;
+    twin::Twin twin(printer);
+    std::atomic<bool> stop = false;
+    std::thread machine([&] {
+        twin::ServeOptions options;
+        options.speed = 1e6;
+        options.stop = [&] { return stop.load(); };
+        (void)twin::serve(twin, *pty, options);
+    });
+    auto wire = host::SerialWire::open(pty->device(), 250000);
+    host::SteadyClock clock;
+    Status status = wire ? Status{} : tl::unexpected(wire.error());
+    double seconds = 0;
+    if (status) {
+        host::Link link(*wire, clock);
+        status = link.connect();
+        for (const char* line : {"M84 S0", "G90", "G28 Z"}) {
+            if (status) status = link.send(line);
+        }
+        if (status) status = link.fence();
+        const double begin_s = clock.now();
+        for (long i = 0; status && i < lines; ++i) status = link.send(i % 2 == 0 ? "G1 Z300 F1200" : "G1 Z310 F1200");
+        if (status) status = link.fence();
+        seconds = clock.now() - begin_s;
+    }
+    stop = true;
+    machine.join();
+    fmt::print("{} lines acknowledged in {:.2f} s: {:.0f} a second{}\n", lines, seconds,
+               static_cast<double>(lines) / seconds, status ? "" : ": " + status.error().message);
+    return status.has_value();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const long lines = argc > 1 ? std::atol(argv[1]) : 100000;
+    const auto seed = static_cast<unsigned>(argc > 2 ? std::atol(argv[2]) : 1);
+    if (argc > 1 && std::strcmp(argv[1], "throughput") == 0) {
+        const auto printer = machine::load_printer("examples/printers/tower.toml");
+        return printer && measure_throughput(*printer, argc > 2 ? std::atol(argv[2]) : 20000) ? 0 : 1;
+    }
+    Noise noise;
+    noise.per_byte = argc > 3 && std::strcmp(argv[3], "byte") == 0;
+    const auto printer = machine::load_printer("examples/printers/tower.toml");
+    if (!printer) {
+        fmt::print(stderr, "{}\n", printer.error().message);
+        return 2;
+    }
+    bool good = soak_moves(*printer, lines, seed, noise, false);
+    good = soak_moves(*printer, lines, seed, noise, true) && good;
+    good = soak_prints(*printer, lines, seed, noise) && good;
+    return good ? 0 : 1;
+}

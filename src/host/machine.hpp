@@ -1,0 +1,70 @@
+// The controller under the eye of the interlocks and of the journal: no command goes out that the machine's rules
+// forbid, and none that a later host could not reckon with.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "host/journal.hpp"
+#include "host/journal_facts.hpp"
+#include "host/link.hpp"
+#include "machine/follow.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::host {
+
+/// Wire, clock and printer must outlive it.
+class Machine {
+public:
+    Machine(Wire& wire, Clock& clock, const machine::Printer& printer, const LinkOptions& options);
+
+    [[nodiscard]] Link& link() { return link_; }
+    [[nodiscard]] const Link& link() const { return link_; }
+    /// Where it stands after the last command.
+    [[nodiscard]] const machine::Interlock& state() const { return at_.lock; }
+    void stand(const machine::Interlock& state) { at_.lock = state; }
+    [[nodiscard]] const Firmware& firmware() const { return firmware_; }
+
+    /// What is sent from here on is kept; nullptr: no more. The journal must outlive that.
+    void keep(Journal* journal);
+
+    /// Connects and learns what the firmware can; lines are numbered from `base` on.
+    [[nodiscard]] Status connect(long base);
+
+    /// Sends step `step` of program `program` (see GoFact). Where a vat is taken, left or carried, the machine first
+    /// comes to rest and the journal says so. Errors: forbidden by the interlocks, journal, link.
+    [[nodiscard]] Status send(long program, std::size_t step, std::string_view command);
+    /// Sends a program that is not the job's, and waits until it is done.
+    [[nodiscard]] Status run(std::string_view program);
+    /// Waits until the machine stands still.
+    [[nodiscard]] Status rest();
+    /// The same, and the controller says that it is where it has been sent. A controller that cannot say is believed.
+    [[nodiscard]] Status rest_in_place();
+
+    [[nodiscard]] Status light_on() { return at_.lock.light_on(false); }
+    void light_off() { at_.lock.light_off(); }
+
+private:
+    [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before);
+
+    Clock& clock_;
+    const machine::Printer& printer_;
+    Link link_;
+    Firmware firmware_;
+    machine::Followed at_;
+    Journal* journal_ = nullptr;
+    bool noted_ = false;  ///< the journal knows which line the next step will have
+};
+
+/// What of a state matters to a host that has to go on from it: the vat on the hooks, and where the carriage is.
+[[nodiscard]] bool same_phase(const machine::Printer& printer, const machine::Interlock& a,
+                              const machine::Interlock& b);
+
+/// Whether `answer` to M114 names all axes of the printer, and whether all homed ones are where the state says.
+enum class Position { unread, agrees, differs };
+[[nodiscard]] Position compare_position(const machine::Printer& printer, const machine::Interlock& state,
+                                        std::string_view answer);
+
+}  // namespace pliant::host

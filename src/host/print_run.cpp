@@ -1,0 +1,374 @@
+#include "host/print_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "host/resume_point.hpp"
+
+namespace pliant::host {
+namespace {
+
+constexpr double look_every_s = 0.01;  // at wishes, while the light is on
+constexpr double pause_look_s = 0.05;  // at wishes, while paused
+
+std::string number(double value) {
+    return fmt::format("{}", value);
+}
+
+/// Why a run returns before its end without an error of its own.
+tl::unexpected<Error> wish_to_end() {
+    return cancelled();
+}
+
+}  // namespace
+
+using machine::Axis;
+
+PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
+    : run_(run),
+      facts_(std::move(facts)),
+      printer_(run.setup.printer),
+      projector_(run.setup.projector),
+      clock_(run.setup.clock),
+      begin_s_(run.setup.clock.now()) {
+    run_.desk.update([&](Snapshot& s) {
+        s.exposures_s.assign(run_.job.materials.size(), 0);
+        for (const ChangeFact& change : facts_.changes) {
+            if (change.material >= 0 && static_cast<std::size_t>(change.material) < s.exposures_s.size())
+                s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
+        }
+    });
+}
+
+PrintRun::~PrintRun() {
+    (void)projector_.black();
+}
+
+Result<Ending> PrintRun::print() {
+    run_.desk.state(State::printing);
+    if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
+    return steps_from(0);
+}
+
+Result<Ending> PrintRun::resume(const Recovery& recovery) {
+    run_.desk.state(State::printing, "going on: homing, bringing the vat");
+    if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
+    const auto program = run_.setup.programs.resume(recovery);
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (recovery.finished) {
+        if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
+        return Ending::finished;
+    }
+    const bool there = run_.machine.state().position()[Axis::platform] == recovery.target.position()[Axis::platform] &&
+                       run_.machine.state().hooked_vat() == recovery.target.hooked_vat();
+    if (!there) return failure("the program that goes on does not lead to the next light");
+    return steps_from(next_light(facts_, run_.script));
+}
+
+Result<Ending> PrintRun::abandon(const Recovery& recovery) {
+    Recovery end = recovery;
+    end.finished = true;
+    const auto program = run_.setup.programs.resume(end);
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (Status status = note("cancel", {}); !status) return tl::unexpected(status.error());
+    return Ending::cancelled;
+}
+
+Result<Ending> PrintRun::steps_from(std::size_t first) {
+    for (std::size_t i = first; i < run_.script.steps.size(); ++i) {
+        Status status = serve_wishes(i);
+        if (status) {
+            const auto* command = std::get_if<std::string>(&run_.script.steps[i]);
+            status = command != nullptr ? run_.machine.send(0, i, *command) : expose(i);
+        }
+        if (!status && status.error().cause == Cause::cancelled)
+            return park(run_.desk.wishes().cancel ? Ending::cancelled : Ending::suspended);
+        if (!status) return tl::unexpected(status.error());
+        show_progress(i + 1, 0);
+    }
+    if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
+    if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
+    return Ending::finished;
+}
+
+// --- light ---------------------------------------------------------------------------------------------------------
+
+double PrintRun::exposure_s(const machine::Expose& light) const {
+    double seconds = light.seconds;
+    for (const ChangeFact& change : facts_.changes) {
+        if (change.material == light.material && light.layer >= change.from_layer) seconds = change.seconds;
+    }
+    return seconds;
+}
+
+bool PrintRun::skipped(int layer) const {
+    return std::find(facts_.skipped_layers.begin(), facts_.skipped_layers.end(), layer) != facts_.skipped_layers.end();
+}
+
+Status PrintRun::expose(std::size_t step) {
+    const machine::Expose& light = *run_.script.light(step);
+    if (light.layer != layer_) run_.desk.event("layer", fmt::format("{}", light.layer));
+    layer_ = light.layer;
+    run_.desk.update([&](Snapshot& s) {
+        s.layer = light.layer;
+        s.material = light.material;
+        s.image = light.image;
+    });
+    const auto [found, is_new] = facts_.lights.try_emplace(step);
+    LightFact& fact = found->second;
+    if (is_new && skipped(light.layer)) {
+        facts_.lights.erase(found);
+        run_.desk.event("log", fmt::format("the light of layer {} is left out", light.layer));
+        return {};
+    }
+    if (is_new) fact = {light.layer, light.material, exposure_s(light), 0, false, 0, 0};
+    // The image is decoded while the machine moves.
+    const auto image = fact.complete ? Result<job::Image>{} : run_.job.images(light.layer, light.material);
+    if (!image) return tl::unexpected(image.error());
+    while (!fact.complete) {
+        if (Status status = run_.machine.rest_in_place(); !status) return status;
+        if (Status status = serve_wishes(step); !status) return status;
+        if (Status status = shine(step, *image, fact); !status) return status;
+    }
+    return {};
+}
+
+/// One piece of a light: all that is left of it, unless somebody wants it to end before.
+Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fact) {
+    if (Status status = run_.machine.light_on(); !status) return status;
+    const double left_s = fact.planned_s - fact.lit_s;
+    const double noted_s = clock_.now();
+    if (Status status = note("light", {{"step", fmt::format("{}", step)},
+                                       {"layer", fmt::format("{}", fact.layer)},
+                                       {"material", fmt::format("{}", fact.material)},
+                                       {"planned", number(fact.planned_s)},
+                                       {"at", number(noted_s)}});
+        !status) {
+        run_.machine.light_off();
+        return status;
+    }
+    fact.open_light = last_record_;
+    // The last look before the light: a controller that restarts now has said so already.
+    if (Status status = run_.machine.link().listen_for(0); !status) {
+        run_.machine.light_off();
+        (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
+        return status;
+    }
+    if (run_.setup.guard != nullptr) run_.setup.guard->lit(fact.open_light);
+    const double start_s = clock_.now();
+    Status status = projector_.show_for(image, left_s);
+    run_.desk.event("light", fmt::format("layer {}, material {}, {:.3f} s", fact.layer, fact.material, left_s));
+    run_.desk.update([&](Snapshot& s) {
+        s.lit = true;
+        s.exposure_s = fact.planned_s;
+    });
+    bool whole = false;
+    if (status) status = burn(start_s + left_s, whole);
+    double on_s = 0;
+    Status dark;
+    if (whole) {
+        const auto measured = projector_.finish();
+        on_s = measured && *measured ? (*measured)->on_s : clock_.now() - start_s;
+        if (!measured) dark = tl::unexpected(measured.error());
+    } else {
+        dark = projector_.black();
+        on_s = clock_.now() - start_s;
+    }
+    if (!dark) (void)projector_.black();
+    run_.machine.light_off();
+    if (run_.setup.guard != nullptr) run_.setup.guard->dark();
+    run_.desk.update([](Snapshot& s) { s.lit = false; });
+    fact.lit_s += on_s;
+    fact.complete = whole || is_enough(fact.lit_s, fact.planned_s);
+    run_.desk.event("dark", fmt::format("{:.3f} s", on_s));
+    const Status noted = note("dark", {{"light", fmt::format("{}", fact.open_light)},
+                                       {"on", number(on_s)},
+                                       {"done", fact.complete ? "1" : "0"},
+                                       {"by", "host"}});
+    fact.open_light = 0;
+    if (!status) return status;
+    if (!dark) return dark;
+    return noted;
+}
+
+/// Waits, with an ear on the wire. `whole`: until the end.
+Status PrintRun::burn(double until_s, bool& whole) {
+    const double start_s = clock_.now();
+    for (double now_s = start_s; now_s < until_s; now_s = clock_.now()) {
+        const Wishes wishes = run_.desk.wishes();
+        if (wishes.pause_now || wishes.cancel || wishes.suspend) return {};
+        run_.desk.update([&](Snapshot& s) { s.lit_s = now_s - start_s; });
+        if (Status status = run_.machine.link().listen_for(std::min(look_every_s, until_s - now_s)); !status)
+            return status;
+    }
+    whole = true;
+    return {};
+}
+
+// --- what people want ----------------------------------------------------------------------------------------------
+
+bool PrintRun::wants_to_end() const {
+    const Wishes wishes = run_.desk.wishes();
+    return wishes.cancel || wishes.suspend;
+}
+
+/// Between two layers, or two vats: pump off, the vat under the platform, the part loose from its floor.
+bool PrintRun::at_safe_point() const {
+    const machine::Interlock& state = run_.machine.state();
+    if (state.pump_runs()) return false;
+    const bool tower = printer_.store() == machine::Store::tower;
+    if (tower && state.position()[Axis::carriage] != printer_.carriage.print_um) return false;
+    return state.position()[Axis::platform] > state.part_height_um();
+}
+
+int PrintRun::next_layer(std::size_t step) const {
+    for (std::size_t i = step; i < run_.script.steps.size(); ++i) {
+        if (const machine::Expose* light = run_.script.light(i)) return light->layer;
+    }
+    return -1;
+}
+
+Status PrintRun::serve_wishes(std::size_t step) {
+    if (Status status = run_.desk.watch(); !status) return status;
+    if (Status status = keep_changes(); !status) return status;
+    const Wishes wishes = run_.desk.wishes();
+    if (wishes.cancel || wishes.suspend) return wish_to_end();
+    if (wishes.pause_now || (wishes.pause_after && at_safe_point())) return pause("");
+    return at_safe_point() ? between_layers(step) : Status{};
+}
+
+/// The picture of the layer before, and resin for the one to come.
+Status PrintRun::between_layers(std::size_t step) {
+    const bool hook = run_.setup.after_layer && layer_ > hooked_layer_;
+    if (!hook && run_.job.refills.empty()) return {};
+    const int next = next_layer(step);
+    if (hook && next != layer_) {
+        hooked_layer_ = layer_;
+        if (Status status = run_.machine.rest(); !status) return status;
+        run_.setup.after_layer(layer_);
+    }
+    for (const Refill& refill : run_.job.refills) {
+        if (refill.layer != next || refilled_layer_ >= next || next == layer_) continue;
+        refilled_layer_ = next;
+        return pause(refill.text);
+    }
+    return {};
+}
+
+Status PrintRun::keep_changes() {
+    for (ChangeFact change : run_.desk.take_changes()) {
+        change.from_layer = layer_ + 1;
+        if (Status status = note("exposure", {{"material", fmt::format("{}", change.material)},
+                                              {"seconds", number(change.seconds)},
+                                              {"from", fmt::format("{}", change.from_layer)}});
+            !status)
+            return status;
+        facts_.changes.push_back(change);
+        run_.desk.update([&](Snapshot& s) {
+            s.exposures_s.resize(run_.job.materials.size());
+            s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
+        });
+        run_.desk.event("log", fmt::format("from layer {} on material {} is lit for {:g} s", change.from_layer,
+                                           change.material, change.seconds));
+    }
+    for (const int layer : run_.desk.take_skips()) {
+        if (layer <= layer_) continue;
+        if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
+        facts_.skipped_layers.push_back(layer);
+        run_.desk.event("log", fmt::format("layer {} will get no light", layer));
+    }
+    return {};
+}
+
+Status PrintRun::pause(const std::string& prompt) {
+    run_.desk.state(State::pausing);
+    if (Status status = run_.machine.rest(); !status) return status;
+    const machine::Interlock before = run_.machine.state();
+    const auto begin = run_.setup.programs.pause_begin(before);
+    if (!begin) return tl::unexpected(begin.error());
+    if (Status status = run_.machine.run(*begin); !status) return status;
+    if (Status status = note("pause", {}); !status) return status;
+    run_.desk.wish([](Wishes& w) { w.pause_after = w.pause_now = w.resume = false; });
+    run_.desk.update([&](Snapshot& s) { s.prompt = prompt; });
+    if (!prompt.empty()) run_.desk.event("prompt", prompt);
+    run_.desk.state(State::paused, prompt);
+    Status status = wait_for_resume();
+    run_.desk.update([](Snapshot& s) { s.prompt.clear(); });
+    if (!status) return status;
+    if (status = note("resume", {}); !status) return status;
+    const auto end = run_.setup.programs.pause_end(before);
+    if (!end) return tl::unexpected(end.error());
+    return run_.machine.run(*end);
+}
+
+Status PrintRun::wait_for_resume() {
+    for (;;) {
+        if (Status status = run_.desk.watch(); !status) return status;
+        if (wants_to_end()) return wish_to_end();
+        if (run_.desk.wishes().resume) break;
+        if (Status status = run_.machine.link().listen_for(pause_look_s); !status) return status;
+    }
+    run_.desk.wish([](Wishes& w) { w.resume = false; });
+    run_.desk.state(State::printing);
+    return {};
+}
+
+// --- the end -------------------------------------------------------------------------------------------------------
+
+Result<Ending> PrintRun::park(Ending ending) {
+    (void)projector_.black();
+    run_.desk.state(State::cancelling);
+    if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
+    const auto program = run_.setup.programs.cancel(run_.machine.state());
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (Status status = note(ending == Ending::cancelled ? "cancel" : "suspend", {}); !status)
+        return tl::unexpected(status.error());
+    return ending;
+}
+
+void PrintRun::make_safe(const Error& error) {
+    (void)projector_.black();
+    Link& link = run_.machine.link();
+    const bool emergency = run_.desk.stopped();
+    const bool quick = emergency || !(link.was_reset() || link.wire_failed() || journal_failed_);
+    (void)note("stop", {{"quick", quick ? "1" : "0"}, {"why", error.message}});
+    if (emergency || link.was_reset() || link.wire_failed()) return;
+    if (!journal_failed_) return link.stop(run_.script.stop_commands);
+    // Nothing more can be kept: what is under way ends, and nothing else moves.
+    for (const std::string& command : run_.script.stop_commands) (void)link.send(command);
+    (void)link.fence();
+}
+
+Status PrintRun::note(std::string_view kind, const JournalValues& values) {
+    if (run_.journal == nullptr) return {};
+    const auto record = run_.journal->append(kind, values);
+    journal_failed_ = journal_failed_ || !record;
+    if (!record) return tl::unexpected(record.error());
+    last_record_ = *record;
+    return {};
+}
+
+void PrintRun::show_progress(std::size_t step, double within_s) {
+    const double done_s = run_.times[step] + within_s;
+    const double all_s = run_.times.back();
+    const machine::Interlock& state = run_.machine.state();
+    const auto vat = state.hooked_vat();
+    run_.desk.update([&](Snapshot& s) {
+        s.completion = all_s > 0 ? done_s / all_s : 1;
+        s.seconds_left = all_s - done_s;
+        s.seconds_done = clock_.now() - begin_s_;
+        s.position = state.position();
+        for (const Axis axis : machine::all_axes) s.homed[static_cast<std::size_t>(axis)] = state.homed(axis);
+        s.slot = vat ? printer_.vats[static_cast<std::size_t>(*vat)].slot : 0;
+        s.pump = state.pump_runs();
+        s.lines_sent = run_.machine.link().lines_sent();
+        s.resends = run_.machine.link().resends();
+    });
+}
+
+}  // namespace pliant::host

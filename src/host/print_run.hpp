@@ -1,0 +1,79 @@
+// One print from some step to its end: commands, lights, pauses, prompts, parking.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "host/desk.hpp"
+#include "host/journal.hpp"
+#include "host/journal_facts.hpp"
+#include "host/machine.hpp"
+#include "host/script.hpp"
+
+namespace pliant::host {
+
+/// All must outlive the run.
+struct RunSetup {
+    const ControlSetup& setup;
+    const PrintJob& job;
+    const Script& script;
+    const std::vector<double>& times;  ///< of script_times()
+    Machine& machine;
+    Journal* journal;  ///< nullptr: none is kept
+    Desk& desk;
+};
+
+enum class Ending { finished, cancelled, suspended };
+
+class PrintRun {
+public:
+    PrintRun(const RunSetup& run, JournalFacts facts);
+    ~PrintRun();
+    PrintRun(const PrintRun&) = delete;
+    PrintRun& operator=(const PrintRun&) = delete;
+
+    /// Prints from the beginning.
+    [[nodiscard]] Result<Ending> print();
+    /// Goes on from where the machine stands.
+    [[nodiscard]] Result<Ending> resume(const Recovery& recovery);
+    /// Puts an interrupted print away for good.
+    [[nodiscard]] Result<Ending> abandon(const Recovery& recovery);
+    /// After an error: dark, and what else can be made safe.
+    void make_safe(const Error& error);
+
+private:
+    [[nodiscard]] Result<Ending> steps_from(std::size_t step);
+    [[nodiscard]] Status expose(std::size_t step);
+    [[nodiscard]] Status shine(std::size_t step, const job::Image& image, LightFact& fact);
+    [[nodiscard]] Status burn(double until_s, bool& whole);
+    [[nodiscard]] Status serve_wishes(std::size_t step);
+    [[nodiscard]] Status between_layers(std::size_t step);
+    [[nodiscard]] Status keep_changes();
+    [[nodiscard]] Status pause(const std::string& prompt);
+    [[nodiscard]] Status wait_for_resume();
+    [[nodiscard]] Result<Ending> park(Ending ending);
+    [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
+    [[nodiscard]] double exposure_s(const machine::Expose& light) const;
+    [[nodiscard]] bool skipped(int layer) const;
+    [[nodiscard]] bool at_safe_point() const;
+    [[nodiscard]] int next_layer(std::size_t step) const;
+    [[nodiscard]] bool wants_to_end() const;
+    void show_progress(std::size_t step, double within_s);
+
+    RunSetup run_;
+    JournalFacts facts_;
+    const machine::Printer& printer_;
+    Projector& projector_;
+    Clock& clock_;
+    double begin_s_;
+    int layer_ = -1;           ///< of the last light
+    int hooked_layer_ = -1;    ///< for which after_layer has been called
+    int refilled_layer_ = -1;  ///< before which a refill has been asked for
+    long last_record_ = 0;
+    bool journal_failed_ = false;
+};
+
+}  // namespace pliant::host

@@ -1,0 +1,28 @@
+// A job archive made ready to print.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/error.hpp"
+#include "host/control_types.hpp"
+#include "job/job.hpp"
+#include "machine/printer.hpp"
+#include "plan/plan.hpp"
+
+namespace pliant::operate {
+
+struct ReadyJob {
+    std::shared_ptr<job::Archive> archive;  ///< the images come from it; one thread at a time
+    machine::Printer printer;               ///< from the job's own printer.toml, its vats filled as the plan asks
+    plan::Plan plan;
+    host::PrintJob job;  ///< its journal is JOB.zip.journal beside the job
+};
+
+/// Errors: no job, no printer or no G-code in it.
+[[nodiscard]] Result<ReadyJob> load_job(const std::filesystem::path& path);
+
+/// The image of a layer and a material (indices into the manifest).
+[[nodiscard]] Result<job::Image> image_of(const job::Archive& archive, int layer, int material);
+
+}  // namespace pliant::operate

@@ -1,0 +1,40 @@
+// The guard as a process: it waits at the end of a pipe whose other end is the host's, and when that falls silent it
+// takes away the projector's picture and writes down when.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/error.hpp"
+#include "host/guard.hpp"
+
+namespace pliant::operate {
+
+class ProcessGuard final : public host::Guard {
+public:
+    struct Options {
+        std::filesystem::path witness;  ///< file for what it has seen, beside the journal
+        std::filesystem::path shown;    ///< picture that a projector shows as long as it is there; "": none
+        double clock_speed = 1;         ///< seconds of the devices' clock in one of CLOCK_MONOTONIC
+    };
+    /// Starts the process. Call it before the program has other threads, and before it opens ports and journals.
+    [[nodiscard]] static Result<ProcessGuard> start(const Options& options);
+    ProcessGuard(ProcessGuard&& other) noexcept;
+    ProcessGuard& operator=(ProcessGuard&&) = delete;
+    ~ProcessGuard() override;  ///< the process ends in peace
+
+    void lit(long light) override;
+    void dark() override;
+    [[nodiscard]] std::optional<double> dark_at(long light) override;
+
+private:
+    ProcessGuard(int pipe, int process, Options options)
+        : pipe_(pipe), process_(process), options_(std::move(options)) {}
+    void tell(long message) const;
+
+    int pipe_ = -1;
+    int process_ = -1;
+    Options options_;
+};
+
+}  // namespace pliant::operate

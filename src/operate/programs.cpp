@@ -1,0 +1,30 @@
+#include "operate/programs.hpp"
+
+#include <memory>
+
+#include "plan/recover.hpp"
+#include "plan/safe_stop.hpp"
+
+namespace pliant::operate {
+
+using machine::Interlock;
+
+host::Programs programs_of(const machine::Printer& printer) {
+    const auto p = std::make_shared<const machine::Printer>(printer);
+    host::Programs programs;
+    programs.cancel = [p](const Interlock& state) -> Result<std::string> { return plan::cancel_program(state, *p); };
+    programs.pause_begin = [p](const Interlock& state) -> Result<std::string> {
+        return plan::pause_program(state, *p).begin;
+    };
+    programs.pause_end = [p](const Interlock& before) -> Result<std::string> {
+        return plan::pause_program(before, *p).end;
+    };
+    programs.bring_vat = [p](const Interlock& state, int slot) { return plan::vat_program(state, *p, slot); };
+    programs.clean = [p](const Interlock& state, double seconds) { return plan::clean_program(state, *p, seconds); };
+    programs.resume = [p](const host::Recovery& r) {
+        return plan::resume_program({r.state, r.target, r.finished, r.last_lit_vat, r.on_hooks}, *p);
+    };
+    return programs;
+}
+
+}  // namespace pliant::operate
