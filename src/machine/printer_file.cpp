@@ -95,6 +95,19 @@ void read_motion(Reader& r, AxisSpec& axis) {
         axis.homing_speed_mm_s = positive(r, "homing_speed", speeds, factor);
 }
 
+/// Steps a mm follow from what can be counted on the machine.
+Drive read_drive(Reader& r, bool rotary) {
+    Drive d;
+    if (r.has("motors")) d.motors = whole(r, "motors", 1, 2);
+    if (r.has("motor_steps")) d.motor_steps = whole(r, "motor_steps", 1, 10000);
+    if (r.has("microsteps")) d.microsteps = whole(r, "microsteps", 1, 256);
+    d.gear = r.number("gear", 1);
+    if (!(d.gear > 0 && d.gear <= 1e6))
+        r.problem("gear", "must be above 0: turns of the motor for one behind the gear");
+    if (r.has("per_turn")) d.per_turn_mm = positive(r, "per_turn", place_dimension(rotary), rotary ? degrees : 1e3);
+    return d;
+}
+
 AxisSpec read_axis(Reader r, Dialect dialect, bool may_rotate) {
     AxisSpec axis;
     axis.letter = read_letter(r, dialect);
@@ -106,6 +119,7 @@ AxisSpec read_axis(Reader r, Dialect dialect, bool may_rotate) {
         if (axis.min_um >= axis.max_um) r.problem("travel", "must be [lowest, highest]");
     }
     read_motion(r, axis);
+    axis.drive = read_drive(r, axis.rotary);
     r.finish();
     return axis;
 }
@@ -224,6 +238,8 @@ void read_outline_offsets(Reader& r, Resin& resin) {
     constexpr int most_um = 10000;
     if (r.has("xy_compensation")) resin.xy_compensation_um = length_um(r, "xy_compensation", -most_um);
     if (resin.xy_compensation_um > most_um) r.problem("xy_compensation", "must be -10 mm to 10 mm");
+    if (r.has("bleed_compensation")) resin.bleed_compensation_um = length_um(r, "bleed_compensation");
+    if (resin.bleed_compensation_um > most_um) r.problem("bleed_compensation", "must be at most 10 mm");
     if (!r.has("elephant_foot")) return;
     resin.elephant_foot_um = length_um(r, "elephant_foot");
     if (resin.elephant_foot_um > most_um) r.problem("elephant_foot", "must be at most 10 mm");
@@ -238,6 +254,7 @@ Resin read_resin(const std::string& name, Reader r) {
     resin.bottom_exposure_s = r.quantity("bottom_exposure", Dimension::time, resin.exposure_s);
     if (resin.bottom_exposure_s < resin.exposure_s) r.problem("bottom_exposure", "is shorter than exposure");
     resin.bottom_layers = r.has("bottom_layers") ? whole(r, "bottom_layers", 0, 10000) : 0;
+    resin.transition_layers = r.has("transition_layers") ? whole(r, "transition_layers", 0, 10000) : 0;
     read_outline_offsets(r, resin);
     resin.cure_depth_um = length_um(r, "cure_depth", 1);
     resin.critical_share = r.number("critical_share", 0.8);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -161,10 +162,36 @@ Geometry read_geometry(Reader& reader, Context& context) {
     return read_shape(reader, context);
 }
 
+/// What the body turns into on the way, when it is printed.
+std::optional<PrintBlend> read_blend(Reader& body, Context& context) {
+    if (!body.has("blend")) return (void)body.raw("blend"), std::nullopt;
+    Reader reader = body.table("blend");
+    PrintBlend blend;
+    blend.material = find_material(reader, context);
+    blend.from = reader.vector("from");
+    blend.to = reader.vector("to");
+    if (reader.has("from") && reader.has("to") && norm(blend.to - blend.from) == 0)
+        reader.problem("to", "is where \"from\" is; the blend needs a way to change on");
+    if (reader.has("shares")) blend.shares = reader.numbers("shares");
+    const bool shares =
+        std::all_of(blend.shares.begin(), blend.shares.end(), [](double s) { return s >= 0 && s <= 1; });
+    if (blend.shares.size() < 2 || !shares) reader.problem("shares", "are two numbers or more from 0 to 1");
+    (void)reader.raw("shares");
+    if (reader.has("cell")) {
+        blend.cell = reader.quantity("cell", Dimension::length, 1) / context.robot.unit_m;
+        if (!(blend.cell > 0)) reader.problem("cell", "must be above zero");
+    }
+    (void)reader.raw("cell");
+    reader.finish();
+    return blend;
+}
+
 void read_body(Reader& reader, Context& context, BodySpec& body) {
     body.material = find_material(reader, context);
     body.geometry = read_geometry(reader, context);
     body.size = read_size(reader, "size", context);
+    body.blend = read_blend(reader, context);
+    body.exposure_s = read_exposure(reader, "exposure");
 }
 
 }  // namespace

@@ -24,8 +24,9 @@ struct MaterialSpec {
     double youngs_modulus_Pa = 0;
     double poisson_ratio = 0;
     double density_kg_m3 = 0;
-    std::string resin;                            ///< the material's own name where the file says nothing
-    std::optional<std::array<double, 3>> colour;  ///< sRGB, each in [0, 1]
+    std::string resin;                             ///< the material's own name where the file says nothing
+    std::optional<std::array<double, 3>> colour;   ///< sRGB, each in [0, 1]
+    double exposure_s = 0, bottom_exposure_s = 0;  ///< of its layers when printed; 0: what the printer file says
 };
 
 /// In length units.
@@ -51,12 +52,22 @@ struct CavityAt {
 struct CrossedNotches {};
 using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt, CrossedNotches>;
 
+/// A body that changes from its material to another when it is printed; in length units.
+struct PrintBlend {
+    int material = 0;  ///< index into Robot::materials
+    Vec3 from, to;
+    std::vector<double> shares{0, 1};  ///< of the other material, evenly spaced from `from` to `to`
+    double cell = 0;                   ///< edge of the squares that are one or the other; 0: a pixel
+};
+
 struct BodySpec {
     std::string name;
     int material = 0;  ///< index into Robot::materials
     Geometry geometry;
     double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
     int line = 0;
+    std::optional<PrintBlend> blend{};  ///< for printing; a simulation takes the body for its material alone
+    double exposure_s = 0;              ///< of its layers when printed; 0: that of its material
 };
 
 struct MeshSpec {
