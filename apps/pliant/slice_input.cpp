@@ -5,16 +5,18 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
+#include "mesh/mesher.hpp"
+#include "mesh/step_file.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
-#include "step/read_step.hpp"
 #include "threemf/read_3mf.hpp"
 
 namespace pliant::app {
 namespace {
 
 constexpr double um_per_mm = 1e3;
+constexpr double printable_um = 10;  // chords may leave a curve by a fraction of a pixel
 
 void add_resin(Drawing& drawing, const std::string& material, const std::string& resin) {
     const auto known = [&](const auto& pair) { return pair.first == material; };
@@ -116,9 +118,11 @@ Status add_surface(std::string_view bytes, const std::filesystem::path& path, co
 Status add_step(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
     if (material.empty())
         return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
-    Result<step::StepFile> file = step::read_step(path);
-    if (!file) return tl::unexpected(file.error());
-    drawing.bodies.push_back({material, mesh::scaled(std::move(file->surface_mm), um_per_mm), path.stem().string()});
+    const Result<mesh::Solid> solids = mesh::read_step(path, "", um_per_mm);
+    if (!solids) return tl::unexpected(solids.error());
+    Result<mesh::TriMesh> surface = mesh::tessellate(*solids, printable_um);
+    if (!surface) return input_error("{}: {}", path.string(), surface.error().message);
+    drawing.bodies.push_back({material, std::move(*surface), path.stem().string()});
     return {};
 }
 
@@ -147,7 +151,7 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
-    if (step::looks_like_step(*bytes)) return add_step(path, material, drawing);
+    if (mesh::looks_like_step(*bytes)) return add_step(path, material, drawing);
     if (mesh::looks_like_tet_mesh(*bytes)) return add_tets(*bytes, path.string(), material, drawing);
     return add_surface(*bytes, path, material, drawing);
 }

@@ -38,6 +38,7 @@ struct BoxSelector {
 /// region).
 struct SurfaceFile {
     std::filesystem::path path;
+    std::string part;  ///< of a 3MF file: the object or the material; empty: all of it
 };
 struct MeshRegion {
     std::string name;
@@ -47,7 +48,9 @@ struct MeshRegion {
 struct CavityAt {
     Vec3 point;
 };
-using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt>;
+/// The notches that cables cross which ask for it; a gap alone is found so.
+struct CrossedNotches {};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt, CrossedNotches>;
 
 /// A body that changes from its material to another when it is printed; in length units.
 struct PrintBlend {
@@ -130,10 +133,13 @@ struct CableSpec {
     double friction = 0;               ///< coefficient in the guides
     sim::CableTarget target;
     bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
+    bool fill_notches = false;  ///< the notches that it crosses are gaps
     int line = 0;
 };
 
-/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, or a region.
+/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, a region, or the
+/// notches that cables cross.
+inline constexpr std::string_view notches_name = "notches";
 struct GapSpec {
     std::string name;
     Geometry space;
