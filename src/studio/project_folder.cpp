@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <system_error>
 
-#include "robot/robot.hpp"
+#include "core/config.hpp"
 
 namespace pliant::studio {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_path = 400, most_files = 500;
+constexpr std::size_t longest_path = 400, longest_name = 255, most_files = 500;
 constexpr int deepest = 2;
 
 bool is_listed(const fs::path& path) {
@@ -29,6 +29,17 @@ void list(const fs::path& folder, const fs::path& root, int depth, std::vector<s
         } else if (it->is_regular_file(error) && is_listed(path)) {
             files.push_back(path.lexically_relative(root).generic_string());
         }
+    }
+}
+
+template <class Visit>
+void visit_texts(const config::Value& value, const Visit& visit) {
+    if (const auto* text = std::get_if<std::string>(&value.data)) visit(*text);
+    if (const auto* array = std::get_if<config::Array>(&value.data)) {
+        for (const config::Value& entry : *array) visit_texts(entry, visit);
+    }
+    if (const auto* table = std::get_if<config::Table>(&value.data)) {
+        for (const config::Entry& entry : *table) visit_texts(entry.second, visit);
     }
 }
 
@@ -74,22 +85,16 @@ std::vector<std::string> ProjectFolder::files() const {
     return files;
 }
 
-std::vector<fs::path> files_of(const robot::Robot& robot) {
-    std::vector<fs::path> files;
-    const auto add_geometry = [&](const auto& geometry) {
-        if (const auto* file = std::get_if<robot::SurfaceFile>(&geometry)) files.push_back(file->path);
-    };
-    const auto add_selector = [&](const robot::Selector& selector) {
-        if (const auto* surface = std::get_if<robot::SurfaceSelector>(&selector)) files.push_back(surface->path);
-    };
-    if (robot.mesh.file) files.push_back(*robot.mesh.file);
-    for (const auto& body : robot.bodies) add_geometry(body.geometry);
-    for (const auto& chamber : robot.chambers) add_geometry(chamber.air);
-    for (const auto& gap : robot.gaps) add_geometry(gap.space);
-    for (const auto& obstacle : robot.obstacles) add_geometry(obstacle.shape);
-    for (const auto& fixed : robot.fixed) add_selector(fixed.selector);
-    for (const auto& plate : robot.plates) add_selector(plate.selector);
-    return files;
+std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view toml, const fs::path& file) const {
+    std::vector<std::string> outside;
+    const Result<config::Document> document = config::parse(toml, file);
+    if (!document) return outside;
+    visit_texts(document->root, [&](const std::string& text) {
+        const bool a_name = text.find('/') == std::string::npos && text != "..";
+        if (a_name && text.size() > longest_name) return;  // no file can be called so
+        if (!holds(file.parent_path() / text)) outside.push_back(text);
+    });
+    return outside;
 }
 
 }  // namespace pliant::studio

@@ -8,10 +8,6 @@
 
 #include "core/error.hpp"
 
-namespace pliant::robot {
-struct Robot;
-}
-
 namespace pliant::studio {
 
 class ProjectFolder {
@@ -27,13 +23,14 @@ public:
     [[nodiscard]] bool holds(const std::filesystem::path& path) const;
     /// Robot files and jobs (.toml, .zip), relative, sorted; two levels deep, at most 500, hidden ones left out.
     [[nodiscard]] std::vector<std::string> files() const;
+    /// The text values of a TOML document that, taken as paths beside `file`, lead outside: found before anything is
+    /// read that the document names. A document with mistakes has none.
+    [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,
+                                                                 const std::filesystem::path& file) const;
 
 private:
     explicit ProjectFolder(std::filesystem::path root) : root_(std::move(root)) {}
     std::filesystem::path root_;  ///< canonical
 };
-
-/// Every file that a robot is made of beside its own: surfaces and the mesh.
-[[nodiscard]] std::vector<std::filesystem::path> files_of(const robot::Robot& robot);
 
 }  // namespace pliant::studio

@@ -72,3 +72,20 @@ TEST_CASE("the list has robots and jobs, two levels deep, and follows no links")
 TEST_CASE("no such folder") {
     CHECK_FALSE(ProjectFolder::open("/no/such/folder"));
 }
+
+TEST_CASE("texts of a document that lead outside are found, whatever key they stand under") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    const std::string toml = R"(name = "a / b"
+pitch = "= 84 / gaps"
+size = "2.5 mm"
+mesh.file = "../project_secret/s.toml"
+body = [{ geometry = { union = [{ step = "/etc/passwd" }, { box = [1] }] } }, { geometry = "parts/c.zip" }]
+surface = "link.toml"
+up = "..")";
+    CHECK(folder->texts_leading_outside(toml, place.project / "a.toml") ==
+          std::vector<std::string>{"../project_secret/s.toml", "/etc/passwd", "link.toml", ".."});
+    CHECK(folder->texts_leading_outside("x = \"" + std::string(5000, 'a') + "\"", place.project / "a.toml").empty());
+    CHECK(folder->texts_leading_outside("not toml", place.project / "a.toml").empty());
+}

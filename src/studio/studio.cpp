@@ -57,11 +57,7 @@ Status Studio::start(const std::filesystem::path& file) {
     const std::string name = file.filename().string();
     document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::preview, {}};
     // What the user's own file names lies where the user wants it.
-    if (const Result<robot::Robot> robot = robot::parse_robot(*text, document_.file)) {
-        for (const auto& path : files_of(*robot)) {
-            if (!folder_.holds(path)) document_.outside.push_back(path);
-        }
-    }
+    document_.outside = folder_.texts_leading_outside(*text, document_.file);
     rebuild();
     return {};
 }
@@ -78,12 +74,10 @@ void Studio::rebuild() {
 
 /// A text that came over the wire must not make the program read what lies outside of the folder.
 Status Studio::check_files(const std::string& text) const {
-    const Result<robot::Robot> robot = robot::parse_robot(text, document_.file);
-    if (!robot) return {};  // building it will say what is wrong
-    for (const auto& path : files_of(*robot)) {
+    for (const std::string& path : folder_.texts_leading_outside(text, document_.file)) {
         const auto& known = document_.outside;
-        if (folder_.holds(path) || std::find(known.begin(), known.end(), path) != known.end()) continue;
-        return input_error("{}: lies outside of the project folder {}", path.string(), folder_.path().string());
+        if (std::find(known.begin(), known.end(), path) != known.end()) continue;
+        return input_error("\"{}\" lies outside of the project folder {}", path, folder_.path().string());
     }
     return {};
 }

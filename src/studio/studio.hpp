@@ -55,7 +55,7 @@ public:
         std::string text, saved;
         std::vector<std::string> undo, redo;
         Accuracy accuracy = Accuracy::preview;
-        std::vector<std::filesystem::path> outside;  ///< files outside of the folder that the user's own file names
+        std::vector<std::string> outside;  ///< paths out of the folder that the user's own file names
     };
     [[nodiscard]] Document document();
     /// Checks and builds the new text. `because` tells the pages who did it.
