@@ -201,6 +201,6 @@ test('a print on the virtual printer is paused, goes on, and is cancelled', asyn
   await page.getByTestId('cancel').click();
   await page.getByTestId('cancel-sure').click();
   await page.getByTestId('start').waitFor();
-  assert.match(await page.getByTestId('log').textContent(), /Paused/);
+  assert.match(await page.getByTestId('log').textContent(), /cancelled/);
   assert.deepEqual([...wrong, ...watcher.wrong], []);
 });
