@@ -176,19 +176,23 @@ void press(host::Control& control, char key) {
     if (key == 'e') control.emergency_stop();
 }
 
-/// Until the print has ended. Ctrl-C suspends it; once more is an emergency stop.
+/// Until the print has ended. Ctrl-C suspends it; once more, later, is an emergency stop: some programs send the signal
+/// twice.
 void attend(host::Control& control, const Output& output) {
+    using namespace std::chrono;
     const Keys keys;
     Display display(output);
     int served = 0;
+    steady_clock::time_point first;
     do {
         press(control, keys.next(100));
-        if (interrupts > served) {
-            ++served;
-            if (served == 1)
-                (void)control.suspend();
-            else
-                control.emergency_stop();
+        if (interrupts > 0 && served == 0) {
+            served = interrupts;
+            first = steady_clock::now();
+            (void)control.suspend();
+        } else if (interrupts > served) {
+            served = interrupts;
+            if (steady_clock::now() - first > seconds(1)) control.emergency_stop();
         }
         display.show(control);
     } while (!is_over(control.snapshot()));
