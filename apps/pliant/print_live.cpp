@@ -16,6 +16,7 @@
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
+#include "operate/clock_file.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/picture_projector.hpp"
 #include "operate/print_job.hpp"
@@ -273,7 +274,7 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, 
         return input_error("--projector {}: no such folder", options.projector);
     operate::PictureProjector projector(options.projector);
     const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard", projector.shown(),
-                                                       options.speed};
+                                                       options.speed, options.clock_file.empty() ? nullptr : &clock};
     auto guard = operate::ProcessGuard::start(guard_options);
     if (!guard) return tl::unexpected(guard.error());
     if (Status dark = projector.black(); !dark) return tl::unexpected(dark.error());
@@ -289,6 +290,11 @@ Result<int> print_live(const LiveOptions& options) {
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;
+    if (!options.clock_file.empty()) {
+        auto clock = operate::ClockFile::open(options.clock_file);
+        if (!clock) return tl::unexpected(clock.error());
+        return print_on_port(options, *ready, *clock);
+    }
     host::SteadyClock steady;
     host::ScaledClock clock(steady, options.speed);
     return options.port.empty() ? print_on_live_twin(options, *ready, clock) : print_on_port(options, *ready, clock);
