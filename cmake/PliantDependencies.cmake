@@ -16,6 +16,8 @@ find_package(CGAL REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
+pkg_check_modules(sdl2 REQUIRED IMPORTED_TARGET sdl2)
+pkg_check_modules(x11 REQUIRED IMPORTED_TARGET x11) # tests only
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
 pkg_check_modules(pugixml REQUIRED IMPORTED_TARGET pugixml)
@@ -30,7 +32,15 @@ function(pliant_find_plain target header library)
 endfunction()
 
 pliant_find_plain(metis metis.h metis)
-pliant_find_plain(gmsh gmsh.h gmsh)
+pliant_find_plain(gmsh gmshc.h gmsh)
+
+# Gmsh is not linked but loaded when it is needed (src/mesh/gmsh_library.hpp): under the name that the loader knows.
+execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${gmsh_LIBRARY} OUTPUT_VARIABLE gmsh_headers COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCH "SONAME +([^ \n]+)" gmsh_soname "${gmsh_headers}")
+add_library(gmsh_when_needed INTERFACE)
+target_include_directories(gmsh_when_needed SYSTEM INTERFACE ${gmsh_INCLUDE})
+target_compile_definitions(gmsh_when_needed INTERFACE PLIANT_GMSH_LIBRARY="${CMAKE_MATCH_1}")
+target_link_libraries(gmsh_when_needed INTERFACE ${CMAKE_DL_LIBS})
 
 # Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose
 # size is not known when they are compiled (SVE, RVV) do not fit into arrays.

@@ -6,7 +6,7 @@
 #
 # Each test file is one CTest entry. A reference test reads the folder that PLIANT_REFERENCE_DATA names and is
 # reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp). A peer test
-# runs CalculiX (ccx) beside Pliant, meshio_peer_test.cpp meshio, and is skipped likewise where it is not installed.
+# runs CalculiX (ccx) beside Pliant, meshio_peer_test.cpp meshio, display_peer_test.cpp Xvfb, and is skipped likewise where it is not installed.
 
 add_library(pliant_flags INTERFACE)
 target_include_directories(pliant_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
@@ -50,6 +50,8 @@ function(pliant_test_program name tests reference_tests libraries) # then the pe
     set(peer ccx)
     if(stem STREQUAL "meshio")
       set(peer meshio)
+    elseif(stem STREQUAL "display")
+      set(peer Xvfb)
     endif()
     add_test(NAME ${name}/peer/${stem} COMMAND ${program} --peer=${peer} --source-file=*/${file}
              WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

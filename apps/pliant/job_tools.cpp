@@ -1,5 +1,8 @@
 #include "job_tools.hpp"
 
+#include "core/files.hpp"
+#include "job/png.hpp"
+
 namespace pliant::app {
 
 Result<OpenJob> open_job(const std::filesystem::path& path) {
@@ -10,6 +13,24 @@ Result<OpenJob> open_job(const std::filesystem::path& path) {
     Result<machine::Printer> printer = machine::parse_printer(*text, path / "printer.toml");
     if (!printer) return tl::unexpected(printer.error());
     return OpenJob{std::move(*archive), std::move(*printer)};
+}
+
+Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
+                                            const std::filesystem::path& printer_path) {
+    if (projector.mask.empty()) return std::nullopt;
+    const std::filesystem::path path = printer_path.parent_path() / projector.mask;
+    const Result<std::string> png = read_file(path);
+    if (!png) return tl::unexpected(png.error());
+    Result<job::Image> mask = job::decode_png(*png, {projector.width_px, projector.height_px}, path.string());
+    if (!mask) return tl::unexpected(mask.error());
+    return std::optional(std::move(*mask));
+}
+
+Result<std::optional<job::Image>> mask_of(const OpenJob& job) {
+    if (job.printer.projector.mask.empty()) return std::nullopt;
+    Result<job::Image> mask = job.archive.image(mask_entry);
+    if (!mask) return tl::unexpected(mask.error());
+    return std::optional(std::move(*mask));
 }
 
 Result<job::Image> image_of(const job::Archive& archive, int layer, int material) {

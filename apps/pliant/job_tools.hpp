@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/error.hpp"
@@ -14,6 +15,15 @@ struct OpenJob {
     job::Archive archive;
     machine::Printer printer;  ///< from the job's own printer.toml
 };
+
+/// What a job calls the projector's mask, whatever its name beside the printer file.
+inline constexpr const char* mask_entry = "mask.png";
+
+/// The mask that the projector names, beside the printer file `printer_path`; nullopt where it names none.
+[[nodiscard]] Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
+                                                          const std::filesystem::path& printer_path);
+/// The same from the job. Errors: the job has none though its printer names one.
+[[nodiscard]] Result<std::optional<job::Image>> mask_of(const OpenJob& job);
 
 [[nodiscard]] Result<OpenJob> open_job(const std::filesystem::path& path);
 

@@ -37,7 +37,11 @@ Result<int> print_on_twin(const Options& options) {
     const Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
     if (!plan) return tl::unexpected(plan.error());
 
-    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer));
+    Result<std::optional<job::Image>> mask = mask_of(*job);
+    if (!mask) return tl::unexpected(mask.error());
+    twin::Options twin_options;
+    twin_options.mask = std::move(*mask);
+    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer), std::move(twin_options));
     // What has been shown is remembered: decoding is most of the work.
     std::map<std::pair<int, int>, twin::Runs> shown;
     const auto images = [&](int layer, int material) {

@@ -5,6 +5,8 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
+#include "mesh/mesher.hpp"
+#include "mesh/step_file.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/build.hpp"
@@ -14,11 +16,26 @@ namespace pliant::app {
 namespace {
 
 constexpr double um_per_mm = 1e3;
+constexpr double printable_um = 10;  // chords may leave a curve by a fraction of a pixel
 
 void add_resin(Drawing& drawing, const std::string& material, const std::string& resin) {
     const auto known = [&](const auto& pair) { return pair.first == material; };
     if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
         drawing.resin_of_material.emplace_back(material, resin);
+}
+
+const robot::BodySpec& body_named(const robot::Robot& robot, const std::string& name) {
+    return *std::find_if(robot.bodies.begin(), robot.bodies.end(),
+                         [&](const robot::BodySpec& body) { return body.name == name; });
+}
+
+/// Squares of a length become whole pixels once the printer is known.
+slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend) {
+    const double um = robot.unit_m * 1e6;
+    slice::Blend result{robot.materials[static_cast<std::size_t>(blend.material)].name, um * blend.from, um * blend.to,
+                        blend.shares, 1};
+    result.cell_um = um * blend.cell;
+    return result;
 }
 
 Result<Drawing> read_robot(const std::string& path, const std::vector<std::string>& assignments, Progress& progress) {
@@ -30,9 +47,22 @@ Result<Drawing> read_robot(const std::string& path, const std::vector<std::strin
     drawing.name = robot->name;
     for (robot::BodySurface& body : *surfaces) {
         const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
-        drawing.bodies.push_back({material.name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        const robot::BodySpec& spec = body_named(*robot, body.body);
+        std::string name = material.name;
+        // A body with light of its own is a material of its own in the same resin.
+        if (spec.exposure_s > 0) {
+            name += " of " + spec.name;
+            add_resin(drawing, name, material.resin);
+            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
+        }
+        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        if (spec.blend) drawing.bodies.back().blend = blend_of(*robot, *spec.blend);
     }
-    for (const robot::MaterialSpec& material : robot->materials) add_resin(drawing, material.name, material.resin);
+    for (const robot::MaterialSpec& material : robot->materials) {
+        add_resin(drawing, material.name, material.resin);
+        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
+            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
+    }
     return drawing;
 }
 
@@ -85,6 +115,17 @@ Status add_surface(std::string_view bytes, const std::filesystem::path& path, co
     return {};
 }
 
+Status add_step(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    const Result<mesh::Solid> solids = mesh::read_step(path, "", um_per_mm);
+    if (!solids) return tl::unexpected(solids.error());
+    Result<mesh::TriMesh> surface = mesh::tessellate(*solids, printable_um);
+    if (!surface) return input_error("{}: {}", path.string(), surface.error().message);
+    drawing.bodies.push_back({material, std::move(*surface), path.stem().string()});
+    return {};
+}
+
 Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
     if (material.empty())
         return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
@@ -110,6 +151,7 @@ Status add_file(const std::string& input, Drawing& drawing) {
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return add_3mf(path, material, drawing);
+    if (mesh::looks_like_step(*bytes)) return add_step(path, material, drawing);
     if (mesh::looks_like_tet_mesh(*bytes)) return add_tets(*bytes, path.string(), material, drawing);
     return add_surface(*bytes, path, material, drawing);
 }

@@ -1,6 +1,7 @@
 // What `pliant slice` prints: bodies from robot files, 3MF files, surfaces and tet meshes.
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,13 +19,14 @@ struct Drawing {
     std::vector<slice::Body> bodies;
     std::vector<job::MaterialStack> stacks;  ///< in place of bodies: images that exist
     std::vector<std::pair<std::string, std::string>> resin_of_material;
+    std::map<std::string, std::pair<double, double>> exposure_of_material;  ///< seconds, first layers; 0: not said
     std::vector<std::string> warnings;
 };
 
 /// One robot file (.toml), with `assignments` as --set gives them; or any number of
 ///   FILE.3mf            bodies of the materials that the file names
 ///   FILE.vtk|vtu|msh    a tet mesh: each region is a body of the material of its name
-///   MATERIAL=FILE       a surface or any of these, all of one material
+///   MATERIAL=FILE       a surface, a STEP file or any of these, all of one material
 ///   MATERIAL=STACK      a folder or zip file of layer images; then all inputs are stacks, each of its own material
 /// Lengths without a unit are millimetres. A material is printed in the resin of its name.
 [[nodiscard]] Result<Drawing> read_drawing(const std::vector<std::string>& inputs,

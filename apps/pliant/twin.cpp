@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "job/png.hpp"
+#include "job_tools.hpp"
 #include "machine/printer.hpp"
 #include "operate/clock_file.hpp"
 #include "twin/serve.hpp"
@@ -95,8 +96,11 @@ Status run_twin(const Options& options) {
         return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
     const Result<machine::Printer> printer = machine::load_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
-    const Result<twin::Options> wanted = twin_options(options);
+    Result<twin::Options> wanted = twin_options(options);
     if (!wanted) return tl::unexpected(wanted.error());
+    Result<std::optional<job::Image>> mask = load_mask(printer->projector, options.printer);
+    if (!mask) return tl::unexpected(mask.error());
+    wanted->mask = std::move(*mask);
     Result<twin::Pty> pty = twin::Pty::open(options.link);
     if (!pty) return tl::unexpected(pty.error());
     twin::Twin twin(*printer, *wanted);

@@ -49,6 +49,12 @@ public:
         return Loan(*this, std::move(array));
     }
 
+    /// Gives back to the system what is not on loan.
+    void clear() {
+        const std::lock_guard lock(mutex_);
+        kept_.clear();
+    }
+
 private:
     void take_back(AlignedArray<T> array) {
         if (array.size() == 0) return;

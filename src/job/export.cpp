@@ -67,6 +67,12 @@ Status write_stack(const Archive& archive, int material, Format format, const fs
         for (const auto& [name, text] : texts) {
             if (auto status = zip->add(name, text, ZipWriter::Method::deflate); !status) return status;
         }
+        if (format == Format::sl1 && archive.has_file(thumbnail_file)) {
+            const Result<std::string> picture = archive.file(thumbnail_file);
+            if (!picture) return tl::unexpected(picture.error());
+            if (auto status = zip->add("thumbnail/thumbnail400x400.png", *picture, ZipWriter::Method::store); !status)
+                return status;
+        }
         const Status images = each_layer(archive, material, [&](std::size_t k, std::string png) {
             return zip->add(image_name(format, prefix, k), std::move(png), ZipWriter::Method::store);
         });
@@ -103,6 +109,17 @@ Status write_vats(const Archive& archive, const fs::path& folder) {
     });
 }
 
+/// The formats know one thickness of all layers.
+Status check_alike(const Manifest& m, Format format) {
+    if (format != Format::sl1 && format != Format::nanodlp) return {};
+    for (std::size_t k = 1; k < m.layers.size(); ++k) {
+        if (m.layers[k].thickness_um != m.layers[0].thickness_um)
+            return input_error("layer {} is {} um thick, layer 0 {} um: this format knows layers of one thickness only",
+                               k, m.layers[k].thickness_um, m.layers[0].thickness_um);
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<Format> format_from(const std::string& name) {
@@ -114,6 +131,7 @@ Result<Format> format_from(const std::string& name) {
 }
 
 Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder) {
+    if (auto status = check_alike(archive.manifest(), format); !status) return tl::unexpected(status.error());
     if (format == Format::vats) {
         if (auto status = write_vats(archive, folder); !status) return tl::unexpected(status.error());
         return std::vector<fs::path>{folder};

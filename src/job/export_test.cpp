@@ -69,7 +69,7 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(sl1->at(1).filename() == "two_rigid.sl1");
     auto zip = ZipReader::open(sl1->at(1));
     REQUIRE(zip.has_value());
-    CHECK(zip->entry_count() == 12);
+    CHECK(zip->entry_count() == 13);
     CHECK(lit(zip->read("two00003.png", 1 << 20)) == 0);
     CHECK(lit(zip->read("two00004.png", 1 << 20)) == 15 * 20);
     CHECK(zip->read("config.ini", 1 << 20)->find("expTimeFirst = 12\n") != std::string::npos);
@@ -89,6 +89,26 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(lit(read_file(folder.path / "c/vat_a/vata_layer_0000.png")) == 400);
     CHECK(lit(read_file(folder.path / "c/vat_b/vatb_layer_0009.png")) == 300);
     CHECK(format_from("png").error().message == "format \"png\": must be sl1, nanodlp, zip or vats");
+}
+
+TEST_CASE("layers of many heights go only where each layer stands alone") {
+    const TemporaryFolder folder;
+    JobSettings s = settings();
+    s.slicing.tops_um = {50, 150};
+    const fs::path path = folder.path / "many.zip";
+    auto writer = Writer::create(path);
+    Progress progress;
+    const auto made =
+        slice_to_job(std::vector<slice::Body>{{"soft", slice::test::box({-500, -500, 0}, {500, 500, 400}), ""}}, s,
+                     *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->finish(made->manifest).has_value());
+    const Archive archive = Archive::open(path).value();
+    const auto refused = export_job(archive, Format::sl1, folder.path / "a");
+    REQUIRE(!refused.has_value());
+    CHECK(refused.error().message ==
+          "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
+    CHECK(export_job(archive, Format::vats, folder.path / "b").has_value());
 }
 
 TEST_CASE("equal jobs give equal bytes") {

@@ -32,15 +32,27 @@ struct Material {
 
 /// One image that is not blank.
 struct LayerImage {
-    int material = 0;     ///< index into Manifest::materials
-    std::string file;     ///< name inside the archive
-    double area_mm2 = 0;  ///< sum of pixel values / 255 times the pixel's area
+    int material = 0;       ///< index into Manifest::materials
+    std::string file;       ///< name inside the archive
+    double area_mm2 = 0;    ///< sum of pixel values / 255 times the pixel's area
+    double exposure_s = 0;  ///< of this image; 0: what the material says
+    double shared_mm2 = 0;  ///< of `area_mm2`: what an image of another material lights too, for bonding
 };
 
 struct Layer {
     int z_um = 0;  ///< height of the layer's top above the platform
     int thickness_um = 0;
     std::vector<LayerImage> images;  ///< ordered by material; empty where nothing is printed
+};
+
+/// Something that will not print well, and where to look.
+struct Finding {
+    std::string kind;  ///< "island", "trap", "cup" or "thin"
+    int first_layer = 0, last_layer = 0;
+    int row = 0, column = 0;  ///< a pixel of it, in `first_layer`
+    double area_mm2 = 0;      ///< of an island or a thin feature in `first_layer`
+    double volume_mm3 = 0;    ///< of a trap or a cup
+    std::string picture;      ///< PNG inside the archive; "": none
 };
 
 struct Manifest {
@@ -52,12 +64,25 @@ struct Manifest {
     std::vector<Material> materials;
     std::vector<Layer> layers;
     std::vector<std::string> warnings;  ///< what the slicer repaired or noticed
+    bool compensated = false;           ///< images differ from the drawing on purpose
+    std::vector<Finding> findings{};
 };
+
+/// How long image `index` of a layer is lit.
+[[nodiscard]] inline double exposure_s(const Manifest& manifest, std::size_t layer, std::size_t index) {
+    const LayerImage& image = manifest.layers[layer].images[index];
+    if (image.exposure_s > 0) return image.exposure_s;
+    const Material& m = manifest.materials[static_cast<std::size_t>(image.material)];
+    return static_cast<int>(layer) < manifest.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
+}
 
 /// Refuses a manifest that does not agree with itself: sizes and numbers out of range, a material without a name or
 /// named twice, heights that do not rise, an image of a material that does not exist or comes twice in its layer, file
 /// names that are not plain relative paths. The message starts with `where`.
 [[nodiscard]] Status check(const Manifest& manifest, std::string_view where);
+
+/// The archive's small picture of the part, a square of 400 pixels.
+inline constexpr const char* thumbnail_file = "thumbnail.png";
 
 /// "layers/00012_soft.png"; what is not a letter, digit, '-' or '_' in the material's name becomes '_'.
 [[nodiscard]] std::string image_file_name(int layer, std::string_view material);
@@ -75,7 +100,7 @@ struct EncodedImage {
 [[nodiscard]] EncodedImage encode(const slice::RunImage& image);
 
 /// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
-/// give the same bytes. Encoded files stay in memory until finish(): some 10 kB per image of 2 megapixels.
+/// give the same bytes. Images go to the disk as they come.
 class Writer {
 public:
     /// Errors: the folder does not exist, PATH is a folder.

@@ -7,6 +7,8 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "job/finding_pictures.hpp"
+#include "job/thumbnail.hpp"
 #include "slice/inspect.hpp"
 #include "slice/thin.hpp"
 
@@ -19,6 +21,7 @@ struct Prepared {
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
     slice::LayerShape shape;
     std::vector<slice::ThinSpot> thin;
+    std::vector<Thumbnail::Spot> seen;  ///< in the thumbnail
 };
 
 /// Where layers come from. `layer` is called from any thread; layers in [0, count).
@@ -28,12 +31,14 @@ struct LayerSource {
     bool parallel = true;
 };
 
-Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, int k) {
+Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, const Thumbnail& thumbnail,
+                               int k) {
     auto sliced = source.layer(k);
     if (!sliced) return tl::unexpected(sliced.error());
-    Prepared prepared{std::move(*sliced), {}, {}, {}};
+    Prepared prepared{std::move(*sliced), {}, {}, {}, {}};
     prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
     prepared.thin = thin_spots(prepared.sliced, k, settings.least_feature_um, settings.slicing.raster);
+    prepared.seen = thumbnail.row(prepared.sliced);
     for (slice::MaterialImage& m : prepared.sliced.images) {
         prepared.images.push_back(encode(settings.light.none() ? m.image : corrected(m.image, settings.light)));
         m.image = {};
@@ -41,21 +46,34 @@ Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& set
     return prepared;
 }
 
-Result<std::vector<Material>> used_materials(std::span<const slice::Body> bodies, const slice::Slicer& slicer,
-                                             const std::vector<Material>& known) {
+Result<std::vector<Material>> used_materials(const slice::Slicer& slicer, const std::vector<Material>& known) {
     std::vector<Material> used;
     for (const std::string& name : slicer.materials()) {
         const auto found = std::find_if(known.begin(), known.end(), [&](const Material& m) { return m.name == name; });
         if (found == known.end()) return input_error("material '{}' has no resin and exposure", name);
         used.push_back(*found);
         used.back().model_volume_mm3 = used.back().model_area_mm2 = 0;
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            if (bodies[b].material != name) continue;
-            used.back().model_volume_mm3 += slicer.measures()[b].volume_mm3;
-            used.back().model_area_mm2 += slicer.measures()[b].area_mm2;
-        }
     }
     return used;
+}
+
+/// What was drawn of each material: volumes less what other bodies keep, those of a blend as it was dealt out.
+void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, const slice::Summary& summary,
+             std::vector<Material>& materials) {
+    const auto add = [&](const std::string& name, double volume_mm3, double area_mm2) {
+        for (Material& m : materials) {
+            if (m.name != name) continue;
+            m.model_volume_mm3 += volume_mm3;
+            m.model_area_mm2 += area_mm2;
+        }
+    };
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const slice::Measures& drawn = slicer.measures()[b];
+        const double volume_mm3 = std::max(0.0, drawn.volume_mm3 - summary.lost_mm3[b] - summary.doubled_mm3[b]);
+        const double second = summary.second_share[b];
+        add(bodies[b].material, volume_mm3 * (1 - second), drawn.area_mm2);
+        if (bodies[b].blend) add(bodies[b].blend->second, volume_mm3 * second, drawn.area_mm2);
+    }
 }
 
 /// What the materials are called in file names: different even where only odd characters tell them apart.
@@ -71,16 +89,27 @@ std::vector<std::string> file_words(const std::vector<Material>& materials) {
     return words;
 }
 
+/// What an image is lit for, where that is not what its material says of all layers; else 0.
+double own_exposure_s(const JobSettings& settings, const Material& material, int k, int thickness_um) {
+    const auto rule = settings.exposures.find(material.name);
+    if (rule == settings.exposures.end()) return 0;
+    const double seconds = exposure_s(material, rule->second, k, thickness_um);
+    const double usual = k < settings.bottom_layers ? material.bottom_exposure_s : material.exposure_s;
+    return seconds == usual ? 0 : seconds;
+}
+
 Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const std::vector<std::string>& words,
-                    int layer_um, Writer& writer) {
-    const double pixel_mm2 = manifest.pixel_um * manifest.pixel_um / 1e6;
-    Layer layer{(k + 1) * layer_um, layer_um, {}};
+                    const JobSettings& settings, const slice::Layers& layers, Writer& writer) {
+    const double value_mm2 = manifest.pixel_um * manifest.pixel_um / 1e6 / 255;
+    Layer layer{layers.top_um(k), layers.thickness_um(k), {}};
     for (std::size_t i = 0; i < prepared.images.size(); ++i) {
         const slice::MaterialImage& m = prepared.sliced.images[i];
         const std::string file = image_file_name(k, words[m.material]);
         if (auto status = writer.add_image(file, std::move(prepared.images[i])); !status)
             return tl::unexpected(status.error());
-        layer.images.push_back({m.material, file, static_cast<double>(m.value_sum) / 255 * pixel_mm2});
+        layer.images.push_back({m.material, file, static_cast<double>(m.value_sum) * value_mm2,
+                                own_exposure_s(settings, manifest.materials[m.material], k, layer.thickness_um),
+                                static_cast<double>(m.shared_sum) * value_mm2});
     }
     return layer;
 }
@@ -113,7 +142,7 @@ Result<slice::SlicedLayer> stacked_layer(std::span<const MaterialStack> stacks, 
         if (images[i].pixels.empty()) continue;
         slice::RunImage runs = slice::RunImage::from_image(images[i]);
         const std::int64_t sum = runs.value_sum();
-        if (sum > 0) layer.images.push_back({static_cast<int>(i), std::move(runs), sum});
+        if (sum > 0) layer.images.push_back({static_cast<int>(i), std::move(runs), sum, 0});
     }
     return layer;
 }
@@ -141,8 +170,8 @@ void note_rare_materials(Manifest& manifest) {
 }
 
 /// The images must hold the volume that was drawn, unless outlines were moved on purpose.
-void note_volume(const slice::Settings& slicing, Manifest& manifest) {
-    if (!slicing.compensation.empty()) return;
+void note_volume(Manifest& manifest) {
+    if (manifest.compensated) return;
     double drawn = 0, lit = 0;
     for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
     for (const Layer& layer : manifest.layers) {
@@ -164,21 +193,25 @@ void note_thin(const std::vector<slice::ThinSpot>& thin, const JobSettings& sett
 void note_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                    const JobSettings& settings, Manifest& manifest) {
     note_thin(thin, settings, manifest);
-    for (std::string& line : describe(findings, settings.slicing.raster, settings.slicing.layer_um))
-        manifest.warnings.push_back(std::move(line));
+    for (std::string& line : describe(findings, settings.slicing.raster)) manifest.warnings.push_back(std::move(line));
     if (static_cast<int>(findings.pieces.size()) > settings.copies)
         manifest.warnings.push_back(
             fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
     note_rare_materials(manifest);
-    note_volume(settings.slicing, manifest);
+    note_volume(manifest);
 }
 
-}  // namespace
-
-namespace {
+/// Findings with their pictures.
+Status keep_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
+                     const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer) {
+    const slice::Raster& raster = settings.slicing.raster;
+    manifest.findings = listed(findings, thin, raster);
+    return add_pictures(manifest.findings, raster, source.layer, writer);
+}
 
 Manifest empty_manifest(const JobSettings& settings, std::vector<Material> materials) {
-    const slice::Raster& raster = settings.slicing.raster;
+    const slice::Settings& slicing = settings.slicing;
+    const slice::Raster& raster = slicing.raster;
     return {settings.name,
             settings.pliant_version,
             raster.width_px,
@@ -187,13 +220,19 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
             settings.bottom_layers,
             std::move(materials),
             {},
-            {}};
+            {},
+            !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed};
 }
 
 /// Makes layers in parallel batches, stores them in order, and tells `note` of each.
 Status make_layers(const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer,
                    Progress& progress, const std::function<void(int, Prepared&)>& note) {
+    for (const auto& [name, rule] : settings.exposures) {
+        if (auto status = check(rule, "material '" + name + "'"); !status) return status;
+    }
     const std::vector<std::string> words = file_words(manifest.materials);
+    const slice::Layers heights = settings.slicing.layers();
+    Thumbnail thumbnail(manifest.width_px);
     constexpr int batch = slice::layers_at_once;
     for (int first = 0; first < source.count; first += batch) {
         if (progress.cancelled()) return cancelled();
@@ -202,19 +241,20 @@ Status make_layers(const LayerSource& source, const JobSettings& settings, Manif
         std::vector<Result<Prepared>> layers(size);
         parallel_for(size, source.parallel ? 1 : size, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                layers[i] = prepare_layer(source, settings, first + static_cast<int>(i));
+                layers[i] = prepare_layer(source, settings, thumbnail, first + static_cast<int>(i));
         });
         for (std::size_t i = 0; i < size; ++i) {
             if (!layers[i]) return tl::unexpected(layers[i].error());
             const int k = first + static_cast<int>(i);
             note(k, *layers[i]);
-            auto layer = store(*layers[i], k, manifest, words, settings.slicing.layer_um, writer);
+            thumbnail.add(layers[i]->seen);
+            auto layer = store(*layers[i], k, manifest, words, settings, heights, writer);
             if (!layer) return tl::unexpected(layer.error());
             manifest.layers.push_back(std::move(*layer));
         }
     }
     progress.advance("slice", 1);
-    return {};
+    return writer.add_image(thumbnail_file, thumbnail.picture(heights, manifest.pixel_um));
 }
 
 }  // namespace
@@ -223,11 +263,11 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
                              Progress& progress) {
     const auto slicer = slice::Slicer::prepare(bodies, settings.slicing);
     if (!slicer) return tl::unexpected(slicer.error());
-    auto materials = used_materials(bodies, *slicer, settings.materials);
+    auto materials = used_materials(*slicer, settings.materials);
     if (!materials) return tl::unexpected(materials.error());
     MadeJob job{empty_manifest(settings, std::move(*materials)), {}};
     slice::Tally tally(*slicer);
-    slice::Inspector inspector;
+    slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
     const LayerSource source{slicer->layer_count(),
                              [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); }};
@@ -238,14 +278,12 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     });
     if (!made) return tl::unexpected(made.error());
     job.summary = tally.summary();
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        for (Material& m : job.manifest.materials) {
-            if (m.name == bodies[b].material)
-                m.model_volume_mm3 = std::max(0.0, m.model_volume_mm3 - job.summary.lost_mm3[b]);
-        }
-    }
+    measure(bodies, *slicer, job.summary, job.manifest.materials);
     job.manifest.warnings = job.summary.warnings;
-    note_findings(inspector.finish(), thin, settings, job.manifest);
+    const slice::Findings findings = inspector.finish();
+    note_findings(findings, thin, settings, job.manifest);
+    if (auto status = keep_findings(findings, thin, source, settings, job.manifest, writer); !status)
+        return tl::unexpected(status.error());
     return job;
 }
 
@@ -267,7 +305,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     }
     source.layer = [&](int k) { return stacked_layer(stacks, k); };
     MadeJob job{empty_manifest(settings, std::move(materials)), {}};
-    slice::Inspector inspector;
+    slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
     std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int, Prepared& prepared) {
@@ -288,7 +326,10 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
                             stacks[i].material, lost_px[i] * voxel_mm3));
     }
     job.summary.layer_count = source.count;
-    note_findings(inspector.finish(), thin, settings, job.manifest);
+    const slice::Findings findings = inspector.finish();
+    note_findings(findings, thin, settings, job.manifest);
+    if (auto status = keep_findings(findings, thin, source, settings, job.manifest, writer); !status)
+        return tl::unexpected(status.error());
     return job;
 }
 

@@ -1,11 +1,13 @@
 // From bodies to the images of a job.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/progress.hpp"
+#include "job/exposure.hpp"
 #include "job/image_stack.hpp"
 #include "job/job.hpp"
 #include "slice/light.hpp"
@@ -23,6 +25,8 @@ struct JobSettings {
     int copies = 1;                  ///< of the part: how many pieces may touch each other nowhere
     slice::LightCorrection light{};  ///< of the stored images; areas and volumes are those before it
     double least_feature_um = 0;     ///< a warning tells what is narrower; 0: none
+    /// Of materials whose layers are not all lit as JobSettings::bottom_layers says.
+    std::map<std::string, ExposureRule> exposures{};
 };
 
 struct MadeJob {
@@ -30,10 +34,10 @@ struct MadeJob {
     slice::Summary summary;
 };
 
-/// Slices bodies that stand on the platform and adds their images to `writer`; the caller then adds printer.toml,
-/// plan.json and job.gcode, and calls writer.finish(manifest). Layers are cut and encoded in parallel, the archive does
-/// not depend on the number of threads. Errors: what slice::Slicer::prepare refuses, a material without settings, the
-/// writer's, cancellation.
+/// Slices bodies that stand on the platform and adds their images, and pictures of findings, to `writer`; the caller
+/// then adds printer.toml, plan.json and job.gcode, and calls writer.finish(manifest). Layers are cut and encoded in
+/// parallel, the archive does not depend on the number of threads. Errors: what slice::Slicer::prepare refuses, a
+/// material without settings, the writer's, cancellation.
 [[nodiscard]] Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings,
                                            Writer& writer, Progress& progress);
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "job/verify.hpp"
 #include "slice/test_shapes.hpp"
 
 using namespace pliant;
@@ -123,4 +124,40 @@ TEST_CASE("features narrower than asked for are named with material, layers and 
     CHECK(made->manifest.warnings.front() ==
           "material \"soft one\": features narrower than 0.6 mm in 4 layers from 10 to 13; most, 0.4 mm^2, in layer 10 "
           "from row 14, column 31 on");
+}
+
+TEST_CASE("exposures of layers, heights, shared light and findings reach the manifest") {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path / "job.zip";
+    auto writer = Writer::create(path);
+    REQUIRE(writer.has_value());
+    Progress progress;
+    JobSettings s = settings();
+    s.exposures["soft one"] = {2, 1, 0, 50, {{4, 4, 7}}};
+    s.slicing.tops_um = {50, 100, 200, 250, 300};
+    s.slicing.bonds = {{"soft one", "soft/one", 2, 0}};
+    std::vector<slice::Body> bodies = halves;
+    bodies.push_back({"soft/one", box({1500, 0, 300}, {2000, 500, 700}), ""});
+    const auto made = slice_to_job(bodies, s, *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->finish(made->manifest).has_value());
+    const auto archive = Archive::open(path);
+    REQUIRE_MESSAGE(archive.has_value(), (archive ? "" : archive.error().message));
+    const Manifest& m = archive->manifest();
+    CHECK(m.compensated);
+    CHECK(m.layers[2].thickness_um == 100);
+    CHECK(m.layers[2].z_um == 200);
+    CHECK(m.layers[6].z_um == 400);
+    const double wanted[] = {9, 9, 6, 3, 7, 3};
+    for (std::size_t k = 0; k < 6; ++k) CHECK(exposure_s(m, k, 0) == doctest::Approx(wanted[k]));
+    CHECK(exposure_s(m, 2, 1) == 4);
+    // Two columns of 20 pixels of 0.01 mm^2.
+    CHECK(m.layers[0].images[0].shared_mm2 == doctest::Approx(0.4));
+    CHECK(m.layers[0].images[1].shared_mm2 == 0);
+    REQUIRE(m.findings.size() == 1);
+    CHECK(m.findings[0].kind == "island");
+    CHECK(m.findings[0].first_layer == 5);
+    CHECK(m.findings[0].area_mm2 == doctest::Approx(0.25));
+    CHECK(archive->has_file(m.findings[0].picture));
+    CHECK(verify_images(*archive, false, "job.zip").has_value());
 }

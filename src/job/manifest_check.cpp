@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t max_materials = 255;
 constexpr std::size_t max_layers = 1000000;
+constexpr double most_exposure_s = 3600;
 
 bool is_amount(double value) {
     return std::isfinite(value) && value >= 0;
@@ -54,6 +55,12 @@ Status check_images(const Manifest& manifest, std::size_t k, std::string_view wh
                                image.file);
         if (!is_amount(image.area_mm2))
             return input_error("{}: {}.area_mm2: {} must be 0 or more", where, key, image.area_mm2);
+        if (!(is_amount(image.exposure_s) && image.exposure_s <= most_exposure_s))
+            return input_error("{}: {}.exposure_s: {} must be above 0 and at most {}", where, key, image.exposure_s,
+                               most_exposure_s);
+        if (!(is_amount(image.shared_mm2) && image.shared_mm2 <= image.area_mm2 * (1 + 1e-9)))
+            return input_error("{}: {}.shared_mm2: {} must be 0 to area_mm2, {}", where, key, image.shared_mm2,
+                               image.area_mm2);
         previous = image.material;
     }
     return {};
@@ -73,6 +80,24 @@ Status check_layers(const Manifest& manifest, std::string_view where) {
                                layer.z_um);
         if (auto status = check_images(manifest, k, where); !status) return status;
         below_um = layer.z_um;
+    }
+    return {};
+}
+
+Status check_findings(const Manifest& m, std::string_view where) {
+    const int layers = static_cast<int>(m.layers.size());
+    for (std::size_t i = 0; i < m.findings.size(); ++i) {
+        const Finding& f = m.findings[i];
+        if (f.first_layer < 0 || f.last_layer < f.first_layer || f.last_layer >= layers)
+            return input_error("{}: findings[{}]: layers {} to {} are not layers of the {} there are", where, i,
+                               f.first_layer, f.last_layer, layers);
+        if (f.row < 0 || f.row >= m.height_px || f.column < 0 || f.column >= m.width_px)
+            return input_error("{}: findings[{}]: row {}, column {} lies outside the image", where, i, f.row, f.column);
+        if (!is_amount(f.area_mm2) || !is_amount(f.volume_mm3))
+            return input_error("{}: findings[{}]: its area and volume must be 0 or more", where, i);
+        if (!f.picture.empty() && !is_safe_entry_name(f.picture))
+            return input_error("{}: findings[{}].picture: '{}' must be a plain relative path inside the archive", where,
+                               i, f.picture);
     }
     return {};
 }
@@ -104,7 +129,8 @@ Status check(const Manifest& manifest, std::string_view where) {
     if (manifest.bottom_layers < 0)
         return input_error("{}: bottom_layers: {} must be 0 or more", where, manifest.bottom_layers);
     if (auto status = check_materials(manifest.materials, where); !status) return status;
-    return check_layers(manifest, where);
+    if (auto status = check_layers(manifest, where); !status) return status;
+    return check_findings(manifest, where);
 }
 
 std::string image_file_name(int layer, std::string_view material) {

@@ -42,6 +42,15 @@ public:
         complain(key, "a number is needed");
         return 0;
     }
+    [[nodiscard]] bool has(const char* key) const { return problem_.empty() && object_.contains(key); }
+    double number_or_zero(const char* key) { return has(key) ? number(key) : 0; }
+    bool flag(const char* key) {
+        if (!has(key)) return false;
+        const json& value = object_.at(key);
+        if (value.is_boolean()) return value.get<bool>();
+        complain(key, "true or false is needed");
+        return false;
+    }
     /// Calls `read(entry, path)` for the entries of an array until something is wrong.
     template <class Read>
     void each(const char* key, const Read& read) {
@@ -84,9 +93,18 @@ Layer read_layer(const json& object, const std::string& path, std::string& probl
     Layer layer{f.integer("z_um"), f.integer("thickness_um"), {}};
     f.each("images", [&](const json& entry, const std::string& entry_path) {
         Fields g(entry, entry_path + ".", problem);
-        layer.images.push_back({g.integer("material"), g.text("file"), g.number("area_mm2")});
+        layer.images.push_back({g.integer("material"), g.text("file"), g.number("area_mm2"),
+                                g.number_or_zero("exposure_s"), g.number_or_zero("shared_mm2")});
     });
     return layer;
+}
+
+Finding read_finding(const json& object, const std::string& path, std::string& problem) {
+    Fields f(object, path + ".", problem);
+    Finding finding{f.text("kind"),      f.integer("first_layer"),     f.integer("last_layer"),        f.integer("row"),
+                    f.integer("column"), f.number_or_zero("area_mm2"), f.number_or_zero("volume_mm3"), {}};
+    if (f.has("picture")) finding.picture = f.text("picture");
+    return finding;
 }
 
 Manifest read_manifest(const json& root, std::string& problem) {
@@ -108,6 +126,11 @@ Manifest read_manifest(const json& root, std::string& problem) {
     f.each("warnings", [&](const json& entry, const std::string& path) {
         if (entry.is_string()) return m.warnings.push_back(entry.get<std::string>());
         Fields(root, path, problem).complain("", "a text is needed");
+    });
+    m.compensated = f.flag("compensated");
+    if (!f.has("findings")) return m;
+    f.each("findings", [&](const json& entry, const std::string& path) {
+        m.findings.push_back(read_finding(entry, path, problem));
     });
     return m;
 }
@@ -131,9 +154,25 @@ Result<json> parse(std::string_view text, std::string_view where) {
 
 Ordered layer_json(const Layer& layer) {
     Ordered images = Ordered::array();
-    for (const LayerImage& i : layer.images)
-        images.push_back({{"material", i.material}, {"file", i.file}, {"area_mm2", i.area_mm2}});
+    for (const LayerImage& i : layer.images) {
+        Ordered image{{"material", i.material}, {"file", i.file}, {"area_mm2", i.area_mm2}};
+        if (i.exposure_s > 0) image["exposure_s"] = i.exposure_s;
+        if (i.shared_mm2 > 0) image["shared_mm2"] = i.shared_mm2;
+        images.push_back(std::move(image));
+    }
     return {{"z_um", layer.z_um}, {"thickness_um", layer.thickness_um}, {"images", std::move(images)}};
+}
+
+Ordered finding_json(const Finding& f) {
+    Ordered entry{{"kind", f.kind},
+                  {"first_layer", f.first_layer},
+                  {"last_layer", f.last_layer},
+                  {"row", f.row},
+                  {"column", f.column}};
+    if (f.area_mm2 > 0) entry["area_mm2"] = f.area_mm2;
+    if (f.volume_mm3 > 0) entry["volume_mm3"] = f.volume_mm3;
+    if (!f.picture.empty()) entry["picture"] = f.picture;
+    return entry;
 }
 
 }  // namespace
@@ -151,6 +190,11 @@ std::string to_json(const Manifest& m) {
                              {"exposure_s", material.exposure_s},
                              {"bottom_exposure_s", material.bottom_exposure_s}});
     root["warnings"] = m.warnings;
+    if (m.compensated) root["compensated"] = true;
+    if (!m.findings.empty()) {
+        Ordered& findings = root["findings"] = Ordered::array();
+        for (const Finding& finding : m.findings) findings.push_back(finding_json(finding));
+    }
     Ordered& layers = root["layers"] = Ordered::array();
     for (const Layer& layer : m.layers) layers.push_back(layer_json(layer));
     return root.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";

@@ -19,7 +19,16 @@ std::string without_folder(const std::string& input) {
     return input.substr(0, begin) + path.filename().string();
 }
 
-Json material_json(const Material& material, const slice::Settings& slicing) {
+void add_exposures(const ExposureRule& rule, Json& json) {
+    json["transition_layers"] = rule.transition_layers;
+    json["penetration_um"] = rule.penetration_um;
+    Json& spans = json["layer_exposures"] = Json::array();
+    for (const ExposureSpan& span : rule.spans)
+        spans.push_back({{"first_layer", span.first}, {"last_layer", span.last}, {"exposure_s", span.seconds}});
+}
+
+Json material_json(const Material& material, const JobSettings& settings) {
+    const slice::Settings& slicing = settings.slicing;
     Json json{{"name", material.name},
               {"resin", material.resin},
               {"exposure_s", material.exposure_s},
@@ -29,6 +38,9 @@ Json material_json(const Material& material, const slice::Settings& slicing) {
     json["xy_compensation_um"] = c.grow_um;
     json["elephant_foot_um"] = c.foot_um;
     json["elephant_foot_layers"] = c.foot_layers;
+    json["bleed_compensation_um"] = c.bleed_um;
+    if (const auto rule = settings.exposures.find(material.name); rule != settings.exposures.end())
+        add_exposures(rule->second, json);
     return json;
 }
 
@@ -52,6 +64,7 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
               {"assignments", request.assignments}};
     for (const std::string& input : request.inputs) root["inputs"].push_back(without_folder(input));
     root["layer_um"] = slicing.layer_um;
+    if (!slicing.tops_um.empty()) root["least_layer_um"] = request.least_layer_um;
     root["bottom_layers"] = settings.bottom_layers;
     root["raster"] = raster_json(slicing.raster);
     root["anti_alias"] = slicing.rules.anti_alias;
@@ -62,11 +75,15 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
     root["turn_deg"] = request.turn_deg.empty() ? std::vector<double>(3, 0.0) : request.turn_deg;
     root["least_feature_um"] = settings.least_feature_um;
     root["materials"] = Json::array();
-    for (const Material& m : settings.materials) root["materials"].push_back(material_json(m, slicing));
+    for (const Material& m : settings.materials) root["materials"].push_back(material_json(m, settings));
     root["interlock"] = Json::array();
     for (const slice::Teeth& t : slicing.teeth)
         root["interlock"].push_back(
             {{"materials", {t.first, t.second}}, {"depth_px", t.depth_px}, {"layers", t.layers}});
+    root["overlap"] = Json::array();
+    for (const slice::Bond& b : slicing.bonds)
+        root["overlap"].push_back({{"materials", {b.first, b.second}}, {"depth_px", b.depth_px}, {"layers", b.layers}});
+    for (const auto& [key, value] : request.supports) root["supports"][key] = value;
     return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

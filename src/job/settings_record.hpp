@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "job/make_job.hpp"
@@ -14,6 +15,9 @@ struct Request {
     std::vector<std::string> assignments;  ///< KEY=VALUE, changes of the robot file
     std::vector<double> turn_deg;          ///< about x, y and z; empty: none
     std::string spacing;                   ///< between copies, with its unit
+    int least_layer_um = 0;                ///< of layers that follow the slope; 0: all are alike
+    /// Options of supports, raft, hollowing and drains that were given, as they were given.
+    std::vector<std::pair<std::string, std::string>> supports{};
 };
 
 /// settings.json, as docs/reference/job.md describes it. Folders of inputs are left out, so that the same files give

@@ -8,21 +8,36 @@
 
 namespace pliant::linalg {
 
+/// Of the factor. In single precision it takes half the memory and about half the time.
+enum class Precision { single_, double_ };
+
 /// Supernodal and multifrontal (Duff and Reid 1983), on all cores; the same bits on any number of them.
 class Cholesky {
 public:
     /// Orders and analyses the pattern, which is copied.
-    explicit Cholesky(const SymmetricPattern& pattern);
+    explicit Cholesky(const SymmetricPattern& pattern, Precision precision = Precision::double_);
     Cholesky(Cholesky&&) noexcept;
     Cholesky& operator=(Cholesky&&) noexcept;
     ~Cholesky();
 
-    /// `values` (entries) belong to the pattern. False if the matrix is not positive definite; solve() must not be
-    /// called then.
+    /// Forgets the factor; the analysis is kept.
+    void use(Precision precision);
+    [[nodiscard]] Precision precision() const;
+
+    /// `values` (entries) belong to the pattern. False if the matrix is not positive definite in the precision of the
+    /// factor; solve() must not be called then.
     [[nodiscard]] bool factorise(std::span<const double> values);
+
+    /// Gives back what only factorise() needs, about as much as the factor; the next call takes it again.
+    void release_work_space();
 
     /// Solves in place for `columns` right-hand sides, stored one after the other, (columns, size).
     void solve(std::span<double> right_hand_sides, int columns) const;
+
+    /// Likewise, by conjugate gradients with the factor as preconditioner, until the error, in the norm of the matrix,
+    /// is about `tolerance` of the solution; `values` are those of the factor. False if `limit` iterations leave more.
+    [[nodiscard]] bool solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides, int columns,
+                                        double tolerance, int limit) const;
 
     /// Entries of the factor, as analysed: a measure of memory.
     [[nodiscard]] double factor_entries() const;

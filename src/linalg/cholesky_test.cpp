@@ -106,6 +106,52 @@ TEST_CASE("grids of many shapes agree with Eigen's solver, for one to seven righ
     }
 }
 
+TEST_CASE("single precision: as near as it can be, and refined as near as asked") {
+    int count = 1;
+    for (const int block : {1, 3}) {
+        const auto pattern = grid(13, 12, 11, block);
+        std::vector<double> values;
+        const auto matrix = springs(pattern, values, 1e-1);
+        const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(matrix);
+        Cholesky cholesky(pattern, Precision::single_);
+        REQUIRE(cholesky.factorise(values));
+        const Eigen::MatrixXd right = Eigen::MatrixXd::Random(pattern.size(), count);
+        const Eigen::MatrixXd expected = independent.solve(right);
+        const auto whole = [](Eigen::MatrixXd& m) { return std::span(m.data(), static_cast<std::size_t>(m.size())); };
+
+        Eigen::MatrixXd once = right;
+        cholesky.solve(whole(once), count);
+        const double error = (once - expected).norm() / expected.norm();
+        CHECK(error < 1e-4);
+        CHECK(error > 1e-9);
+        for (const double tolerance : {1e-3, 1e-8, 1e-12}) {
+            Eigen::MatrixXd refined = right;
+            CHECK(cholesky.solve_and_refine(values, whole(refined), count, tolerance, 10));
+            CHECK((refined - expected).norm() < 10 * tolerance * expected.norm());
+        }
+        Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(pattern.size(), 1);
+        CHECK(cholesky.solve_and_refine(values, whole(zero), 1, 1e-8, 10));
+        CHECK(zero.norm() == 0);
+        Eigen::MatrixXd hasty = right;
+        CHECK_FALSE(cholesky.solve_and_refine(values, whole(hasty), count, 1e-14, 0));
+
+        cholesky.use(Precision::double_);
+        REQUIRE(cholesky.factorise(values));
+        cholesky.solve(whole(once = right), count);
+        CHECK((once - expected).norm() < 1e-11 * expected.norm());
+        count += 4;
+    }
+}
+
+TEST_CASE("a matrix that only double precision can factorise") {
+    const auto pattern = make_pattern(2, 1, {{0, 1}});
+    const std::vector<double> values{1, 1 - 1e-10, 1};  // condition number 2e10
+    Cholesky cholesky(pattern, Precision::single_);
+    CHECK_FALSE(cholesky.factorise(values));
+    cholesky.use(Precision::double_);
+    CHECK(cholesky.factorise(values));
+}
+
 TEST_CASE("pieces that are not connected") {
     const auto pattern = make_pattern(7, 3, {{0, 1}, {2, 3, 4}});
     std::vector<double> values;

@@ -12,7 +12,6 @@ constexpr double branch_share = 1.0 / 24;
 /// A work space in which pieces are taken and given back; first fit.
 class Shelf {
 public:
-    explicit Shelf(std::size_t begin) : end_(begin), top_(begin) {}
     [[nodiscard]] std::size_t take(std::size_t size) {
         for (auto it = free_.begin(); it != free_.end(); ++it) {
             if (it->second < size) continue;
@@ -55,7 +54,8 @@ private:
         return at;
     }
     std::map<std::size_t, std::size_t> free_;
-    std::size_t end_, top_;
+    std::size_t end_ = 0;
+    std::size_t top_ = 0;
 };
 
 class Layout {
@@ -112,27 +112,26 @@ private:
         std::reverse(layout_.branches.begin(), layout_.branches.end());
     }
 
-    /// Branches do not share any memory, since they may run at the same time; inside each one, what its parent has
-    /// taken in is free again. Updates of branches are free for the trunk once their parents are done.
+    /// What its parent has taken in is free again.
     void place_updates() {
         layout_.update.assign(e_.supernodes(), 0);
         std::vector<std::vector<int>> children(e_.supernodes());
         for (int s = 0; s < e_.supernodes(); ++s) {
             if (e_.parent[s] >= 0) children[e_.parent[s]].push_back(s);
         }
-        std::size_t end = 0;
-        const auto place = [&](int s, Shelf& shelf) {
-            layout_.update[s] = shelf.take(update_size(s));
-            for (const int child : children[s]) shelf.give_back(layout_.update[child], update_size(child));
+        const auto place = [&](int s, Shelf& own, Shelf& of_children) {
+            layout_.update[s] = own.take(update_size(s));
+            for (const int child : children[s]) of_children.give_back(layout_.update[child], update_size(child));
         };
+        Shelf whole;
         for (const auto& branch : layout_.branches) {
-            Shelf shelf(end);
-            for (int s = branch.first; s < branch.last; ++s) place(s, shelf);
-            end = shelf.top();
+            Shelf inside;
+            for (int s = branch.first; s + 1 < branch.last; ++s) place(s, inside, inside);
+            place(branch.last - 1, whole, inside);
+            layout_.branch_space = std::max(layout_.branch_space, inside.top());
         }
-        Shelf shelf(end);
-        for (const int s : layout_.trunk) place(s, shelf);
-        layout_.work_space = shelf.top();
+        for (const int s : layout_.trunk) place(s, whole, whole);
+        layout_.work_space = whole.top();
     }
 
     const Elimination& e_;

@@ -127,6 +127,8 @@ struct Resin {
     int xy_compensation_um = 0;  ///< outer borders of what is printed in it move outwards; negative: inwards
     int elephant_foot_um = 0;    ///< and inwards in the first layer, evenly less up to `elephant_foot_layers`
     int elephant_foot_layers = 0;
+    int transition_layers = 0;      ///< above the bottom ones, with evenly less light
+    int bleed_compensation_um = 0;  ///< how deep light cures below its layer, where nothing is to be
 };
 
 struct Projector {

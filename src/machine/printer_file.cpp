@@ -224,6 +224,8 @@ void read_outline_offsets(Reader& r, Resin& resin) {
     constexpr int most_um = 10000;
     if (r.has("xy_compensation")) resin.xy_compensation_um = length_um(r, "xy_compensation", -most_um);
     if (resin.xy_compensation_um > most_um) r.problem("xy_compensation", "must be -10 mm to 10 mm");
+    if (r.has("bleed_compensation")) resin.bleed_compensation_um = length_um(r, "bleed_compensation");
+    if (resin.bleed_compensation_um > most_um) r.problem("bleed_compensation", "must be at most 10 mm");
     if (!r.has("elephant_foot")) return;
     resin.elephant_foot_um = length_um(r, "elephant_foot");
     if (resin.elephant_foot_um > most_um) r.problem("elephant_foot", "must be at most 10 mm");
@@ -238,6 +240,7 @@ Resin read_resin(const std::string& name, Reader r) {
     resin.bottom_exposure_s = r.quantity("bottom_exposure", Dimension::time, resin.exposure_s);
     if (resin.bottom_exposure_s < resin.exposure_s) r.problem("bottom_exposure", "is shorter than exposure");
     resin.bottom_layers = r.has("bottom_layers") ? whole(r, "bottom_layers", 0, 10000) : 0;
+    resin.transition_layers = r.has("transition_layers") ? whole(r, "transition_layers", 0, 10000) : 0;
     read_outline_offsets(r, resin);
     resin.cure_depth_um = length_um(r, "cure_depth", 1);
     resin.critical_share = r.number("critical_share", 0.8);

@@ -1,7 +1,5 @@
-// The only file that includes gmsh.h. Gmsh keeps one global state: every use holds the lock of a Session.
+// Gmsh keeps one global state: every use holds the lock of a Session.
 #include "mesh/gmsh_kernel.hpp"
-
-#include <gmsh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,27 +10,30 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/flat_faces.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/mesh_report.hpp"
+#include "mesh/surface_orientation.hpp"
 #include "mesh/surface_slivers.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
 
 namespace occ = gmsh::model::occ;
-using Entities = gmsh::vectorpair;  ///< (dimension, tag)
+using gmsh::Entities;
 
 /// A Gmsh model of its own, silent and reproducible.
 class Session {
 public:
     Session() : lock_(mutex()) {
-        gmsh::initialize(0, nullptr, false);
-        gmsh::option::setNumber("General.Terminal", 0);
-        gmsh::option::setNumber("General.AbortOnError", 2);  // throw
-        gmsh::option::setNumber("General.NumThreads", 1);
-        gmsh::option::setNumber("Mesh.RandomSeed", 1);
-        gmsh::option::setNumber("Mesh.Algorithm", 6);    // frontal Delaunay on surfaces
-        gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay in volumes
-        gmsh::option::setNumber("Mesh.Optimize", 1);
+        gmsh::initialize();
+        gmsh::option::set_number("General.Terminal", 0);
+        gmsh::option::set_number("General.AbortOnError", 2);  // throw
+        gmsh::option::set_number("General.NumThreads", 1);
+        gmsh::option::set_number("Mesh.RandomSeed", 1);
+        gmsh::option::set_number("Mesh.Algorithm", 6);    // frontal Delaunay on surfaces
+        gmsh::option::set_number("Mesh.Algorithm3D", 1);  // Delaunay in volumes
+        gmsh::option::set_number("Mesh.Optimize", 1);
         gmsh::model::add("pliant");
     }
     ~Session() {
@@ -58,13 +59,21 @@ auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
     try {
         const Session session;
         return work();
-    } catch (const std::string& text) {
-        return failure("{}: Gmsh says: {}", task, text);
+    } catch (const gmsh::LibraryMissing& missing) {
+        return failure("{}: {}", task, missing.what());
     } catch (const std::exception& error) {
         return failure("{}: Gmsh says: {}", task, error.what());
     } catch (...) {
         return failure("{}: Gmsh failed without a reason", task);
     }
+}
+
+/// The solids of a STEP file, in its order. Open CASCADE turns the file's unit into millimetres.
+Entities import_solids(const std::string& file, double scale) {
+    Entities solids = occ::import_shapes(file);
+    std::erase_if(solids, [](const auto& entity) { return entity.first != 3; });
+    if (scale != 1 && !solids.empty()) occ::dilate(solids, scale);
+    return solids;
 }
 
 bool boxes_meet(const Box3& a, const Box3& b, double margin) {
@@ -78,14 +87,14 @@ bool boxes_meet(const Box3& a, const Box3& b, double margin) {
 struct BuildSolid {
     Entities operator()(const BoxSolid& s) const {
         const Vec3 d = s.high - s.low;
-        return {{3, occ::addBox(s.low.x, s.low.y, s.low.z, d.x, d.y, d.z)}};
+        return {{3, occ::add_box(s.low.x, s.low.y, s.low.z, d.x, d.y, d.z)}};
     }
     Entities operator()(const SphereSolid& s) const {
-        return {{3, occ::addSphere(s.center.x, s.center.y, s.center.z, s.radius)}};
+        return {{3, occ::add_sphere(s.center.x, s.center.y, s.center.z, s.radius)}};
     }
     Entities operator()(const CylinderSolid& s) const {
         const Vec3 d = s.to - s.from;
-        return {{3, occ::addCylinder(s.from.x, s.from.y, s.from.z, d.x, d.y, d.z, s.radius)}};
+        return {{3, occ::add_cylinder(s.from.x, s.from.y, s.from.z, d.x, d.y, d.z, s.radius)}};
     }
     Entities operator()(const PrismSolid& s) const {
         const auto axis = [&](std::size_t k) { return static_cast<std::size_t>(s.axes[k]); };
@@ -95,16 +104,15 @@ struct BuildSolid {
             p[axis(0)] = u;
             p[axis(1)] = v;
             p[axis(2)] = s.from;
-            points.push_back(occ::addPoint(p.x, p.y, p.z));
+            points.push_back(occ::add_point(p.x, p.y, p.z));
         }
         std::vector<int> lines;
         for (std::size_t i = 0; i < points.size(); ++i)
-            lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
-        const int face = occ::addPlaneSurface({occ::addCurveLoop(lines)});
+            lines.push_back(occ::add_line(points[i], points[(i + 1) % points.size()]));
+        const int face = occ::add_plane_surface({occ::add_curve_loop(lines)});
         Vec3 along;
         along[axis(2)] = s.to - s.from;
-        Entities out;
-        occ::extrude({{2, face}}, along.x, along.y, along.z, out);
+        Entities out = occ::extrude({{2, face}}, along.x, along.y, along.z);
         std::erase_if(out, [](const auto& entity) { return entity.first != 3; });
         return out;
     }
@@ -120,13 +128,8 @@ struct BuildSolid {
         }
         if (first.empty() || others.empty())
             return first.empty() && s.operation == CombinedSolid::Operation::unite ? others : first;
-        Entities out;
-        std::vector<Entities> map;
-        if (s.operation == CombinedSolid::Operation::unite)
-            occ::fuse(first, others, out, map);
-        else
-            occ::cut(first, others, out, map);
-        return out;
+        return (s.operation == CombinedSolid::Operation::unite ? occ::fuse(first, others) : occ::cut(first, others))
+            .entities;
     }
     Entities operator()(const TranslatedSolid& s) const {
         Entities part = build(s.of);
@@ -143,8 +146,7 @@ struct BuildSolid {
         const Entities first = build(s.of);
         Entities copies;
         for (int k = 1; k < s.count && !first.empty(); ++k) {
-            Entities copy;
-            occ::copy(first, copy);
+            const Entities copy = occ::copy(first);
             occ::translate(copy, k * s.step.x, k * s.step.y, k * s.step.z);
             copies.insert(copies.end(), copy.begin(), copy.end());
         }
@@ -152,10 +154,7 @@ struct BuildSolid {
             copies.insert(copies.begin(), first.begin(), first.end());
             return copies;
         }
-        Entities out;
-        std::vector<Entities> map;
-        occ::fuse(first, copies, out, map);
-        return out;
+        return occ::fuse(first, copies).entities;
     }
 
     /// True if the copies surely do not meet: joining many of them takes long, minutes for 1000.
@@ -179,9 +178,8 @@ struct BuildSolid {
         const double margin = 0.1 * box.diagonal();
         const Vec3 low = box.low - Vec3{margin, margin, margin};
         const Vec3 size = box.size() + 2 * Vec3{margin, margin, margin};
-        Entities pieces;
-        std::vector<Entities> map;
-        occ::cut({{3, occ::addBox(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls, pieces, map);
+        const Entities pieces =
+            occ::cut({{3, occ::add_box(low.x, low.y, low.z, size.x, size.y, size.z)}}, walls).entities;
         Entities kept;
         for (const auto& piece : pieces) {
             if (kept.empty() && !reaches(piece, low) && holds(piece, s.point, 1e-6 * margin))
@@ -192,19 +190,88 @@ struct BuildSolid {
         return kept;
     }
 
+    Entities operator()(const NotchesSolid& s) const {
+        Entities hulls;
+        for (const Solid& hull : s.hulls) {
+            const Entities one = build(hull);
+            hulls.insert(hulls.end(), one.begin(), one.end());
+        }
+        Entities walls;
+        for (const Solid& wall : s.walls) {
+            const Entities one = build(wall);
+            walls.insert(walls.end(), one.begin(), one.end());
+        }
+        Entities kept;
+        const double radius = 1e-7 * bounds(s.hulls.front()).diagonal();
+        for (const auto& piece : occ::cut(hulls, walls).entities) {
+            const auto inside = [&](const Vec3& point) { return holds(piece, point, radius); };
+            if (std::any_of(s.points.begin(), s.points.end(), inside))
+                kept.push_back(piece);
+            else
+                occ::remove({piece}, true);
+        }
+        return kept;
+    }
+
+    Entities operator()(const PolyhedronSolid& s) const {
+        std::vector<int> points;
+        for (const Vec3& p : s.faces->points) points.push_back(occ::add_point(p.x, p.y, p.z));
+        std::map<std::pair<int, int>, int> lines;
+        const auto line = [&](int a, int b) {
+            const auto [entry, fresh] = lines.try_emplace(std::minmax(a, b), 0);
+            if (fresh)
+                entry->second = occ::add_line(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)]);
+            return entry->second;
+        };
+        Entities volumes;
+        for (const FacetedSurface::Piece& piece : s.faces->pieces) {
+            Entities shells;
+            for (const FacetedSurface::Shell& shell : piece) {
+                std::vector<int> faces;
+                for (const FacetedSurface::Face& face : shell) {
+                    std::vector<int> loops;
+                    for (const FacetedSurface::Loop& loop : face) {
+                        std::vector<int> curves;
+                        for (std::size_t i = 0; i < loop.size(); ++i)
+                            curves.push_back(line(loop[i], loop[(i + 1) % loop.size()]));
+                        loops.push_back(occ::add_curve_loop(curves));
+                    }
+                    faces.push_back(occ::add_plane_surface(loops));
+                }
+                shells.emplace_back(3, occ::add_volume({occ::add_surface_loop(faces)}));
+            }
+            const Entities outer = {shells.front()};
+            const Entities whole =
+                shells.size() == 1 ? outer : occ::cut(outer, {shells.begin() + 1, shells.end()}).entities;
+            volumes.insert(volumes.end(), whole.begin(), whole.end());
+        }
+        return volumes;
+    }
+    Entities operator()(const StepSolid& s) const {
+        const Entities all = import_solids(s.file, s.scale);
+        Entities kept;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (std::find(s.numbers.begin(), s.numbers.end(), static_cast<int>(i)) != s.numbers.end())
+                kept.push_back(all[i]);
+            else
+                occ::remove({all[i]}, true);
+        }
+        return kept;
+    }
+
     static bool reaches(const std::pair<int, int>& piece, const Vec3& low) {
-        Vec3 a;
-        Vec3 b;
-        occ::getBoundingBox(piece.first, piece.second, a.x, a.y, a.z, b.x, b.y, b.z);
-        return a.x < low.x + 1e-3 * (b.x - a.x);
+        const auto [a, b] = occ::get_bounding_box(piece.first, piece.second);
+        return a[0] < low.x + 1e-3 * (b[0] - a[0]);
     }
 
     static bool holds(const std::pair<int, int>& piece, const Vec3& point, double radius) {
+        const auto [low, high] = occ::get_bounding_box(piece.first, piece.second);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (point[k] < low[k] || point[k] > high[k]) return false;
+        }
         const int probe =
-            occ::addBox(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
-        Entities copy;
-        occ::copy({piece}, copy);
-        const Entities common = intersect(copy, {{3, probe}});
+            occ::add_box(point.x - radius, point.y - radius, point.z - radius, 2 * radius, 2 * radius, 2 * radius);
+        const Entities common = intersect(occ::copy({piece}), {{3, probe}});
         if (!common.empty()) occ::remove(common, true);
         return !common.empty();
     }
@@ -212,30 +279,21 @@ struct BuildSolid {
     static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
 
     static Entities intersect(const Entities& a, const Entities& b) {
-        Entities out;
-        std::vector<Entities> map;
-        if (!a.empty() && !b.empty()) occ::intersect(a, b, out, map);
-        return out;
+        return a.empty() || b.empty() ? Entities{} : occ::intersect(a, b).entities;
     }
 };
 
 double mass(const Entities& volumes) {
     double sum = 0;
     for (const auto& [dimension, tag] : volumes) {
-        double one = 0;
-        if (dimension == 3) occ::getMass(dimension, tag, one);
-        sum += one;
+        if (dimension == 3) sum += occ::get_mass(dimension, tag);
     }
     return sum;
 }
 
 /// Volume that two solids share.
 double common_volume(const Entities& one, const Entities& other) {
-    Entities a;
-    Entities b;
-    occ::copy(one, a);
-    occ::copy(other, b);
-    const Entities common = BuildSolid::intersect(a, b);
+    const Entities common = BuildSolid::intersect(occ::copy(one), occ::copy(other));
     const double volume = mass(common);
     if (!common.empty()) occ::remove(common, true);
     return volume;
@@ -263,10 +321,7 @@ constexpr std::array<int, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 /// The tets of the current Gmsh model; `body_of_volume` gives regions.
 TetMesh collect_tets(const std::map<int, int>& body_of_volume, int order) {
-    std::vector<std::size_t> tags;
-    std::vector<double> coordinates;
-    std::vector<double> parameters;
-    gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
+    const auto [tags, coordinates] = gmsh::model::mesh::get_nodes();
     std::map<std::size_t, Vec3> position;
     for (std::size_t i = 0; i < tags.size(); ++i) {
         position[tags[i]] = {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
@@ -277,9 +332,7 @@ TetMesh collect_tets(const std::map<int, int>& body_of_volume, int order) {
     const int type = order == 2 ? 11 : 4;
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
     for (const auto& [volume, body] : body_of_volume) {
-        std::vector<std::size_t> elements;
-        std::vector<std::size_t> nodes;
-        gmsh::model::mesh::getElementsByType(type, elements, nodes, volume);
+        const auto [elements, nodes] = gmsh::model::mesh::get_elements_by_type(type, volume);
         for (std::size_t t = 0; t < elements.size(); ++t) {
             for (std::size_t a = 0; a < width; ++a) {
                 const std::size_t tag = nodes[t * width + static_cast<std::size_t>(gmsh_order[a])];
@@ -294,10 +347,10 @@ TetMesh collect_tets(const std::map<int, int>& body_of_volume, int order) {
 }
 
 void set_size(double size) {
-    gmsh::option::setNumber("Mesh.MeshSizeMax", size);
-    gmsh::option::setNumber("Mesh.MeshSizeMin", 0);
-    gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
-    gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
+    gmsh::option::set_number("Mesh.MeshSizeMax", size);
+    gmsh::option::set_number("Mesh.MeshSizeMin", 0);
+    gmsh::option::set_number("Mesh.MeshSizeFromPoints", 0);
+    gmsh::option::set_number("Mesh.MeshSizeExtendFromBoundary", 1);
 }
 
 /// Curved quadratic tets must keep this part of their straight Jacobian everywhere.
@@ -305,7 +358,7 @@ constexpr double least_jacobian = 0.1;
 
 Result<TetMesh> generate(const std::map<int, int>& body_of_volume, int order) {
     gmsh::model::mesh::generate(3);
-    if (order == 2) gmsh::model::mesh::setOrder(2);
+    if (order == 2) gmsh::model::mesh::set_order(2);
     TetMesh mesh = collect_tets(body_of_volume, order);
     if (mesh.tet_count() == 0) return failure("no tetrahedra came out");
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -319,14 +372,8 @@ Result<TetMesh> generate(const std::map<int, int>& body_of_volume, int order) {
 }
 
 double surface_area(const Entities& volumes) {
-    Entities faces;
-    gmsh::model::getBoundary(volumes, faces, false, false, false);
     double sum = 0;
-    for (const auto& [dimension, tag] : faces) {
-        double one = 0;
-        occ::getMass(dimension, tag, one);
-        sum += one;
-    }
+    for (const auto& [dimension, tag] : gmsh::model::get_boundary(volumes, false)) sum += occ::get_mass(dimension, tag);
     return sum;
 }
 
@@ -340,10 +387,8 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes, double wit
         owner.insert(owner.end(), volumes[s].size(), static_cast<int>(s));
     }
     if (all.size() == 1) return {{all.front().second, 0}};
-    Entities out;
-    std::vector<Entities> parts;
-    gmsh::option::setNumber("Geometry.ToleranceBoolean", within);
-    occ::fragment({all.front()}, Entities(all.begin() + 1, all.end()), out, parts);
+    gmsh::option::set_number("Geometry.ToleranceBoolean", within);
+    const std::vector<Entities> parts = occ::fragment({all.front()}, Entities(all.begin() + 1, all.end())).became;
     std::map<int, int> solid_of_volume;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         for (const auto& [dimension, tag] : parts[i]) {
@@ -363,9 +408,7 @@ SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
         for (int dimension = 3; dimension >= 0; --dimension) {
             for (const auto& entity : level) solids[entity].push_back(static_cast<std::size_t>(solid));
             if (dimension == 0) break;
-            Entities below;
-            gmsh::model::getBoundary(level, below, false, false, false);
-            level = std::move(below);
+            level = gmsh::model::get_boundary(level, false);
         }
     }
     return solids;
@@ -374,41 +417,40 @@ SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
 /// Lets `size_at` decide; entities between solids take the smallest of theirs.
 void follow_size(const SizeAt& size_at, const SolidsOf& solids, double size) {
     if (!size_at) return;
-    gmsh::model::mesh::setSizeCallback([&size_at, solids, size](int dimension, int tag, double x, double y, double z) {
-        double least = size;
-        const auto found = solids.find({dimension, tag});
-        if (found == solids.end()) return std::min(least, size_at(0, {x, y, z}));
-        least = std::numeric_limits<double>::infinity();
-        for (const std::size_t solid : found->second) least = std::min(least, size_at(solid, {x, y, z}));
-        return least;
-    });
+    gmsh::model::mesh::set_size_callback(
+        [&size_at, solids, size](int dimension, int tag, double x, double y, double z) {
+            double least = size;
+            const auto found = solids.find({dimension, tag});
+            if (found == solids.end()) return std::min(least, size_at(0, {x, y, z}));
+            least = std::numeric_limits<double>::infinity();
+            for (const std::size_t solid : found->second) least = std::min(least, size_at(solid, {x, y, z}));
+            return least;
+        });
 }
 
 /// The surface as one discrete entity of the model.
 int add_triangles(const TriMesh& surface) {
-    const int entity = gmsh::model::addDiscreteEntity(2);
+    const int entity = gmsh::model::add_discrete_entity(2);
     std::vector<std::size_t> tags(surface.points.size());
     std::iota(tags.begin(), tags.end(), std::size_t{1});
     std::vector<double> coordinates;
     for (const Vec3& p : surface.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
-    gmsh::model::mesh::addNodes(2, entity, tags, coordinates);
+    gmsh::model::mesh::add_nodes(2, entity, tags, coordinates);
     std::vector<std::size_t> elements(surface.triangles.size());
     std::iota(elements.begin(), elements.end(), std::size_t{1});
     std::vector<std::size_t> nodes;
     for (const auto& triangle : surface.triangles) {
         for (const int n : triangle) nodes.push_back(static_cast<std::size_t>(n) + 1);
     }
-    gmsh::model::mesh::addElementsByType(entity, 2, elements, nodes);
+    gmsh::model::mesh::add_elements_by_type(entity, 2, elements, nodes);
     return entity;
 }
 
 /// Meshes what the model's surfaces enclose.
 Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
-    Entities faces;
-    gmsh::model::getEntities(faces, 2);
     std::vector<int> loop;
-    for (const auto& [dimension, tag] : faces) loop.push_back(tag);
-    const int volume = gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(loop)});
+    for (const auto& [dimension, tag] : gmsh::model::get_entities(2)) loop.push_back(tag);
+    const int volume = gmsh::model::geo::add_volume({gmsh::model::geo::add_surface_loop(loop)});
     gmsh::model::geo::synchronize();
     set_size(size);
     follow_size(size_at, {}, size);
@@ -417,59 +459,32 @@ Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
 
 /// The triangles of one face of the model, appended to `surface`; `index` maps Gmsh's nodes to points.
 void append_face(int face, TriMesh& surface, std::map<std::size_t, int>& index) {
-    std::vector<std::size_t> elements;
-    std::vector<std::size_t> nodes;
-    gmsh::model::mesh::getElementsByType(2, elements, nodes, face);
+    const auto [elements, nodes] = gmsh::model::mesh::get_elements_by_type(2, face);
     for (std::size_t t = 0; t < elements.size(); ++t) {
         std::array<int, 3> triangle{};
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [entry, fresh] = index.try_emplace(nodes[3 * t + k], static_cast<int>(surface.points.size()));
             triangle[k] = entry->second;
             if (!fresh) continue;
-            std::vector<double> at;
-            std::vector<double> parameter;
-            gmsh::model::mesh::getNode(nodes[3 * t + k], at, parameter);
+            const std::vector<double> at = gmsh::model::mesh::get_node(nodes[3 * t + k]);
             surface.points.push_back({at[0], at[1], at[2]});
         }
         surface.triangles.push_back(triangle);
     }
 }
 
-/// 1 if triangle `t` on `face` looks out of the solid, -1 if into it, 0 if that cannot be told there. The question is
-/// put on the exact face: a chord's own middle lies on the same side of a curved face as both its neighbourhoods.
-int outward_vote(const Solid& solid, const TriMesh& surface, std::size_t t, int face, double step) {
-    const auto& [i, j, k] = surface.triangles[t];
-    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
-    const Vec3 middle = (a + b + c) / 3;
-    std::vector<double> on_face;
-    std::vector<double> parameter;
-    std::vector<double> normal;
-    gmsh::model::getClosestPoint(2, face, {middle.x, middle.y, middle.z}, on_face, parameter);
-    gmsh::model::getNormal(face, parameter, normal);
-    const Vec3 p{on_face[0], on_face[1], on_face[2]};
-    const Vec3 n{normal[0], normal[1], normal[2]};
-    const int along = static_cast<int>(contains(solid, p - step * n)) - static_cast<int>(contains(solid, p + step * n));
-    return dot(cross(b - a, c - a), n) > 0 ? along : -along;
-}
-
-/// The triangles on the faces of `volumes`, turned outwards face by face (Open CASCADE's faces look either way).
-TriMesh collect_surface(const Solid& solid, const Entities& volumes) {
-    constexpr std::size_t voters = 9;
-    Entities faces;
-    gmsh::model::getBoundary(volumes, faces, true, false, false);
+/// The triangles on the faces of `volumes`, normals outwards.
+TriMesh collect_surface(const Entities& volumes) {
     TriMesh surface;
-    std::map<std::size_t, int> index;
-    const double step = 1e-5 * bounds(solid).diagonal();
-    for (const auto& [dimension, tag] : faces) {
-        const std::size_t first = surface.triangles.size();
-        append_face(std::abs(tag), surface, index);
-        const std::size_t count = surface.triangles.size() - first;
-        int votes = 0;
-        for (std::size_t v = 0; v < std::min(voters, count); ++v)
-            votes += outward_vote(solid, surface, first + v * count / std::min(voters, count), std::abs(tag), step);
-        if (votes >= 0) continue;
-        for (std::size_t t = first; t < surface.triangles.size(); ++t)
-            std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    for (const auto& volume : volumes) {
+        TriMesh one;
+        std::map<std::size_t, int> index;
+        for (const auto& [dimension, tag] : gmsh::model::get_boundary({volume}, true))
+            append_face(std::abs(tag), one, index);
+        orient_solid(one);  // Open CASCADE's faces look either way
+        const int offset = static_cast<int>(surface.points.size());
+        surface.points.insert(surface.points.end(), one.points.begin(), one.points.end());
+        for (const auto& [a, b, c] : one.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
     }
     return surface;
 }
@@ -509,10 +524,10 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         if (Status status = check_tet_count(volume, surface_area(joined), size); !status)
             return tl::unexpected(status.error());
         set_size(size);
-        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 8 * refinement);
-        gmsh::option::setNumber("Mesh.MeshSizeMin", 0.2 * size / refinement);
+        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 8 * refinement);
+        gmsh::option::set_number("Mesh.MeshSizeMin", 0.2 * size / refinement);
         if (size_at) {
-            gmsh::option::setNumber("Mesh.MeshSizeMin", 0.05 * size / refinement);
+            gmsh::option::set_number("Mesh.MeshSizeMin", 0.05 * size / refinement);
             follow_size(size_at, solids_of_entities(solid_of_volume), size);
         }
         Result<TetMesh> mesh = generate(solid_of_volume, order);
@@ -557,8 +572,8 @@ constexpr double sliver_deg = 5;
 Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(surface);
-        gmsh::model::mesh::classifySurfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
-        gmsh::model::mesh::createGeometry();
+        gmsh::model::mesh::classify_surfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
+        gmsh::model::mesh::create_geometry();
         return mesh_enclosed(size, size_at);
     };
     const auto as_drawn = [&]() -> Result<TetMesh> {
@@ -610,14 +625,31 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
         const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / reach), 24.0, 2000.0);
         set_size(4 * reach);
-        gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", segments);
+        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", segments);
         gmsh::model::mesh::generate(2);
-        TriMesh surface = collect_surface(solid, volumes);
+        TriMesh surface = collect_surface(volumes);
         const double exact = mass(volumes);
         const double found = signed_volume(surface);
         if (std::fabs(found - exact) > 4 * tolerance * surface_area(volumes) + 1e-6 * exact)
             return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
         return surface;
+    });
+}
+
+Result<StepContent> read_step(const std::string& file, double scale) {
+    return in_session("reading", [&]() -> Result<StepContent> {
+        const Entities solids = import_solids(file, scale);
+        if (solids.empty()) return input_error("{}: holds no solid", file);
+        occ::synchronize();
+        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 32);
+        gmsh::model::mesh::generate(2);
+        StepContent content;
+        for (const auto& solid : solids) {
+            const std::string path = gmsh::model::get_entity_name(3, solid.second);
+            content.names.push_back(path.substr(path.rfind('/') + 1));
+            content.surfaces.push_back(collect_surface({solid}));
+        }
+        return content;
     });
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "mesh/solid.hpp"
@@ -36,6 +37,13 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 /// See mesher.hpp.
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
 [[nodiscard]] Result<double> solid_volume(const Solid& solid);
+
+struct StepContent {
+    std::vector<std::string> names;  ///< of the solids, as the program that drew them called them; "" where it did not
+    std::vector<TriMesh> surfaces;   ///< of each, normals outwards, chords of 1/32 of a turn
+};
+/// All solids of a STEP file, millimetres times `scale`.
+[[nodiscard]] Result<StepContent> read_step(const std::string& file, double scale);
 
 /// Refuses a mesh of more than 20 million tets, by a body's volume and its surface's area.
 [[nodiscard]] Status check_tet_count(double volume, double area, double size);

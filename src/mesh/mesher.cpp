@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "mesh/flat_faces.hpp"
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/mesh_report.hpp"
 #include "mesh/narrow_gaps.hpp"
 #include "mesh/size_field.hpp"
 #include "mesh/surface_check.hpp"
+#include "mesh/surface_crossings.hpp"
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
@@ -37,7 +40,7 @@ bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& 
     return false;
 }
 
-/// Surface files are not joined to their neighbours: a mesh where they touch would fall apart unnoticed.
+/// Surfaces of many faces are not joined to their neighbours: a mesh where they touch would fall apart unnoticed.
 Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGeometry> bodies, double margin) {
     const int own = fresh.mesh.region.front();
     int other = own;
@@ -48,8 +51,8 @@ Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGe
     const std::string& name = bodies[static_cast<std::size_t>(own)].name;
     if (other == own) return input_error("body \"{}\": two shells of its surface touch or overlap", name);
     return input_error(
-        "body \"{}\" touches or overlaps body \"{}\"; bodies from surface files must stand apart (shapes written in "
-        "the robot file may touch)",
+        "body \"{}\" touches or overlaps body \"{}\"; surfaces of many faces must stand apart (shapes, STEP files and "
+        "closed surfaces of up to 1000 flat faces may touch)",
         name, bodies[static_cast<std::size_t>(other)].name);
 }
 
@@ -59,6 +62,27 @@ kernel::SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of
     return [&field, bodies = std::move(body_of_solid)](std::size_t solid, const Vec3& p) {
         return field.at(bodies[solid], p);
     };
+}
+
+/// True if coordinates of 32 bits say where the solid is.
+bool is_rounded(const Solid& solid) {
+    if (std::holds_alternative<PolyhedronSolid>(solid->shape)) return true;
+    const auto* combined = std::get_if<CombinedSolid>(&solid->shape);
+    return combined != nullptr && std::any_of(combined->parts.begin(), combined->parts.end(), is_rounded);
+}
+
+/// Faces of surfaces that were drawn to touch are this far apart at most.
+double rounding(std::span<const BodyGeometry> bodies) {
+    constexpr double share = 2e-6;  // of the size of all: 32 bits hold 6e-8 of a coordinate, some of them add up
+    Box3 box;
+    bool rounded = false;
+    for (const BodyGeometry& body : bodies) {
+        box.add(bounds(body).low);
+        box.add(bounds(body).high);
+        const auto* solid = std::get_if<Solid>(&body.shape);
+        rounded = rounded || (solid != nullptr && is_rounded(*solid));
+    }
+    return rounded ? share * box.diagonal() : 0;
 }
 
 Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
@@ -73,7 +97,8 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
     }
     if (solids.empty()) return Part{};
     const kernel::SizeAt size_at = sizes_of(field, {body_of_solid.begin(), body_of_solid.end()});
-    Result<TetMesh> mesh = kernel::mesh_solids(solids, settings.size, settings.order, size_at, join_within);
+    Result<TetMesh> mesh =
+        kernel::mesh_solids(solids, settings.size, settings.order, size_at, std::max(join_within, rounding(bodies)));
     if (!mesh) return tl::unexpected(mesh.error());
     for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
     return Part{std::move(*mesh), false};
@@ -94,6 +119,11 @@ double surface_area(const TriMesh& surface) {
 Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings,
                                          const kernel::SizeAt& size_at) {
     if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
+    // Gmsh's recovery of the boundary may crash on what follows, rather than fail.
+    constexpr double finest = 5e-6;
+    if (cuts_itself(surface)) return input_error("the surface cuts through itself or touches itself");
+    if (finest_detail(surface) < finest)
+        return input_error("the surface has triangles lower than {:.0e} of its size", finest);
     const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
     if (!pieces) return tl::unexpected(pieces.error());
     std::vector<TetMesh> meshes;
@@ -111,9 +141,32 @@ Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSetti
     return meshes;
 }
 
+/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+constexpr double sliver_deg = 5;
+
+/// Where Gmsh had to keep the triangles that were drawn, and they are too slender: a mesh from the winding number, if
+/// that is better.
+void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const MeshSettings& settings,
+                     Progress& progress) {
+    double angle = sliver_deg;
+    bool as_drawn = false;
+    for (const TetMesh& mesh : meshes) {
+        as_drawn = as_drawn || !mesh.notes.empty();
+        angle = std::min(angle, smallest_dihedral_deg(mesh));
+    }
+    if (!as_drawn || angle >= sliver_deg) return;
+    Result<TetMesh> mesh = mesh_by_winding(surface, settings.size, settings.angle_deg, progress);
+    if (!mesh || smallest_dihedral_deg(*mesh) <= angle) return;
+    mesh->notes.front() = fmt::format(
+        "the surface could not be divided anew by Gmsh and was meshed from its winding number; check its volume: "
+        "{:.6g}",
+        volume(*mesh));
+    meshes = {std::move(*mesh)};
+}
+
 /// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
-                                            const MeshSettings& settings, const SizeField& field) {
+                                            const MeshSettings& settings, const SizeField& field, Progress& progress) {
     const auto& drawn = std::get<TriMesh>(bodies[b].shape);
     TriMesh surface = drawn;
     const SliverCount slivers = remove_slivers(surface);
@@ -123,11 +176,20 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
     Status few = kernel::check_tet_count(std::fabs(signed_volume(surface)), surface_area(surface), settings.size);
     if (!few) return blame(few.error());
     Result<std::vector<TetMesh>> meshes = mesh_pieces(surface, settings, sizes_of(field, {b}));
-    if (!meshes) {
-        Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg);
+    const bool damaged = !meshes;
+    if (damaged) {
+        if (progress.cancelled()) return cancelled();
+        Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg, progress);
+        if (!mesh && mesh.error().cause == Cause::cancelled) return tl::unexpected(mesh.error());
         if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
+        if (std::string& note = mesh->notes.front(); note.find("is damaged") == std::string::npos)
+            note = meshes.error().message + ": " + note;
         meshes = std::vector<TetMesh>{std::move(*mesh)};
-    } else if (slivers.removed > 0) {
+    } else {
+        replace_slivers(*meshes, surface, settings, progress);
+    }
+    if (progress.cancelled()) return cancelled();
+    if (slivers.removed > 0 && !damaged) {
         meshes->front().notes.insert(meshes->front().notes.begin(),
                                      fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
     }
@@ -172,7 +234,7 @@ Result<TetMesh> mesh_once(std::span<const BodyGeometry> bodies, const MeshSettin
         if (!std::holds_alternative<TriMesh>(bodies[b].shape)) continue;
         if (progress.cancelled()) return cancelled();
         progress.advance("mesh", static_cast<double>(b) / static_cast<double>(bodies.size()));
-        Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings, field);
+        Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings, field, progress);
         if (!fresh) return tl::unexpected(fresh.error());
         for (Part& part : *fresh) {
             for (const Part& before : parts) {
@@ -285,6 +347,28 @@ void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
     }
 }
 
+/// Surfaces that may touch another body, as solids where they have few flat faces.
+std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, double margin) {
+    std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
+    const auto near = [&](const BodyGeometry& a, const BodyGeometry& b) {
+        const Box3 one = bounds(a);
+        const Box3 other = bounds(b);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (one.low[k] > other.high[k] + margin || other.low[k] > one.high[k] + margin) return false;
+        }
+        return true;
+    };
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto* surface = std::get_if<TriMesh>(&bodies[i].shape);
+        if (surface == nullptr) continue;
+        bool alone = true;
+        for (std::size_t j = 0; j < bodies.size(); ++j) alone = alone && (i == j || !near(bodies[i], bodies[j]));
+        if (alone) continue;
+        if (Result<Solid> solid = polyhedron(*surface)) result[i].shape = std::move(*solid);
+    }
+    return result;
+}
+
 }  // namespace
 
 Box3 bounds(const BodyGeometry& body) {
@@ -292,8 +376,9 @@ Box3 bounds(const BodyGeometry& body) {
     return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
 }
 
-Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
-    if (Status status = check_settings(bodies, settings); !status) return tl::unexpected(status.error());
+Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings, Progress& progress) {
+    if (Status status = check_settings(drawn, settings); !status) return tl::unexpected(status.error());
+    const std::vector<BodyGeometry> bodies = with_solids(drawn, std::max(settings.close_gaps, 0.01 * settings.size));
     SizeField field(bodies, settings);
     if (Status status = follow_walls(bodies, settings, field, progress); !status) return tl::unexpected(status.error());
     Result<TetMesh> mesh = mesh_once(bodies, settings, field, progress);

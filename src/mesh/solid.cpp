@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/triangle_tree.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -63,6 +65,13 @@ struct Contains {
         }
         return box.contains(p);
     }
+    bool operator()(const NotchesSolid& s) const {
+        const auto inside = [&](const Solid& part) { return contains(part, p); };
+        return std::any_of(s.hulls.begin(), s.hulls.end(), inside) &&
+               std::none_of(s.walls.begin(), s.walls.end(), inside);
+    }
+    bool operator()(const PolyhedronSolid& s) const { return s.surface->winding_number(p) > 0.5; }
+    bool operator()(const StepSolid& s) const { return s.surface->winding_number(p) > 0.5; }
 };
 
 Box3 united(Box3 a, const Box3& b) {
@@ -132,6 +141,13 @@ struct Bounds {
         for (const Solid& wall : s.walls) box = united(box, bounds(wall));
         return box;
     }
+    Box3 operator()(const NotchesSolid& s) const {
+        Box3 box = bounds(s.hulls.front());
+        for (const Solid& hull : s.hulls) box = united(box, bounds(hull));
+        return box;
+    }
+    Box3 operator()(const PolyhedronSolid& s) const { return bounds(s.surface->surface()); }
+    Box3 operator()(const StepSolid& s) const { return bounds(s.surface->surface()); }
 };
 
 }  // namespace

@@ -23,6 +23,8 @@
 namespace pliant::mesh {
 
 struct SolidNode;
+struct FacetedSurface;
+class TriangleTree;
 
 /// An immutable solid; copies are cheap. Lengths are in the caller's unit.
 using Solid = std::shared_ptr<const SolidNode>;
@@ -71,13 +73,36 @@ struct EnclosedSolid {
     std::vector<Solid> walls;  ///< at least one
 };
 
+/// What convex hulls hold of the empty space between walls, in the pieces around points. Not written by people: the
+/// notches that a cable crosses.
+struct NotchesSolid {
+    std::vector<Solid> hulls;  ///< at least one
+    std::vector<Vec3> points;  ///< of the pieces
+    std::vector<Solid> walls;
+};
+
+/// The inside of a closed surface of flat faces (flat_faces.hpp).
+struct PolyhedronSolid {
+    std::shared_ptr<const FacetedSurface> faces;
+    std::shared_ptr<const TriangleTree> surface;
+};
+
+/// Solids of a STEP file (step_file.hpp).
+struct StepSolid {
+    std::string file;
+    std::vector<int> numbers;                     ///< of the solids, from 0, in the order of the file
+    double scale;                                 ///< lengths of a caller per millimetre
+    std::shared_ptr<const TriangleTree> surface;  ///< of them all, near enough to tell inside from outside
+};
+
 struct SolidNode {
     std::variant<BoxSolid, SphereSolid, CylinderSolid, PrismSolid, CombinedSolid, TranslatedSolid, RotatedSolid,
-                 RepeatedSolid, EnclosedSolid>
+                 RepeatedSolid, EnclosedSolid, NotchesSolid, PolyhedronSolid, StepSolid>
         shape;
 };
 
-/// Exact membership; points on the surface may fall either way. For an EnclosedSolid: between the walls, in any piece.
+/// Exact membership; points on the surface may fall either way, and on a STEP file's curved
+/// faces those near it. Between walls: in any piece.
 [[nodiscard]] bool contains(const Solid& solid, const Vec3& point);
 
 /// A box that holds the solid (not always the smallest one).

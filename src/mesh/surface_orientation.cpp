@@ -1,10 +1,13 @@
 #include "mesh/surface_orientation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "mesh/surface_shells.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -118,6 +121,24 @@ SurfaceDamage orient(TriMesh& surface) {
         for (auto& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
     }
     return damage;
+}
+
+void orient_solid(TriMesh& surface) {
+    (void)orient(surface);
+    const auto shells = shell_triangles(surface);
+    std::vector<double> volume;
+    for (const auto& shell : shells) {
+        TriMesh part{surface.points, {}};
+        for (const std::size_t t : shell) part.triangles.push_back(surface.triangles[t]);
+        volume.push_back(signed_volume(part));
+    }
+    const auto smaller = [](double a, double b) { return std::fabs(a) < std::fabs(b); };
+    const auto outer =
+        static_cast<std::size_t>(std::max_element(volume.begin(), volume.end(), smaller) - volume.begin());
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+        if ((s == outer) == (volume[s] > 0)) continue;
+        for (const std::size_t t : shells[s]) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    }
 }
 
 }  // namespace pliant::mesh

@@ -20,4 +20,8 @@ struct SurfaceDamage {
 /// area) of what hangs together so, and turns everything if the signed volume is negative.
 [[nodiscard]] SurfaceDamage orient(TriMesh& surface);
 
+/// Turns the surface of one connected solid outwards: of its shells the largest is the outer one, the rest are
+/// cavities. Precondition: each edge has two triangles.
+void orient_solid(TriMesh& surface);
+
 }  // namespace pliant::mesh

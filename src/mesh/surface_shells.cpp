@@ -30,37 +30,6 @@ private:
     std::vector<std::size_t> parent_;
 };
 
-/// The triangles of each shell, shells in the order of their first triangle.
-std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
-    struct Edge {
-        int low, high;
-        std::size_t triangle;
-    };
-    std::vector<Edge> edges;
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto [low, high] = std::minmax(surface.triangles[t][i], surface.triangles[t][(i + 1) % 3]);
-            edges.push_back({low, high, t});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    TriangleSets sets(surface.triangles.size());
-    for (std::size_t i = 1; i < edges.size(); ++i) {
-        if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high)
-            sets.join(edges[i].triangle, edges[i - 1].triangle);
-    }
-    std::vector<std::vector<std::size_t>> shells;
-    std::map<std::size_t, std::size_t> shell_of;
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto [entry, fresh] = shell_of.try_emplace(sets.find(t), shells.size());
-        if (fresh) shells.emplace_back();
-        shells[entry->second].push_back(t);
-    }
-    return shells;
-}
-
 TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles) {
     TriMesh part;
     std::map<int, int> index;
@@ -106,6 +75,36 @@ int parent_of(const std::vector<Shell>& shells, std::size_t s) {
 }
 
 }  // namespace
+
+std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
+    struct Edge {
+        int low, high;
+        std::size_t triangle;
+    };
+    std::vector<Edge> edges;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(surface.triangles[t][i], surface.triangles[t][(i + 1) % 3]);
+            edges.push_back({low, high, t});
+        }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    TriangleSets sets(surface.triangles.size());
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+        if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high)
+            sets.join(edges[i].triangle, edges[i - 1].triangle);
+    }
+    std::vector<std::vector<std::size_t>> shells;
+    std::map<std::size_t, std::size_t> shell_of;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto [entry, fresh] = shell_of.try_emplace(sets.find(t), shells.size());
+        if (fresh) shells.emplace_back();
+        shells[entry->second].push_back(t);
+    }
+    return shells;
+}
 
 double winding_number(const TriMesh& surface, const Vec3& point) {
     double sum = 0;

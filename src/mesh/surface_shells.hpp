@@ -1,6 +1,7 @@
 // The closed shells of a surface: outer ones, and the cavities inside them.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/error.hpp"
@@ -13,6 +14,9 @@ namespace pliant::mesh {
 /// an outer shell inside the material of another, or more than 1000 shells are errors. Shells that cross each other
 /// are not looked for.
 [[nodiscard]] Result<std::vector<TriMesh>> solid_pieces(const TriMesh& surface);
+
+/// The triangles of each shell (what hangs together by edges), shells in the order of their first triangle.
+[[nodiscard]] std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface);
 
 /// How often a closed surface winds around a point off the surface: 1 inside, 0 outside (sum of solid angles / 4 pi;
 /// van Oosterom and Strackee 1983). Cost: all triangles.

@@ -8,16 +8,18 @@
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/perturb_mesh_3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
-#include <set>
+#include <optional>
 #include <unordered_map>
 
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
 #include "mesh/triangle_tree.hpp"
 
@@ -29,7 +31,6 @@ using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_dom
 using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
-using Polylines = std::vector<std::vector<Kernel::Point_3>>;
 
 constexpr double inside = 0.5;
 /// Somewhere inside the surface must wind this often: a sheet reaches a half on its very face.
@@ -60,94 +61,6 @@ Box3 grown(const Box3& box) {
     return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}};
 }
 
-class SharpEdges {
-public:
-    SharpEdges(const TriangleTree& tree, double size, double angle_deg)
-        : tree_(tree), size_(size), least_cosine_(std::cos(angle_deg * std::numbers::pi / 180)) {}
-
-    /// Chains of sharp edges that bound material, broken where three or more meet and at sharp bends.
-    Polylines find() {
-        collect();
-        Polylines lines;
-        for (const auto& [node, ends] : next_) {
-            if (ends.size() != 2) {
-                for (const int end : ends) walk(node, end, lines);
-            }
-        }
-        for (const auto& [node, ends] : next_) {  // what is left are closed loops
-            for (const int end : ends) walk(node, end, lines);
-        }
-        return lines;
-    }
-
-private:
-    void collect() {
-        std::map<std::pair<int, int>, std::vector<int>> triangles_of;
-        const TriMesh& surface = tree_.surface();
-        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto [low, high] = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
-                triangles_of[{low, high}].push_back(static_cast<int>(t));
-            }
-        }
-        for (const auto& [edge, triangles] : triangles_of) {
-            if (triangles.size() != 2 || dot(normal(triangles[0]), normal(triangles[1])) > least_cosine_) continue;
-            if (!bounds_material(edge.first, edge.second)) continue;
-            next_[edge.first].push_back(edge.second);
-            next_[edge.second].push_back(edge.first);
-        }
-    }
-
-    [[nodiscard]] Vec3 normal(int triangle) const {
-        const auto& [a, b, c] = tree_.surface().triangles[static_cast<std::size_t>(triangle)];
-        const Vec3 n = cross(at(b) - at(a), at(c) - at(a));
-        return n / norm(n);
-    }
-    [[nodiscard]] const Vec3& at(int node) const { return tree_.surface().points[static_cast<std::size_t>(node)]; }
-
-    /// Both material and none close to the middle of the edge.
-    [[nodiscard]] bool bounds_material(int a, int b) const {
-        const Vec3 along = at(b) - at(a);
-        const Vec3 middle = 0.5 * (at(a) + at(b));
-        const double radius = 0.02 * std::min(size_, norm(along));
-        const Vec3 other = std::fabs(along.x) < 0.6 * norm(along) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-        Vec3 u = cross(along, other);
-        u = u / norm(u);
-        const Vec3 v = cross(along, u) / norm(along);
-        int held = 0;
-        constexpr int directions = 16;
-        for (int i = 0; i < directions; ++i) {
-            const double turn = 2 * std::numbers::pi * (i + 0.37) / directions;
-            held += tree_.winding_number(middle + radius * (std::cos(turn) * u + std::sin(turn) * v)) > inside ? 1 : 0;
-        }
-        return held > 0 && held < directions;
-    }
-
-    /// Goes from `from` over `to` to the end of the chain, unless that was done from the other end.
-    void walk(int from, int to, Polylines& lines) {
-        if (!done_.insert(std::minmax(from, to)).second) return;
-        const int start = from;
-        std::vector<Kernel::Point_3> line = {cgal(at(from)), cgal(at(to))};
-        while (to != start && next_[to].size() == 2) {
-            const int onward = next_[to][0] == from ? next_[to][1] : next_[to][0];
-            const Vec3 before = at(to) - at(from);
-            const Vec3 after = at(onward) - at(to);
-            if (dot(before, after) < least_cosine_ * norm(before) * norm(after)) break;  // a corner
-            if (!done_.insert(std::minmax(to, onward)).second) break;
-            from = to;
-            to = onward;
-            line.push_back(cgal(at(to)));
-        }
-        lines.push_back(std::move(line));
-    }
-
-    const TriangleTree& tree_;
-    double size_;
-    double least_cosine_;
-    std::map<int, std::vector<int>> next_;
-    std::set<std::pair<int, int>> done_;
-};
-
 TetMesh collect(const Complex& complex, const Vec3& offset) {
     TetMesh mesh;
     mesh.region_names = {"0"};
@@ -169,23 +82,58 @@ TetMesh collect(const Complex& complex, const Vec3& offset) {
     return mesh;
 }
 
-/// Around the origin. CGAL's edge of a facet of circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
-Complex mesh_around_origin(const TriangleTree& tree, const Box3& box, double size, double angle_deg) {
+/// Several times what a mesh of this size has where nothing is finer than it, and room for what is.
+std::size_t node_limit(const TriMesh& surface, double size) {
+    double area = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
+        area += norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
+    }
+    const double nodes = std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
+    return 15000 + static_cast<std::size_t>(std::min(8 * nodes, 20e6));
+}
+
+/// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
+struct Cancelled {};
+
+/// What is asked of the mesh beside its size.
+struct Demands {
+    std::vector<std::vector<Vec3>> edges;  ///< that stay
+    double distance;                       ///< of the mesh's surface from the true one, as a share of the size
+    double facet_angle_deg;
+};
+
+/// Around the origin; nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of
+/// circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
+std::optional<Complex> mesh_around_origin(const TriangleTree& tree, const Box3& box, const Demands& demands,
+                                          double size, Progress& progress) {
     namespace params = CGAL::parameters;
     CGAL::get_default_random() = CGAL::Random(0);
     const double radius = 0.6 * box.diagonal();
     Domain domain = Domain::create_implicit_mesh_domain(
-        [&tree](const Kernel::Point_3& p) {
+        [&tree, &progress](const Kernel::Point_3& p) {
+            if (progress.cancelled()) throw Cancelled();
             return inside - tree.winding_number({p.x(), p.y(), p.z()});
         },
         Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = 1e-5);
-    const Polylines lines = SharpEdges(tree, size, angle_deg).find();
+    std::vector<std::vector<Kernel::Point_3>> lines;
+    for (const std::vector<Vec3>& chain : demands.edges) {
+        auto& line = lines.emplace_back();
+        for (const Vec3& p : chain) line.push_back(cgal(p));
+    }
     domain.add_features(lines.begin(), lines.end());
-    const Criteria criteria(params::edge_size = size, params::facet_angle = 25, params::facet_size = 0.65 * size,
-                            params::facet_distance = 0.05 * size, params::cell_radius_edge_ratio = 2,
-                            params::cell_size = 0.75 * size);
-    return CGAL::make_mesh_3<Complex>(domain, criteria, params::perturb(params::sliver_bound = 12),
-                                      params::exude(params::sliver_bound = 12));
+    const Criteria criteria(params::edge_size = size, params::facet_angle = demands.facet_angle_deg,
+                            params::facet_size = 0.65 * size, params::facet_distance = demands.distance * size,
+                            params::cell_radius_edge_ratio = 2, params::cell_size = 0.75 * size);
+    CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
+    Complex complex = CGAL::make_mesh_3<Complex>(
+        domain, criteria, params::no_perturb(), params::no_exude(),
+        params::mesh_3_options(params::maximal_number_of_vertices = node_limit(tree.surface(), size),
+                               params::pointer_to_error_code = &code));
+    if (code != CGAL::CGAL_MESH_3_NO_ERROR) return std::nullopt;
+    CGAL::perturb_mesh_3(complex, domain, params::sliver_bound = 12);
+    CGAL::exude_mesh_3(complex, params::sliver_bound = 12);
+    return complex;
 }
 
 std::string damage_note(const SurfaceDamage& damage, double volume) {
@@ -199,13 +147,13 @@ std::string damage_note(const SurfaceDamage& damage, double volume) {
     add(damage.repeated, "repeated triangles");
     add(damage.flat, "flat triangles");
     add(damage.inside_out ? 1 : 0, "surface turned inside out");
-    return fmt::format("the surface is damaged ({}) and was meshed from its winding number; check its volume: {:.6g}",
-                       text.empty() ? "it cuts through itself" : text, volume);
+    const std::string is = text.empty() ? "" : fmt::format("is damaged ({}) and ", text);
+    return fmt::format("the surface {}was meshed from its winding number; check its volume: {:.6g}", is, volume);
 }
 
 }  // namespace
 
-Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angle_deg) {
+Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angle_deg, Progress& progress) {
     TriMesh centred = surface;
     const Box3 whole = bounds(surface);
     const Vec3 middle = 0.5 * (whole.low + whole.high);
@@ -220,7 +168,13 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
     Status few = kernel::check_tet_count(volume, volume / size, size);
     if (!few) return tl::unexpected(few.error());
     try {
-        TetMesh mesh = collect(mesh_around_origin(tree, box, size, angle_deg), middle);
+        const SharpEdges edges = sharp_edges(tree, size, angle_deg);
+        std::optional<Complex> complex = mesh_around_origin(tree, box, {edges.chains, 0.05, 25}, size, progress);
+        const bool rounded = !complex;
+        if (rounded) complex = mesh_around_origin(tree, box, {{}, 0.15, 20}, size, progress);
+        if (!complex)
+            return failure("the mesh of the damaged surface does not come to an end; try a smaller mesh size");
+        TetMesh mesh = collect(*complex, middle);
         const double meshed = mesh::volume(mesh);
         if (!(std::fabs(meshed - volume) < 0.1 * volume))
             return failure(
@@ -228,7 +182,14 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
                 "mesh size",
                 meshed, volume);
         mesh.notes.push_back(damage_note(damage, meshed));
+        if (rounded)
+            mesh.notes.emplace_back("its sharp edges are rounded off: with them the mesh does not come to an end");
+        else if (edges.dropped > 0)
+            mesh.notes.push_back(
+                fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
         return mesh;
+    } catch (const Cancelled&) {
+        return cancelled();
     } catch (const std::exception& error) {
         return failure("CGAL says: {}", error.what());
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh/mesh_report.hpp"
+#include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
 #include "mesh/triangle_tree.hpp"
 
@@ -30,9 +31,11 @@ TriMesh joined(TriMesh a, const TriMesh& b) {
     return a;
 }
 
+Progress silent;
+
 /// The mesh's volume, and that its shapes are usable.
 double meshed_volume(const TriMesh& surface, double size) {
-    const Result<TetMesh> mesh = mesh_by_winding(surface, size, 30);
+    const Result<TetMesh> mesh = mesh_by_winding(surface, size, 30, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(report_on(*mesh).min_dihedral_deg > 5);
     CHECK(mesh->notes.size() == 1);
@@ -97,15 +100,49 @@ TEST_CASE("holes, flipped facets, overlaps and crowded edges are meshed with the
 TEST_CASE("the same surface gives the same mesh; one that encloses nothing is refused") {
     TriMesh hole = cube();
     hole.triangles.pop_back();
-    const Result<TetMesh> first = mesh_by_winding(hole, 3, 30);
-    const Result<TetMesh> second = mesh_by_winding(hole, 3, 30);
+    const Result<TetMesh> first = mesh_by_winding(hole, 3, 30, silent);
+    const Result<TetMesh> second = mesh_by_winding(hole, 3, 30, silent);
     REQUIRE(first);
     REQUIRE(second);
     CHECK(first->points == second->points);
     CHECK(first->nodes == second->nodes);
     CHECK(first->notes[0].find("3 open edges") != std::string::npos);
     const TriMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-    CHECK(mesh_by_winding(sheet, 0.1, 30).error().message.find("encloses nothing") != std::string::npos);
-    CHECK(mesh_by_winding({}, 0.1, 30).error().message.find("encloses nothing") != std::string::npos);
-    CHECK(mesh_by_winding(hole, 1e-3, 30).error().message.find("more than the") != std::string::npos);
+    CHECK(mesh_by_winding(sheet, 0.1, 30, silent).error().message.find("encloses nothing") != std::string::npos);
+    CHECK(mesh_by_winding({}, 0.1, 30, silent).error().message.find("encloses nothing") != std::string::npos);
+    CHECK(mesh_by_winding(hole, 1e-3, 30, silent).error().message.find("more than the") != std::string::npos);
+}
+
+TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesher comes to an end") {
+    // Two bars that cut through each other: their edges cross each other's faces, and the upper ones lie in one plane.
+    TriMesh along = cube({0, 0, 0}, 1);
+    TriMesh across = along;
+    for (Vec3& p : along.points) p = {20 * p.x, 8 + 4 * p.y, 4 * p.z};
+    for (Vec3& p : across.points) p = {8 + 4 * p.x, 20 * p.y, 4 * p.z};
+    const TriMesh cross = joined(along, across);
+    const SharpEdges edges = sharp_edges(TriangleTree(cross), 2, 30);
+    CHECK(edges.dropped >= 8);
+    CHECK_FALSE(edges.chains.empty());
+    const Result<TetMesh> mesh = mesh_by_winding(cross, 2, 30, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume(*mesh) == doctest::Approx(2 * 320 - 64).epsilon(0.02));
+    CHECK(report_on(*mesh).min_dihedral_deg > 5);
+    const SharpEdges clean = sharp_edges(TriangleTree(cube()), 2, 30);
+    CHECK(clean.dropped == 0);
+    CHECK(clean.chains.size() == 12);
+}
+
+TEST_CASE("meshing from the winding number can be stopped") {
+    class Stop : public Progress {
+    public:
+        [[nodiscard]] bool cancelled() const override { return ++asked_ > 1000; }
+
+    private:
+        mutable int asked_ = 0;
+    } stop;
+    TriMesh hole = cube();
+    hole.triangles.pop_back();
+    const Result<TetMesh> mesh = mesh_by_winding(hole, 0.4, 30, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
 }

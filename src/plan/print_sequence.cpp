@@ -50,11 +50,6 @@ void loosen(Sequence& s, int z_um) {
     s.move(Axis::platform, z_um + p.platform.lift_um, p.platform.lift_speed_mm_s);
 }
 
-double exposure_s(const job::Manifest& job, int layer, int material) {
-    const job::Material& m = job.materials[static_cast<std::size_t>(material)];
-    return layer < job.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
-}
-
 /// What a print is made of, in order. `Steps` does it, or reckons what it takes.
 template <class Steps>
 void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
@@ -81,7 +76,7 @@ void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& s
 double light_s(const Plan& plan, const job::Manifest& job, int layer, std::size_t k, int vat) {
     const auto index = static_cast<std::size_t>(layer);
     if (plan.vat_of_image[index][k] != vat) return 0;
-    return exposure_s(job, layer, job.layers[index].images[k].material);
+    return job::exposure_s(job, index, k);
 }
 
 /// Writes the commands.

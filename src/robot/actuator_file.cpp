@@ -47,6 +47,11 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
                                      : (anchor == "last" ? CableSpec::Anchor::last : CableSpec::Anchor::none);
     cable.guides_at_crossings = reader.choice("guides", {"points", "crossings"}, "points") == "crossings";
     cable.gap_elements = reader.choice("model", {"length", "gap-elements"}, "length") == "gap-elements";
+    cable.fill_notches = reader.boolean("fill_notches", false);
+    if (cable.fill_notches && !cable.gap_elements)
+        reader.problem("fill_notches", "fills them with gap elements, which act with model = \"gap-elements\" only");
+    if (cable.fill_notches && context.robot.mesh.file)
+        reader.problem("fill_notches", "cannot add elements to a mesh file; name their region in a [[gap]]");
     cable.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
     if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
     cable.friction = reader.number("friction", 0);
@@ -160,16 +165,32 @@ void read_gap(Reader& reader, Context& context, GapSpec& gap) {
         reader.problem("surface", "a gap must be meshed: give geometry or region");
 }
 
+/// One gap for all notches, beside those of the file.
+void add_notches(Reader& root, Robot& robot) {
+    const auto asks =
+        std::find_if(robot.cables.begin(), robot.cables.end(), [](const CableSpec& c) { return c.fill_notches; });
+    if (asks == robot.cables.end()) return;
+    for (const GapSpec& gap : robot.gaps) {
+        if (gap.name == notches_name)
+            root.problem("gap", fmt::format("the name \"{}\" belongs to what fill_notches fills", notches_name));
+    }
+    robot.gaps.push_back({std::string(notches_name), CrossedNotches{}, asks->line});
+}
+
 }  // namespace
 
 void read_actuators(Reader& root, Context& context) {
     read_each(root, context, "cable", "cables", context.robot.cables, read_cable);
     read_each(root, context, "chamber", "chambers", context.robot.chambers, read_chamber);
     read_each(root, context, "gap", "gaps", context.robot.gaps, read_gap);
+    add_notches(root, context.robot);
     const auto& cables = context.robot.cables;
     const auto uses = [](const CableSpec& cable) { return cable.gap_elements; };
     if (context.robot.gaps.empty() && std::any_of(cables.begin(), cables.end(), uses))
-        root.problem("", "a cable has model = \"gap-elements\", but there is no [[gap]]");
+        root.problem("",
+                     "a cable has model = \"gap-elements\", but there is no [[gap]]; fill_notches = true makes one of "
+                     "the notches that "
+                     "the cable crosses");
 }
 
 }  // namespace pliant::robot

@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
 #include "core/text.hpp"
+#include "mesh/step_file.hpp"
 #include "robot/material_file.hpp"
 #include "robot/material_library.hpp"
+#include "threemf/read_3mf.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -112,6 +118,25 @@ int find_material(Reader& reader, Context& context) {
     return 0;
 }
 
+/// A STEP file becomes a solid like those that are drawn here; the rest are triangles, which are read when they are
+/// needed.
+Geometry read_file_body(Reader& reader, const std::string& file, Context& context) {
+    const std::filesystem::path path = need_file(reader, "geometry", file, context);
+    const std::string part = reader.has("part") ? reader.text("part") : "";
+    (void)reader.raw("part");
+    std::string head(64, '\0');
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (!mesh::looks_like_step(head)) {
+        if (!part.empty() && !threemf::looks_like_zip(head)) reader.problem("part", "chooses from a STEP or 3MF file");
+        return SurfaceFile{path, part};
+    }
+    Result<mesh::Solid> solid = mesh::read_step(path, part, 1e-3 / context.robot.unit_m);
+    if (solid) return std::move(*solid);
+    reader.problem("geometry", solid.error().message);
+    return SurfaceFile{path, part};
+}
+
 Geometry read_geometry(Reader& reader, Context& context) {
     const bool has_mesh_file = context.robot.mesh.file.has_value();
     if (reader.has("region")) {
@@ -132,15 +157,41 @@ Geometry read_geometry(Reader& reader, Context& context) {
                        "[[0,0,0],[1,1,1]] }");
         return MeshRegion{"all", {}};
     }
-    if (const auto* file = std::get_if<std::string>(&geometry->data))
-        return SurfaceFile{need_file(reader, "geometry", *file, context)};
+    if (const auto* file = std::get_if<std::string>(&geometry->data)) return read_file_body(reader, *file, context);
+    if (reader.raw("part") != nullptr) reader.problem("part", "chooses from a STEP or 3MF file");
     return read_shape(reader, context);
+}
+
+/// What the body turns into on the way, when it is printed.
+std::optional<PrintBlend> read_blend(Reader& body, Context& context) {
+    if (!body.has("blend")) return (void)body.raw("blend"), std::nullopt;
+    Reader reader = body.table("blend");
+    PrintBlend blend;
+    blend.material = find_material(reader, context);
+    blend.from = reader.vector("from");
+    blend.to = reader.vector("to");
+    if (reader.has("from") && reader.has("to") && norm(blend.to - blend.from) == 0)
+        reader.problem("to", "is where \"from\" is; the blend needs a way to change on");
+    if (reader.has("shares")) blend.shares = reader.numbers("shares");
+    const bool shares =
+        std::all_of(blend.shares.begin(), blend.shares.end(), [](double s) { return s >= 0 && s <= 1; });
+    if (blend.shares.size() < 2 || !shares) reader.problem("shares", "are two numbers or more from 0 to 1");
+    (void)reader.raw("shares");
+    if (reader.has("cell")) {
+        blend.cell = reader.quantity("cell", Dimension::length, 1) / context.robot.unit_m;
+        if (!(blend.cell > 0)) reader.problem("cell", "must be above zero");
+    }
+    (void)reader.raw("cell");
+    reader.finish();
+    return blend;
 }
 
 void read_body(Reader& reader, Context& context, BodySpec& body) {
     body.material = find_material(reader, context);
     body.geometry = read_geometry(reader, context);
     body.size = read_size(reader, "size", context);
+    body.blend = read_blend(reader, context);
+    body.exposure_s = read_exposure(reader, "exposure");
 }
 
 }  // namespace

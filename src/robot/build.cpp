@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "mesh/flat_faces.hpp"
 #include "mesh/mesher.hpp"
-#include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
+#include "robot/body_surface.hpp"
+#include "robot/crossed_notches.hpp"
 #include "robot/regions.hpp"
 
 namespace pliant::robot {
@@ -23,9 +25,9 @@ Error at(const std::string& place, const Error& error) {
 }
 
 Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file) {
-    Result<mesh::SurfaceFile> surface = mesh::read_surface(file.path);
+    Result<mesh::TriMesh> surface = read_triangles(file, robot.unit_m);
     if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
-    return std::move(surface->mesh);
+    return surface;
 }
 
 double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
@@ -74,6 +76,22 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
 }
 
+using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
+
+/// A body without the air that is cut out of it; triangles where nothing is, or where they are too many to be cut.
+Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::vector<mesh::Solid>& air) {
+    if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) return without_air(*solid, air);
+    Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
+    if (!surface) return tl::unexpected(surface.error());
+    const Box3 box = mesh::bounds(*surface);
+    const auto cuts = [&](const mesh::Solid& one) { return boxes_overlap(box, mesh::bounds(one)); };
+    const auto fills = [](const CableSpec& cable) { return cable.fill_notches; };
+    if (std::any_of(air.begin(), air.end(), cuts) || std::any_of(robot.cables.begin(), robot.cables.end(), fills)) {
+        if (Result<mesh::Solid> solid = mesh::polyhedron(*surface)) return without_air(*solid, air);
+    }
+    return std::move(*surface);
+}
+
 /// A size that the file gives is taken at its word; without one, walls get three elements.
 mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
     mesh::MeshSettings settings;
@@ -87,21 +105,36 @@ mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::Bod
     return settings;
 }
 
+Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
+                               const std::vector<mesh::Solid>& air) {
+    std::vector<mesh::Solid> walls;
+    for (const mesh::BodyGeometry& body : bodies) {
+        if (body.air) continue;
+        if (const auto* solid = std::get_if<mesh::Solid>(&body.shape)) {
+            walls.push_back(*solid);
+            continue;
+        }
+        return input_error(
+            "{}: fill_notches needs shapes, STEP files or closed surfaces of few flat faces, which \"{}\" is not",
+            robot.file.string(), body.name);
+    }
+    return crossed_notches(robot, walls, air);
+}
+
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<mesh::BodyGeometry> bodies;
     for (const BodySpec& body : robot.bodies) {
-        if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            bodies.push_back({body.name, without_air(*solid, air), false, body.size});
-        } else {
-            Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
-            if (!surface) return tl::unexpected(surface.error());
-            bodies.push_back({body.name, std::move(*surface), false, body.size});
-        }
+        Result<Shape> shape = body_shape(robot, body, air);
+        if (!shape) return tl::unexpected(shape.error());
+        bodies.push_back({body.name, std::move(*shape), false, body.size});
     }
     for (const Region& region : regions_of(robot)) {
-        if (region.use != Region::Use::body)
-            bodies.push_back({std::string(region.name), std::get<mesh::Solid>(*region.geometry), true});
+        if (region.use == Region::Use::body) continue;
+        const auto* drawn = std::get_if<mesh::Solid>(region.geometry);
+        Result<mesh::Solid> space = drawn != nullptr ? *drawn : notches_of(robot, bodies, air);
+        if (!space) return tl::unexpected(space.error());
+        bodies.push_back({std::string(region.name), std::move(*space), true});
     }
     const mesh::MeshSettings settings = mesh_settings(robot, bodies);
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
@@ -176,6 +209,7 @@ Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
 }
 
 Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {
+    constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<BodySurface> surfaces;
     Result<mesh::TetMesh> regions;
@@ -189,10 +223,13 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         const BodySpec& body = robot.bodies[b];
         Result<mesh::TriMesh> surface;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
             surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
-        } else if (const auto* file = std::get_if<SurfaceFile>(&body.geometry)) {
-            surface = read_body_surface(robot, body, *file);
+        } else if (std::holds_alternative<SurfaceFile>(body.geometry)) {
+            const Result<Shape> shape = body_shape(robot, body, air);
+            if (!shape) return tl::unexpected(shape.error());
+            const auto* cut = std::get_if<mesh::Solid>(&*shape);
+            surface =
+                cut != nullptr ? mesh::tessellate(*cut, printable_m / robot.unit_m) : std::get<mesh::TriMesh>(*shape);
         } else {
             surface = mesh::region_surface(*regions, static_cast<int>(b));
         }

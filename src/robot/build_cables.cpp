@@ -59,11 +59,12 @@ std::vector<Vec3> guide_points(const ModelDraft& draft, const CableSpec& spec) {
 void drive_by_gaps(ModelDraft& draft, const CableSpec& spec, const std::vector<Vec3>& points) {
     const std::size_t before = draft.description.growths.size();
     for (const GapSpec& gap : draft.robot.gaps) {
-        const std::size_t region = draft.region_of(Region::Use::gap, gap.name);
-        const Passage passage = passage_through(draft.whole, static_cast<int>(region), points);
-        const auto actuator = static_cast<int>(draft.description.cables.size());
-        if (passage.length > 0)
-            draft.description.growths.push_back({draft.material_of(region), passage.direction, actuator});
+        for (const int region : draft.regions_of_gap(gap)) {
+            const Passage passage = passage_through(draft.description.mesh, region, points);
+            const auto actuator = static_cast<int>(draft.description.cables.size());
+            const int material = draft.description.material_of_region[static_cast<std::size_t>(region)];
+            if (passage.length > 0) draft.description.growths.push_back({material, passage.direction, actuator});
+        }
     }
     if (draft.description.growths.size() == before)
         draft.problem(spec.line, "cable", spec.name, "passes no [[gap]], which model = \"gap-elements\" needs");

@@ -21,6 +21,11 @@ void add_materials(ModelDraft& draft) {
         draft.description.materials.push_back(
             {std::string(region.name), material::ScaledTarget{softest_Pa(draft.robot)}, 0});
     }
+    for (const int notch : draft.notches) {
+        draft.description.material_of_region.push_back(static_cast<int>(draft.description.materials.size()));
+        draft.description.materials.push_back({draft.description.mesh.region_names[static_cast<std::size_t>(notch)],
+                                               material::ScaledTarget{softest_Pa(draft.robot)}, 0});
+    }
 }
 
 }  // namespace

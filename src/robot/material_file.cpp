@@ -150,6 +150,14 @@ void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& mat
 
 }  // namespace
 
+double read_exposure(Reader& reader, std::string_view key) {
+    constexpr double most_s = 3600;
+    if (!reader.has(key)) return (void)reader.raw(key), 0;
+    const double seconds = reader.quantity(key, Dimension::time, 1);
+    if (!(seconds > 0 && seconds <= most_s)) reader.problem(key, "must be above 0 s and at most an hour");
+    return seconds;
+}
+
 MaterialSpec read_material(Reader& reader, const std::string& name) {
     MaterialSpec material;
     material.name = name;
@@ -164,6 +172,8 @@ MaterialSpec read_material(Reader& reader, const std::string& name) {
     if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
     material.resin = reader.text("resin", name);
     material.colour = read_colour(reader);
+    material.exposure_s = read_exposure(reader, "exposure");
+    material.bottom_exposure_s = read_exposure(reader, "bottom_exposure");
     return material;
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace pliant::robot {
@@ -22,6 +24,38 @@ mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
     return bodies;
 }
 
+/// Gives every notch of a region but the first a region of its own, at the end; gives those.
+std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
+    std::vector<int> parent(mesh.points.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int node) {
+        while (parent[static_cast<std::size_t>(node)] != node) {
+            int& up = parent[static_cast<std::size_t>(node)];
+            up = parent[static_cast<std::size_t>(up)];
+            node = up;
+        }
+        return node;
+    };
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (mesh.region[t] != region) continue;
+        for (const int node : mesh.tet(t)) parent[static_cast<std::size_t>(root(node))] = root(mesh.tet(t)[0]);
+    }
+    std::map<int, int> region_of_root;
+    std::vector<int> added;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (mesh.region[t] != region) continue;
+        const auto next = static_cast<int>(mesh.region_names.size());
+        const auto [entry, fresh] =
+            region_of_root.try_emplace(root(mesh.tet(t)[0]), added.empty() && region_of_root.empty() ? region : next);
+        mesh.region[t] = entry->second;
+        if (!fresh || entry->second == region) continue;
+        added.push_back(next);
+        mesh.region_names.push_back(
+            fmt::format("{} {}", mesh.region_names[static_cast<std::size_t>(region)], added.size() + 1));
+    }
+    return added;
+}
+
 }  // namespace
 
 ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_robot), whole(std::move(mesh)) {
@@ -30,6 +64,10 @@ ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_r
     mesh::Extract kept = mesh::extract_regions(whole, keep);
     description.mesh = std::move(kept.mesh);
     node_of_whole = std::move(kept.node);
+    for (const GapSpec& gap : robot.gaps) {
+        if (std::holds_alternative<CrossedNotches>(gap.space))
+            notches = part_notches(description.mesh, kept_region(region_of(Region::Use::gap, gap.name)));
+    }
     bodies = tets_of_bodies(robot, description.mesh);
     for (const Vec3& p : description.mesh.points) box.add(p);
     tolerance = surface_share * box.diagonal();
@@ -62,11 +100,22 @@ std::size_t ModelDraft::region_of(Region::Use use, std::string_view name) const 
     return static_cast<std::size_t>(found - regions.begin());
 }
 
-int ModelDraft::material_of(std::size_t region) const {
+int ModelDraft::kept_region(std::size_t region) const {
     const auto regions = regions_of(robot);
-    std::size_t kept = 0;
+    int kept = 0;
     for (std::size_t r = 0; r < region; ++r) kept += regions[r].has_elements ? 1 : 0;
-    return description.material_of_region[kept];
+    return kept;
+}
+
+std::vector<int> ModelDraft::regions_of_gap(const GapSpec& gap) const {
+    std::vector<int> regions = {kept_region(region_of(Region::Use::gap, gap.name))};
+    if (std::holds_alternative<CrossedNotches>(gap.space))
+        regions.insert(regions.end(), notches.begin(), notches.end());
+    return regions;
+}
+
+int ModelDraft::material_of(std::size_t region) const {
+    return description.material_of_region[static_cast<std::size_t>(kept_region(region))];
 }
 
 }  // namespace pliant::robot

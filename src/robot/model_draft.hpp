@@ -28,13 +28,19 @@ struct ModelDraft {
     [[nodiscard]] Box3 box_of(const BoxSelector& selector) const;
     /// Index of a region of `whole`. Precondition: it is there.
     [[nodiscard]] std::size_t region_of(Region::Use use, std::string_view name) const;
+    /// The regions of the description's mesh that are a gap: one, or one for each notch. Precondition: gaps act.
+    [[nodiscard]] std::vector<int> regions_of_gap(const GapSpec& gap) const;
     /// The material of a region of `whole`. Precondition: the region has elements, and materials have been added.
     [[nodiscard]] int material_of(std::size_t region) const;
+
+    /// Where a region of `whole` is in the description's mesh. Precondition: it has elements.
+    [[nodiscard]] int kept_region(std::size_t region) const;
 
     const Robot& robot;
     mesh::TetMesh whole;             ///< regions as in regions_of()
     std::vector<int> node_of_whole;  ///< (nodes of whole) index in the description's mesh, or -1
     sim::Description description;    ///< its mesh: the regions with elements
+    std::vector<int> notches;        ///< regions of the description's mesh: notches after the first, in their order
     mesh::TetMesh bodies;            ///< the description's mesh without actuated space
     Box3 box;                        ///< of the description's mesh
     double tolerance = 0;            ///< for what should lie on the surface

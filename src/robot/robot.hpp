@@ -24,8 +24,9 @@ struct MaterialSpec {
     double youngs_modulus_Pa = 0;
     double poisson_ratio = 0;
     double density_kg_m3 = 0;
-    std::string resin;                            ///< the material's own name where the file says nothing
-    std::optional<std::array<double, 3>> colour;  ///< sRGB, each in [0, 1]
+    std::string resin;                             ///< the material's own name where the file says nothing
+    std::optional<std::array<double, 3>> colour;   ///< sRGB, each in [0, 1]
+    double exposure_s = 0, bottom_exposure_s = 0;  ///< of its layers when printed; 0: what the printer file says
 };
 
 /// In length units.
@@ -37,6 +38,7 @@ struct BoxSelector {
 /// region).
 struct SurfaceFile {
     std::filesystem::path path;
+    std::string part;  ///< of a 3MF file: the object or the material; empty: all of it
 };
 struct MeshRegion {
     std::string name;
@@ -46,7 +48,17 @@ struct MeshRegion {
 struct CavityAt {
     Vec3 point;
 };
-using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt>;
+/// The notches that cables cross which ask for it; a gap alone is found so.
+struct CrossedNotches {};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt, CrossedNotches>;
+
+/// A body that changes from its material to another when it is printed; in length units.
+struct PrintBlend {
+    int material = 0;  ///< index into Robot::materials
+    Vec3 from, to;
+    std::vector<double> shares{0, 1};  ///< of the other material, evenly spaced from `from` to `to`
+    double cell = 0;                   ///< edge of the squares that are one or the other; 0: a pixel
+};
 
 struct BodySpec {
     std::string name;
@@ -54,6 +66,8 @@ struct BodySpec {
     Geometry geometry;
     double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
     int line = 0;
+    std::optional<PrintBlend> blend{};  ///< for printing; a simulation takes the body for its material alone
+    double exposure_s = 0;              ///< of its layers when printed; 0: that of its material
 };
 
 struct MeshSpec {
@@ -119,10 +133,13 @@ struct CableSpec {
     double friction = 0;               ///< coefficient in the guides
     sim::CableTarget target;
     bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
+    bool fill_notches = false;  ///< the notches that it crosses are gaps
     int line = 0;
 };
 
-/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, or a region.
+/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, a region, or the
+/// notches that cables cross.
+inline constexpr std::string_view notches_name = "notches";
 struct GapSpec {
     std::string name;
     Geometry space;

@@ -138,6 +138,28 @@ TEST_CASE("slips in the text are named with their line") {
     check_problem(with("name = \"right\"", "name = \"left\""), "two bodies named \"left\"");
 }
 
+TEST_CASE("blends and exposures are read, and their slips named") {
+    const auto body = [](const std::string& lines) {
+        return with("material = \"soft\"\n", "material = \"soft\"\n" + lines + "\n");
+    };
+    const auto robot =
+        parse_robot(body("exposure = \"7 s\"\nblend = { material = \"hard\", from = [20, 0, 0], to = [40, 0, "
+                         "0], shares = [0.2, 0.4], cell = \"0.3 mm\" }"),
+                    "bar.toml");
+    REQUIRE_MESSAGE(robot.has_value(), (robot ? "" : robot.error().message));
+    CHECK(robot->bodies[1].exposure_s == 7);
+    REQUIRE(robot->bodies[1].blend.has_value());
+    CHECK(robot->bodies[1].blend->material == 1);
+    CHECK(robot->bodies[1].blend->shares == std::vector<double>{0.2, 0.4});
+    CHECK(robot->bodies[1].blend->cell == doctest::Approx(0.3));
+    check_problem(body("exposure = 7"), "7 has no unit; write a time such as");
+    check_problem(body("blend = { material = \"hrd\", from = [0, 0, 0], to = [1, 0, 0] }"), "did you mean \"hard\"?");
+    check_problem(body("blend = { material = \"hard\", from = [1, 0, 0], to = [1, 0, 0] }"),
+                  "needs a way to change on");
+    check_problem(body("blend = { material = \"hard\", from = [1, 0, 0], to = [2, 0, 0], shares = [2, 0] }"),
+                  "two numbers or more from 0 to 1");
+}
+
 TEST_CASE("shapes that make no sense are refused") {
     check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ box = [[40, 0, 0], [20, 10, 10]] }"),
                   "must be above the first");

@@ -207,6 +207,15 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is what the s
     CHECK(strong.steps.back().supports[0].force_N.x > 0.05 * strong.steps.back().supports[0].force_N.z);
 }
 
+TEST_CASE("a chamber that is sucked empty stops the run, which says so and keeps the last good step") {
+    Description d = hollow_block(1);
+    d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, -1e6, {}};
+    const Trajectory result = solve(d, {.steps = 10});
+    CHECK_FALSE(result.converged);
+    CHECK(result.message.find("leaves a chamber without volume") != std::string::npos);
+    for (const Step& step : result.steps) CHECK(step.chambers[0].volume_m3 > 0);
+}
+
 TEST_CASE("an open wall is no chamber") {
     Description d = hollow_block(1);
     d.chambers[0].wall.faces.pop_back();

@@ -46,6 +46,7 @@ FactoredLaplacian::FactoredLaplacian(const Model& model) {
     state_ = std::make_unique<State>(State{&model, linalg::Cholesky(pattern)});
     // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
+    state_->factor.release_work_space();
 }
 
 FactoredLaplacian::FactoredLaplacian(FactoredLaplacian&&) noexcept = default;

@@ -12,7 +12,10 @@ namespace {
 class Newton final : public Curvature {
 public:
     Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
-        : system_(&system), laplacian_(&laplacian), layout_(system.lay_out_tangent()), factor_(layout_.pattern) {}
+        : system_(&system),
+          laplacian_(&laplacian),
+          layout_(system.lay_out_tangent()),
+          factor_(layout_.pattern, precision()) {}
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
@@ -53,15 +56,58 @@ public:
 
     void solve(Eigen::MatrixXd& columns) override {
         if (!system_->has_skew()) {
-            memory_.apply(columns, [&](Eigen::MatrixXd& c) {
-                factor_.solve({c.data(), static_cast<std::size_t>(c.size())}, static_cast<int>(c.cols()));
-            });
+            memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_factor(c); });
             return;
         }
         for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
     }
 
 private:
+    /// A Newton step needs few digits, but the skew part wants the inverse of the very tangent.
+    [[nodiscard]] linalg::Precision precision() const {
+        return needs_double_ || system_->has_skew() ? linalg::Precision::double_ : linalg::Precision::single_;
+    }
+
+    void use_double() {
+        needs_double_ = true;
+        factor_.use(linalg::Precision::double_);
+    }
+    [[nodiscard]] bool is_single() const { return factor_.precision() == linalg::Precision::single_; }
+
+    [[nodiscard]] bool factorise(const std::vector<double>& values) {
+        factorised_ = &values;
+        untried_ = is_single();
+        return factor_.factorise(values);
+    }
+
+    /// Of a matrix that single precision refuses, double knows whether it is indefinite or only ill-conditioned. It is
+    /// asked now and then, for that costs.
+    [[nodiscard]] bool factorise_in_double(const std::vector<double>& values) {
+        if (!is_single() || ++refusals_ % refusals_until_asked != 0) return false;
+        use_double();
+        if (factorise(values)) return true;
+        needs_double_ = false;
+        factor_.use(linalg::Precision::single_);
+        return false;
+    }
+
+    /// The first solution with a factor in single precision shows how good it is.
+    void solve_with_factor(Eigen::MatrixXd& columns) {
+        const std::span<double> all(columns.data(), static_cast<std::size_t>(columns.size()));
+        const int count = static_cast<int>(columns.cols());
+        if (!untried_) return factor_.solve(all, count);
+        untried_ = false;
+        const Eigen::MatrixXd right = columns;
+        if (factor_.solve_and_refine(*factorised_, all, count, refined_error, most_refinements)) return;
+        const Eigen::MatrixXd refined = columns;
+        columns = right;
+        use_double();
+        if (factorise(*factorised_))
+            factor_.solve(all, count);
+        else
+            columns = refined;
+    }
+
     /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
     /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
     [[nodiscard]] bool factorise(const State& state, const Controls& controls, bool cautious) {
@@ -70,7 +116,7 @@ private:
         stale_ = false;
         if (system_->has_skew()) state_ = state;
         assemble(state, controls, false, values_);
-        if (!cautious && (usable_ = factor_.factorise(values_))) {
+        if (!cautious && (usable_ = factorise(values_) || factorise_in_double(values_))) {
             share_ = smallest_share_of_projection;
             return true;
         }
@@ -80,11 +126,13 @@ private:
             blended_.resize(values_.size());
             for (std::size_t k = 0; k < values_.size(); ++k)
                 blended_[k] = values_[k] + share * (projected_[k] - values_[k]);
-            if ((usable_ = factor_.factorise(blended_))) {
+            if ((usable_ = factorise(blended_))) {
                 share_ = share;
                 return true;
             }
-            if (share == 1) return false;
+            if (share < 1) continue;
+            if (!is_single()) return false;
+            use_double();  // and once more
         }
     }
 
@@ -110,7 +158,7 @@ private:
         }
         if (!grown) return;
         layout_ = system_->lay_out_tangent(touching_);
-        factor_ = linalg::Cholesky(layout_.pattern);
+        factor_ = linalg::Cholesky(layout_.pattern, precision());
         // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
         if (touching_.size() > most_remembered) touching_.clear();
     }
@@ -131,6 +179,10 @@ private:
         system_->add_tangent(state, controls, layout_, values, project);
     }
 
+    /// Of a solution: the rate at which the last digits of a state then come.
+    static constexpr double refined_error = 1e-3;
+    static constexpr int refusals_until_asked = 4;
+    static constexpr int most_refinements = 8;  // more of them, and double precision is quicker
     static constexpr double smallest_share_of_projection = 1.0 / 16;
     /// A factorisation costs as much as some ten steps with a factor that is at hand, and gains about two digits.
     static constexpr double worth_another = 0.4;
@@ -143,13 +195,17 @@ private:
 
     const Equilibrium* system_;
     const FactoredLaplacian* laplacian_;
+    bool needs_double_ = false;  ///< single precision is not good enough for this body
     TangentLayout layout_;
     std::vector<double> values_;     ///< tangent
     std::vector<double> projected_;  ///< its positive projection, where it was needed
     std::vector<double> blended_;
-    double share_ = smallest_share_of_projection;  ///< of the projection that was needed last
+    const std::vector<double>* factorised_ = nullptr;  ///< the one of them that the factor is of
+    double share_ = smallest_share_of_projection;      ///< of the projection that was needed last
     linalg::Cholesky factor_;
     StepMemory memory_{most_steps};           ///< of the steps since the factor was made
+    bool untried_ = false;                    ///< nothing has been solved with this factor in single precision
+    int refusals_ = 0;                        ///< by single precision
     bool usable_ = false;                     ///< the factor solves
     bool stale_ = false;                      ///< it did not lead on quickly
     bool reused_ = false;                     ///< the present direction is not from the tangent at hand

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "sim/elements.hpp"
@@ -23,9 +22,31 @@ Eigen::Vector3d vector(const Vec3& v) {
 
 /// Springs of a plate beside the stiffness of an element: what bends a plate bends the body a hundred times as much.
 constexpr double plate_stiffness = 100;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Flaw = Evaluation::Flaw;
+
+Evaluation impossible(double min_J, Flaw flaw) {
+    Evaluation e;
+    e.min_J = min_J;
+    e.flaw = flaw;
+    return e;
+}
 
 }  // namespace
+
+std::string_view name(Flaw flaw) {
+    switch (flaw) {
+        case Flaw::none:
+            return "is possible";
+        case Flaw::inverted:
+            return "turns a tetrahedron inside out";
+        case Flaw::pierced:
+            return "makes surfaces touch or pass through each other";
+        case Flaw::collapsed:
+            return "leaves a chamber without volume (walls that shall rest on each other need [contact])";
+    }
+    return {};
+}
 
 Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     const Description& d = model.description();
@@ -211,9 +232,8 @@ double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, doubl
             return drive.value * g;
         case Drive::Kind::gas:
             // Work of the ambient and of the gas between rest and g, at constant temperature.
-            return g > 0 ? model_->description().ambient_pressure_Pa * g -
-                               drive.value * std::log(g / actuators_[actuator].rest_measure())
-                         : infinity;
+            return model_->description().ambient_pressure_Pa * g -
+                   drive.value * std::log(g / actuators_[actuator].rest_measure());
     }
     return 0;
 }
@@ -228,9 +248,11 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
     const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal), controls.laws);
     e.min_J = elastic.min_J;
-    if (!(e.min_J > 0)) return e;
+    if (!(e.min_J > 0)) return impossible(e.min_J, Flaw::inverted);
+    if (has_collapsed_chamber(state.x)) return impossible(e.min_J, Flaw::collapsed);
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
     add_contact(state.x, controls, internal, e.energy_J);
+    if (!std::isfinite(e.energy_J)) return impossible(e.min_J, Flaw::pierced);
     for (const Plate& plate : plates_) {
         e.energy_J += plate.energy(view(state.x));
         plate.add_gradient(view(state.x), view(internal));
@@ -242,6 +264,15 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     fill_actuators(state, controls, e);
     fill_residual(state, controls, internal, e);
     return e;
+}
+
+bool Equilibrium::has_collapsed_chamber(const Eigen::VectorXd& x) const {
+    const std::size_t first = cable_count();
+    const std::size_t end = first + model_->description().chambers.size();
+    for (std::size_t a = first; a < end; ++a) {
+        if (!(actuators_[a].measure(view(x)) > 0)) return true;
+    }
+    return false;
 }
 
 void Equilibrium::fill_actuators(const State& state, const Controls& controls, Evaluation& e) const {

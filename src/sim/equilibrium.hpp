@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "sim/actuator.hpp"
@@ -36,7 +37,15 @@ struct State {
 
 /// Everything that is known about a state at given controls.
 struct Evaluation {
-    double min_J = 0;                ///< if not positive, nothing below is filled
+    /// What no body can do: then only min_J is filled.
+    enum class Flaw {
+        none,
+        inverted,   ///< a tetrahedron is turned inside out
+        pierced,    ///< surfaces touch or have passed through each other
+        collapsed,  ///< a chamber has no volume left
+    };
+    Flaw flaw = Flaw::none;
+    double min_J = 0;
     double energy_J = 0;             ///< elastic and of given multipliers and gas, minus the work of loads
     Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + sum m dg/dx; at supports the reaction
     Eigen::VectorXd multiplier;      ///< (actuators) the state's or, where not the measure is driven, what it must be
@@ -44,7 +53,11 @@ struct Evaluation {
     double residual = 0;             ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
     double violation = 0;            ///< largest excess that counts: not that of a slack cable
     [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
+    [[nodiscard]] bool possible() const { return flaw == Flaw::none; }
 };
+
+/// What an impossible state does, for messages: "turns a tetrahedron inside out".
+[[nodiscard]] std::string_view name(Evaluation::Flaw flaw);
 
 /// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
 struct TangentLayout {
@@ -126,13 +139,14 @@ private:
     [[nodiscard]] std::vector<material::Law> laws_at(std::span<const double> stretch) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
-    /// Energy of an actuator whose measure is not driven, at measure g.
+    /// Energy of an actuator whose measure is not driven, at measure g > 0.
     [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
     /// Robot nodes, then those of the obstacles: what contact knows as x.
     [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
     void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;
     [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
+    [[nodiscard]] bool has_collapsed_chamber(const Eigen::VectorXd& x) const;
     void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
     void fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
                        Evaluation& e) const;

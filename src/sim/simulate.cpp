@@ -32,10 +32,6 @@ constexpr double cable_friction_share = 0.1;  // of the tolerance, for the lengt
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -276,8 +272,8 @@ private:
             return {};
         }
         next = follow_supports(state_, controls);
-        if (!(model_.elements().evaluate(view(next.x), {}, controls.laws).min_J > 0))
-            return "the prescribed motion turns a tetrahedron inside out";
+        const Evaluation::Flaw flaw = system_.evaluate(next, controls).flaw;
+        if (flaw != Evaluation::Flaw::none) return fmt::format("the prescribed motion {}", name(flaw));
         return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
     }
 
@@ -288,7 +284,7 @@ private:
         for (std::size_t count = past_.size() + 1; count >= 2 && least > good_start; --count) {
             State state = onward(time, count, controls);
             const Evaluation e = system_.evaluate(state, controls);
-            if (!(e.min_J > 0) || !(e.error() < least) || !passes(state, controls)) continue;
+            if (!e.possible() || !(e.error() < least) || !passes(state, controls)) continue;
             best = std::move(state);
             least = e.error();
         }

@@ -81,12 +81,14 @@ public:
         }
         prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
         evaluation_ = system.evaluate(state, controls);
-        if (evaluation_.min_J > 0) state_.multiplier = evaluation_.multiplier;
+        if (evaluation_.possible()) state_.multiplier = evaluation_.multiplier;
     }
 
     [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
     /// Share of the last direction that was taken.
     [[nodiscard]] double alpha() const { return alpha_; }
+    /// What the shortest step that was tried last does; none: it is possible, but no better.
+    [[nodiscard]] Evaluation::Flaw obstacle() const { return obstacle_; }
     [[nodiscard]] bool converged(double tolerance) const {
         return evaluation_.residual <= tolerance && evaluation_.violation <= excess_share * tolerance;
     }
@@ -181,7 +183,7 @@ private:
         return controls_.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::measure;
     }
 
-    /// Halves the step until min_J stays positive and the merit (or the error) goes down.
+    /// Halves the step until the state is possible and the merit (or the error) goes down.
     bool search(const Direction& direction) {
         raise_prices(direction);
         const double cost = cost_of_excess(evaluation_);  // a full step removes it
@@ -193,10 +195,11 @@ private:
         const double longest = system_.largest_step(state_.x, motion, controls_);
         for (double alpha = longest; alpha > curvature_.smallest_share() * longest; alpha *= 0.5) {
             State next = state_;
-            next.x = curvature_.go(state_.x, alpha * motion);
+            next.x = go(alpha * motion);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);
             Evaluation evaluation = system_.evaluate(next, controls_);
-            if (!(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
+            obstacle_ = evaluation.flaw;
+            if (!evaluation.possible() || !(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
             // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
             const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
             const double merit = evaluation.energy_J + cost_of_excess(evaluation);
@@ -208,6 +211,14 @@ private:
             return true;
         }
         return false;
+    }
+
+    /// Where `motion` leads. Precondition: straight on, nothing is met.
+    [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& motion) const {
+        const Eigen::VectorXd end = curvature_.go(state_.x, motion);
+        // The solver may turn the body where motion is straight, and so meet what lies beside the straight way.
+        if (system_.largest_step(state_.x, end - state_.x, controls_) < 1) return state_.x + motion;
+        return end;
     }
 
     /// What the present excess adds to the merit: a cable that is not too long costs nothing.
@@ -266,6 +277,7 @@ private:
     State& state_;
     Evaluation evaluation_;
     double alpha_ = 0;
+    Evaluation::Flaw obstacle_ = Evaluation::Flaw::none;
     std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
     std::vector<bool> only_pull_;       ///< (solved)
     Eigen::VectorXd prices_;            ///< (actuators)
@@ -302,6 +314,13 @@ IterationRecord record(Solver solver, int iteration, const Evaluation& e, double
             .min_J = e.min_J};
 }
 
+std::string stuck(const StepSolver& solver) {
+    const double residual = solver.evaluation().residual;
+    if (solver.obstacle() == Evaluation::Flaw::none)
+        return fmt::format("no step lowers the energy, residual {:.2e}", residual);
+    return fmt::format("every step that lowers the energy {}, residual {:.2e}", name(solver.obstacle()), residual);
+}
+
 }  // namespace
 
 StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
@@ -324,8 +343,7 @@ StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Co
         }
         ++outcome.iterations;
         if (!solver.iterate(Care::usual) && !solver.iterate(Care::exact) && !solver.iterate(Care::cautious)) {
-            outcome.reason = fmt::format(
-                "no step lowers the energy without turning a tetrahedron inside out, residual {:.2e}", residual());
+            outcome.reason = stuck(solver);
             break;
         }
         outcome.history.push_back(record(outcome.solver, outcome.iterations, solver.evaluation(), solver.alpha()));

@@ -29,8 +29,8 @@ struct StepOutcome {
 
 /// Minimises the energy subject to length <= allowed length for every cable driven by length and volume = wanted volume
 /// for every chamber driven by volume; the multipliers are tension, so that a cable only pulls, and pressure. Every
-/// accepted state has min_J > 0 and a lower merit (energy plus the price of excess) or, where the forces have no
-/// energy, an error that is not above the last ones. Precondition: min_J > 0 at `state`.
+/// accepted state is possible and has a lower merit (energy plus the price of excess) or, where the forces have no
+/// energy, an error that is not above the last ones. Precondition: `state` is possible.
 /// Source of the constraint step: Nocedal and Wright, Numerical Optimization, chapter 18.
 [[nodiscard]] StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
                                      const StepSettings& settings, State& state, const Progress& progress);

@@ -44,10 +44,15 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (!bodies[i].slices.empty() && (degrees.x != 0 || degrees.y != 0))
             return input_error("{}: consists of slices, which can be turned about z only", describe(bodies[i], i));
-        for (Vec3& p : bodies[i].surface_um.points) {
+        const auto turn_point = [&](Vec3& p) {
             turn_pair(p.y, p.z, degrees.x);
             turn_pair(p.z, p.x, degrees.y);
             turn_pair(p.x, p.y, degrees.z);
+        };
+        for (Vec3& p : bodies[i].surface_um.points) turn_point(p);
+        if (bodies[i].blend) {
+            turn_point(bodies[i].blend->from_um);
+            turn_point(bodies[i].blend->to_um);
         }
         for (OutlineSlice& slice : bodies[i].slices) {
             for (auto& outline : slice.outlines_um) {

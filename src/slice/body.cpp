@@ -23,6 +23,10 @@ Status check(const Raster& raster) {
 
 void move(Body& body, const Vec3& shift_um) {
     for (Vec3& p : body.surface_um.points) p += shift_um;
+    if (body.blend) {
+        body.blend->from_um += shift_um;
+        body.blend->to_um += shift_um;
+    }
     for (OutlineSlice& slice : body.slices) {
         slice.bottom_um += shift_um.z;
         slice.top_um += shift_um.z;

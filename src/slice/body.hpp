@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,26 @@ struct OutlineSlice {
     std::vector<std::vector<std::array<double, 2>>> outlines_um;
 };
 
-/// A solid of one material. Points are in micrometres on the platform: z up, z = 0 is the platform, the image's centre
-/// is the origin of x and y.
+/// A body that is one material at `from_um` and more and more another on the way to `to_um`: `shares` of the second are
+/// evenly spaced on that way, straight lines between them, and go on unchanged before and after it.
+struct Blend {
+    std::string second;
+    Vec3 from_um, to_um;
+    std::vector<double> shares{0, 1};
+    int cell_px = 1;     ///< edge of the squares that are one material or the other
+    double cell_um = 0;  ///< the same as a length, rounded to pixels; 0: `cell_px` counts
+};
+
+/// A solid of one material, or of two where it has a blend. Points are in micrometres on the platform: z up, z = 0 is
+/// the platform, the image's centre is the origin of x and y.
 struct Body {
     std::string material;
     mesh::TriMesh surface_um;
     std::string name;  ///< for messages; where empty, the body's number is used
     std::vector<OutlineSlice>
         slices{};  ///< from the bottom up; where there are any, they are the body, not the surface
+    std::optional<Blend> blend{};
+    bool filler = false;  ///< gives way to the part (put it first), and nobody needs to hear of it
 };
 
 /// The projector's picture on the platform. x runs to the right and row 0 lies at the greatest y, unless mirrored. The

@@ -88,7 +88,7 @@ public:
         for (std::size_t m = 0; m < images_.size(); ++m) {
             if (images_[m].blank()) continue;
             const std::int64_t sum = images_[m].value_sum();
-            result.push_back({static_cast<int>(m), std::move(images_[m]), sum});
+            result.push_back({static_cast<int>(m), std::move(images_[m]), sum, 0});
         }
         return result;
     }
@@ -147,6 +147,8 @@ Status check(const Compensation& c, const std::string& where) {
         return input_error("{}: XY compensation of {} um: must be -10000 to 10000 um", where, c.grow_um);
     if (!(c.foot_um >= 0 && c.foot_um <= most_um))
         return input_error("{}: elephant foot of {} um: must be 0 to 10000 um", where, c.foot_um);
+    if (!(c.bleed_um >= 0 && c.bleed_um <= most_um))
+        return input_error("{}: bleed compensation of {} um: must be 0 to 10000 um", where, c.bleed_um);
     if (c.foot_layers < 0 || c.foot_layers > 10000)
         return input_error("{}: elephant foot in {} layers: must be 0 to 10000", where, c.foot_layers);
     return {};
@@ -177,8 +179,9 @@ ComposedLayer compensated(const ComposedLayer& fine, int factor, std::span<const
     layer.offset(by);
     const int fine_per_pixel = factor * factor;
     ComposedLayer result{Reducer(layer.sets(), factor, raster, rules).images(), fine.lost_px,
-                         (closed + fine_per_pixel - 1) / fine_per_pixel};
+                         (closed + fine_per_pixel - 1) / fine_per_pixel, fine.overlapping, fine.doubled_px};
     for (double& lost : result.lost_px) lost /= fine_per_pixel;
+    for (double& doubled : result.doubled_px) doubled /= fine_per_pixel;
     return result;
 }
 

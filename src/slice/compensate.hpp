@@ -13,6 +13,7 @@ struct Compensation {
     double grow_um = 0;   ///< outwards; negative: inwards
     double foot_um = 0;   ///< elephant foot: inwards in the first layer, evenly less in the `foot_layers` - 1 above it
     int foot_layers = 0;  ///< from the platform
+    double bleed_um = 0;  ///< light that goes deeper than its layer: undersides are left out by so much
 
     /// Outwards in a layer; 0 where nothing moves.
     [[nodiscard]] double offset_um(int layer) const;

@@ -81,7 +81,7 @@ public:
         for (std::size_t m = 0; m < images_.size(); ++m) {
             if (images_[m].blank()) continue;
             const std::int64_t sum = images_[m].value_sum();
-            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum});
+            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum, 0});
         }
         return taken;
     }
@@ -108,6 +108,9 @@ private:
     std::vector<RunImage> images_;
 };
 
+/// What bodies that only touch may overlap by in a pixel.
+constexpr std::int64_t rounding = full_coverage >> 16;
+
 class Composer {
 public:
     Composer(std::span<const int> material_of, const Raster& raster, const ComposeRules& rules)
@@ -118,6 +121,7 @@ public:
           share_of_(material_count_),
           canvas_(raster, material_count_) {
         layer_.lost_px.assign(material_of.size(), 0.0);
+        layer_.doubled_px.assign(material_of.size(), 0.0);
         const double missing = rules.anti_alias ? std::min(0.5, rules.close_gap_um / raster.pixel_um) : 0.0;
         least_gap_value_ = static_cast<int>(std::ceil(255 * (1 - missing) - 1e-9));
     }
@@ -197,7 +201,7 @@ private:
     void paint(const std::vector<Share>& shares, int row, int begin, int end) {
         end = std::min(end, width_px_);
         if (shares.empty() || begin >= end) return;
-        const Owner owner = resolve(shares, end - begin);
+        const Owner owner = resolve(shares);
         canvas_.run(owner, row, begin, end);
         if (owner.value >= least_gap_value_ && owner.value < 255) {
             for (int column = begin; column < end; ++column) nearly_full_.push_back({row, column});
@@ -205,7 +209,7 @@ private:
     }
 
     /// Serves the bodies from the last to the first until the pixel is full.
-    Owner resolve(const std::vector<Share>& shares, int pixels) {
+    Owner resolve(const std::vector<Share>& shares) {
         std::int64_t used = 0;
         int winner = -1;
         served_.clear();
@@ -218,9 +222,7 @@ private:
                 share_of_[material] = 0;
             }
             const std::int64_t got = std::min(wanted, full_coverage - used);
-            const std::int64_t taken_by_others = std::min(wanted - got, used - share_of_[material]);
-            if (taken_by_others > 0)
-                layer_.lost_px[shares[i].body] += static_cast<double>(taken_by_others) / full_coverage * pixels;
+            layer_.overlapping = layer_.overlapping || wanted - got > rounding;
             share_of_[material] += got;
             used += got;
         }

@@ -19,20 +19,31 @@ struct ComposeRules {
 struct MaterialImage {
     int material = 0;
     RunImage image;
-    std::int64_t value_sum = 0;  ///< of all pixels, for the area
+    std::int64_t value_sum = 0;   ///< of all pixels, for the area
+    std::int64_t shared_sum = 0;  ///< of those that another material's image lights too, on purpose
+};
+
+/// How a blended body was dealt out, in whole pixels of light.
+struct DealtBody {
+    int body = 0;
+    double first_px = 0, second_px = 0;
 };
 
 struct ComposedLayer {
     std::vector<MaterialImage> images;  ///< ordered by material; blank ones are left out
     std::vector<double> lost_px;        ///< (bodies), area that later bodies of other materials took from each, pixels
     std::int64_t closed_gap_pixels = 0;
+    bool overlapping = false;          ///< there are pixels of which bodies together cover more than there is
+    std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material cover too
+    std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
 };
 
 /// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.
 ///
 /// A body covers |winding| of a pixel, at most 1 (the nonzero rule: overlapping shells of one body count once; exact
 /// except in pixels that the outlines of two overlapping shells share, where the sum is capped at 1). Where the bodies
-/// together cover more than the pixel they overlap, and later bodies are served first. The pixel then goes whole to the
+/// together cover more than the pixel they overlap, and later bodies are served first. What each loses is left to
+/// overlaps(), which does not depend on pixels: `lost_px` and `doubled_px` are 0 here. The pixel then goes whole to the
 /// material with the largest share (the one with the latest body on a tie), at the light of all shares together: an
 /// interface between materials has neither a dark line nor a pixel in two images.
 ///

@@ -40,23 +40,30 @@ std::uint32_t Inspector::join(std::vector<Thing>& things, std::uint32_t a, std::
     if (a == b) return a;
     if (a > b) std::swap(a, b);
     things[b].parent = a;
-    things[a].first_layer = std::min(things[a].first_layer, things[b].first_layer);
+    if (things[b].first_layer < things[a].first_layer) {
+        things[a].first_layer = things[b].first_layer;
+        things[a].row = things[b].row;
+        things[a].column = things[b].column;
+    }
     things[a].last_layer = std::max(things[a].last_layer, things[b].last_layer);
     things[a].voxels += things[b].voxels;
+    things[a].volume += things[b].volume;
     return a;
 }
 
 void Inspector::add(LayerShape shape) {
-    const auto number = [&](std::vector<Thing>& things, const PieceMap& map, std::size_t known) {
+    const auto number = [&](std::vector<Thing>& things, const PieceMap& map, const std::vector<int>& rows,
+                            const std::vector<int>& columns, std::size_t known) {
         std::vector<std::uint32_t> ids(std::min(known, map.pixels.size()), 0);
         for (std::size_t p = ids.size(); p < map.pixels.size(); ++p) {
             ids.push_back(static_cast<std::uint32_t>(things.size()));
-            things.push_back({ids.back(), layer_, layer_, map.pixels[p]});
+            things.push_back({ids.back(), layer_, layer_, map.pixels[p], map.pixels[p] * layers_.thickness_um(layer_),
+                              rows[p], columns[p]});
         }
         return ids;
     };
-    const std::vector<std::uint32_t> solids = number(solids_, shape.solid, 0);
-    const std::vector<std::uint32_t> voids = number(voids_, shape.voids, 1);
+    const std::vector<std::uint32_t> solids = number(solids_, shape.solid, shape.solid_row, shape.solid_column, 0);
+    const std::vector<std::uint32_t> voids = number(voids_, shape.voids, shape.void_row, shape.void_column, 1);
     link_solid(shape, solids);
     if (layer_ > 0) link_voids(shape, voids);
     if (shape.faint && !shape.voids.starts.empty()) findings_.faint_layers.push_back(layer_);
@@ -106,8 +113,9 @@ void Inspector::join_voids(std::uint32_t a, std::uint32_t b) {
     if (a == b) return;
     const std::uint32_t closed = std::max(a, b);
     if (std::min(a, b) == 0 && voids_[closed].first_layer < layer_)
-        findings_.cavities.push_back(
-            {voids_[closed].first_layer, layer_ - 1, voids_[closed].voxels, Cavity::End::opened});
+        findings_.cavities.push_back({voids_[closed].first_layer, layer_ - 1, voids_[closed].voxels,
+                                      voids_[closed].volume, voids_[closed].row, voids_[closed].column,
+                                      Cavity::End::opened});
     join(voids_, a, b);
 }
 
@@ -115,7 +123,8 @@ Findings Inspector::finish(std::int64_t least_voxels) {
     for (std::uint32_t i = 1; i < voids_.size(); ++i) {
         if (voids_[i].parent != i) continue;
         const bool open = voids_[i].last_layer == layer_ - 1;
-        findings_.cavities.push_back({voids_[i].first_layer, voids_[i].last_layer, voids_[i].voxels,
+        findings_.cavities.push_back({voids_[i].first_layer, voids_[i].last_layer, voids_[i].voxels, voids_[i].volume,
+                                      voids_[i].row, voids_[i].column,
                                       open ? Cavity::End::last_layer : Cavity::End::closed});
     }
     for (std::uint32_t i = 0; i < solids_.size(); ++i) {
@@ -128,9 +137,9 @@ Findings Inspector::finish(std::int64_t least_voxels) {
     return std::move(findings_);
 }
 
-std::vector<std::string> describe(const Findings& findings, const Raster& raster, int layer_um) {
+std::vector<std::string> describe(const Findings& findings, const Raster& raster) {
     std::vector<std::string> lines;
-    const double pixel_mm2 = raster.pixel_um * raster.pixel_um / 1e6, voxel_mm3 = pixel_mm2 * layer_um / 1000;
+    const double pixel_mm2 = raster.pixel_um * raster.pixel_um / 1e6;
     if (!findings.islands.empty()) {
         const auto& largest = *std::max_element(findings.islands.begin(), findings.islands.end(),
                                                 [](const Island& l, const Island& r) { return l.pixels < r.pixels; });
@@ -149,7 +158,8 @@ std::vector<std::string> describe(const Findings& findings, const Raster& raster
                            : c.end == Cavity::End::opened ? "suction cup, which opens in the layer after"
                                                           : "suction cup, open at the part's last layer only";
         lines.push_back(fmt::format("cavity of {:.4g} mm^3 in layers {} to {}: {}",
-                                    static_cast<double>(c.voxels) * voxel_mm3, c.first_layer, c.last_layer, what));
+                                    static_cast<double>(c.volume) / 1000 * pixel_mm2, c.first_layer, c.last_layer,
+                                    what));
     }
     if (findings.cavities.size() > most_lines)
         lines.push_back(fmt::format("{} smaller cavities", findings.cavities.size() - most_lines));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slice/layer_shape.hpp"
+#include "slice/layers.hpp"
 
 namespace pliant::slice {
 
@@ -21,8 +22,10 @@ struct Cavity {
     enum class End { closed, opened, last_layer };
     int first_layer = 0, last_layer = 0;
     std::int64_t voxels = 0;
-    End end = End::closed;  ///< closed for good: a resin trap; opened later, or open at the part's last layer only: a
-                            ///< suction cup until then
+    std::int64_t volume = 0;  ///< in pixels times micrometres
+    int row = 0, column = 0;  ///< of one of its pixels, in the first layer
+    End end = End::closed;    ///< closed for good: a resin trap; opened later, or open at the part's last layer only: a
+                              ///< suction cup until then
 };
 
 /// Solid that hangs together, through all layers.
@@ -41,6 +44,7 @@ struct Findings {
 /// Follows solid and void from layer to layer. Layers come in order, from 0; cost: their stretches.
 class Inspector {
 public:
+    explicit Inspector(Layers layers = 1) : layers_(std::move(layers)) {}
     void add(LayerShape shape);
     /// After the last layer. Cavities below `least_voxels` are left out: surfaces that touch each other obliquely make
     /// many of a pixel or two.
@@ -51,6 +55,8 @@ private:
         std::uint32_t parent = 0;
         int first_layer = 0, last_layer = 0;
         std::int64_t voxels = 0;
+        std::int64_t volume = 0;
+        int row = 0, column = 0;
     };
     static std::uint32_t root(std::vector<Thing>& things, std::uint32_t i);
     static std::uint32_t join(std::vector<Thing>& things, std::uint32_t a, std::uint32_t b);
@@ -58,6 +64,7 @@ private:
     void link_voids(const LayerShape& shape, const std::vector<std::uint32_t>& ids);
     void join_voids(std::uint32_t a, std::uint32_t b);
 
+    Layers layers_;
     int layer_ = 0;
     LayerShape below_;
     std::vector<std::uint32_t> solid_below_, voids_below_;  ///< per piece of the layer below: its thing
@@ -66,6 +73,6 @@ private:
 };
 
 /// One line per kind of finding, with layers, places in millimetres on the platform and volumes.
-[[nodiscard]] std::vector<std::string> describe(const Findings& findings, const Raster& raster, int layer_um);
+[[nodiscard]] std::vector<std::string> describe(const Findings& findings, const Raster& raster);
 
 }  // namespace pliant::slice

@@ -34,7 +34,7 @@ TEST_CASE("a block has neither islands nor cavities and is one piece") {
     REQUIRE(f.pieces.size() == 1);
     CHECK(f.pieces[0].voxels == 4000);
     CHECK(f.faint_layers.empty());
-    CHECK(describe(f, raster, 50).empty());
+    CHECK(describe(f, raster).empty());
 }
 
 TEST_CASE("a part of a table that begins below the top is an island, its legs are not") {
@@ -49,7 +49,7 @@ TEST_CASE("a part of a table that begins below the top is an island, its legs ar
     CHECK(f.islands[0].pixels == 4);
     CHECK(f.pieces.size() == 1);
     CHECK(f.cavities.empty());
-    CHECK(describe(f, raster, 50).at(0).find("1 islands begin in mid-air, in 1 layers from 4 to 4") == 0);
+    CHECK(describe(f, raster).at(0).find("1 islands begin in mid-air, in 1 layers from 4 to 4") == 0);
 }
 
 TEST_CASE("closed cavities, cups and tunnels are told apart") {

@@ -27,7 +27,7 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// The solid stretches of a row: runs of all images, joined where they touch.
+/// The solid stretches of a row: runs of all images, joined where they touch or, lit twice, overlap.
 void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretches) {
     const std::size_t first = stretches.size();
     for (const MaterialImage& m : layer.images) {
@@ -40,8 +40,8 @@ void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretc
         std::sort(begin, stretches.end(), [](const Stretch& l, const Stretch& r) { return l.begin < r.begin; });
     auto last = begin;
     for (auto it = begin; it != stretches.end(); ++it) {
-        if (it != begin && it->begin == last->end) {
-            last->end = it->end;
+        if (it != begin && it->begin <= last->end) {
+            last->end = std::max(last->end, it->end);
         } else {
             if (it != begin) ++last;
             *last = *it;
@@ -104,6 +104,19 @@ void number_pieces(PieceMap& map, bool outside, int width) {
     }
 }
 
+/// The first pixel of each piece.
+void first_pixels(const PieceMap& map, std::vector<int>& rows, std::vector<int>& columns) {
+    rows.assign(map.pixels.size(), -1);
+    columns = rows;
+    for (int row = map.first_row; row < map.first_row + map.rows(); ++row) {
+        for (const Stretch& s : map.row(row)) {
+            if (rows[s.piece] >= 0) continue;
+            rows[s.piece] = row;
+            columns[s.piece] = s.begin;
+        }
+    }
+}
+
 }  // namespace
 
 std::span<const Stretch> PieceMap::row(int row) const {
@@ -134,15 +147,8 @@ LayerShape shape_of(const ComposedLayer& layer, int width_px) {
     number_pieces(shape.solid, false, width_px);
     number_pieces(shape.voids, true, width_px);
     shape.faint = shape.solid.stretches.empty();
-    shape.solid_row.assign(shape.solid.pixels.size(), -1);
-    shape.solid_column = shape.solid_row;
-    for (int row = first; row < end; ++row) {
-        for (const Stretch& s : shape.solid.row(row)) {
-            if (shape.solid_row[s.piece] >= 0) continue;
-            shape.solid_row[s.piece] = row;
-            shape.solid_column[s.piece] = s.begin;
-        }
-    }
+    first_pixels(shape.solid, shape.solid_row, shape.solid_column);
+    first_pixels(shape.voids, shape.void_row, shape.void_column);
     return shape;
 }
 

@@ -31,6 +31,7 @@ struct LayerShape {
     PieceMap solid;
     PieceMap voids;  ///< in the rows of `solid`; piece 0 is the outside, to which all other rows belong
     std::vector<int> solid_row, solid_column;  ///< per piece of solid: its first pixel
+    std::vector<int> void_row, void_column;    ///< the same of voids
     bool faint = false;                        ///< there is light, but no pixel is solid
 };
 

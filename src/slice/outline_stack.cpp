@@ -30,9 +30,10 @@ double length_um(const OutlineSlice& slice) {
 
 }  // namespace
 
-Result<OutlineStack> OutlineStack::from(std::vector<OutlineSlice> slices, int layer_um, const std::string& label) {
+Result<OutlineStack> OutlineStack::from(std::vector<OutlineSlice> slices, const Layers& layers,
+                                        const std::string& label) {
     OutlineStack stack;
-    stack.layer_um_ = layer_um;
+    stack.layers_ = layers;
     double below = -max_coordinate_um;
     for (const OutlineSlice& slice : slices) {
         if (!(slice.bottom_um >= below - 1e-6 && slice.top_um > slice.bottom_um && slice.top_um <= max_coordinate_um))
@@ -41,15 +42,15 @@ Result<OutlineStack> OutlineStack::from(std::vector<OutlineSlice> slices, int la
         below = slice.top_um;
         if (slice.outlines_um.empty()) continue;
         // The layers whose middle lies below the slice's top.
-        const int layers = static_cast<int>(std::ceil(slice.top_um / layer_um - 0.5));
-        stack.layer_count_ = std::max(stack.layer_count_, layers);
+        const auto units = static_cast<std::int64_t>(std::ceil(slice.top_um * grid_per_um));
+        stack.layer_count_ = std::max(stack.layer_count_, layers.middles_up_to(units - 1, grid_per_um));
     }
     stack.slices_ = std::move(slices);
     return stack;
 }
 
 void OutlineStack::section(int layer, std::vector<Segment>& segments) const {
-    const double z = (layer + 0.5) * layer_um_;
+    const double z = layers_.middle2_um(layer) / 2.0;
     const auto found = std::upper_bound(slices_.begin(), slices_.end(), z,
                                         [](double height, const OutlineSlice& s) { return height < s.top_um; });
     if (found == slices_.end() || z < found->bottom_um) return;

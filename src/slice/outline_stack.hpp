@@ -13,7 +13,7 @@ namespace pliant::slice {
 class OutlineStack {
 public:
     /// Errors name the body: slices that do not rise or lie beyond 2 m.
-    [[nodiscard]] static Result<OutlineStack> from(std::vector<OutlineSlice> slices, int layer_um,
+    [[nodiscard]] static Result<OutlineStack> from(std::vector<OutlineSlice> slices, const Layers& layers,
                                                    const std::string& label);
 
     /// Layers [0, layer_count()) may have outlines.
@@ -28,7 +28,8 @@ public:
 
 private:
     std::vector<OutlineSlice> slices_;
-    int layer_um_ = 0, layer_count_ = 0;
+    Layers layers_ = 1;
+    int layer_count_ = 0;
 };
 
 }  // namespace pliant::slice

@@ -1,6 +1,8 @@
 // Where a place on the platform lies in the image.
 #pragma once
 
+#include <array>
+
 #include "slice/body.hpp"
 
 namespace pliant::slice {
@@ -13,6 +15,11 @@ public:
 
     [[nodiscard]] double column(double x, double y) const { return xx_ * x + xy_ * y + x0_; }
     [[nodiscard]] double row(double x, double y) const { return yx_ * x + yy_ * y + y0_; }
+    /// The way back: x and y of a place in the image.
+    [[nodiscard]] std::array<double, 2> place(double column, double row) const {
+        const double c = column - x0_, r = row - y0_, det = xx_ * yy_ - xy_ * yx_;
+        return {(yy_ * c - xy_ * r) / det, (xx_ * r - yx_ * c) / det};
+    }
     /// Whether the image is seen from behind: left and right of an outline change places.
     [[nodiscard]] bool mirrored() const { return mirrored_; }
 

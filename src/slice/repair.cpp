@@ -8,19 +8,21 @@
 namespace pliant::slice {
 namespace {
 
-int layer_at(std::int32_t z, int layer_um) {
-    return z < 0 ? 0 : static_cast<int>(z / (static_cast<std::int64_t>(layer_um) * grid_per_um));
+int layer_at(std::int32_t z, const Layers& layers) {
+    // The layer whose top is the first above z.
+    const int k = layers.middles_up_to(z, grid_per_um);
+    return k > 0 && std::int64_t{layers.top_um(k - 1)} * grid_per_um > z ? k - 1 : k;
 }
 
-std::string hole_warning(const Holes& holes, const std::string& label, int layer_um) {
+std::string hole_warning(const Holes& holes, const std::string& label, const Layers& layers) {
     return fmt::format("{}: {} hole{} ({} open edges, {:.3g} mm^2) closed in layers {} to {}", label, holes.count,
-                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, layer_at(holes.z_low, layer_um),
-                       layer_at(holes.z_high, layer_um));
+                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, layer_at(holes.z_low, layers),
+                       layer_at(holes.z_high, layers));
 }
 
 }  // namespace
 
-Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, int layer_um) {
+Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers) {
     auto snapped = snap_to_grid(surface_um, label);
     if (!snapped) return tl::unexpected(snapped.error());
     Repaired result{std::move(*snapped), {}};
@@ -35,7 +37,7 @@ Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& labe
         return input_error(
             "{}: the surface is open: {:.4g} mm^2 are missing beside {:.4g} mm^2; a closed surface is needed", label,
             holes.area_mm2, area);
-    if (holes.count > 0) result.warnings.push_back(hole_warning(holes, label, layer_um));
+    if (holes.count > 0) result.warnings.push_back(hole_warning(holes, label, layers));
     if (const int turned = turn_inverted_shells(surface); turned > 0)
         result.warnings.push_back(
             fmt::format("{}: {} shell{} inside out turned outwards", label, turned, turned == 1 ? "" : "s"));

@@ -6,6 +6,7 @@
 
 #include "slice/body.hpp"
 #include "slice/grid_surface.hpp"
+#include "slice/layers.hpp"
 
 namespace pliant::slice {
 
@@ -15,8 +16,8 @@ struct Repaired {
 };
 
 /// Snaps, orients and closes. Holes up to a quarter of the surface are closed with a warning that names their layers
-/// (counted from 0, `layer_um` thick). Errors: what snap_to_grid refuses, a surface without triangles, one that is more
-/// open than that, one that encloses nothing.
-[[nodiscard]] Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, int layer_um);
+/// (counted from 0, as `layers` has them). Errors: what snap_to_grid refuses, a surface without triangles, one that is
+/// more open than that, one that encloses nothing.
+[[nodiscard]] Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers);
 
 }  // namespace pliant::slice

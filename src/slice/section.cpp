@@ -30,8 +30,7 @@ void cover(std::size_t leaves, std::size_t first, std::size_t end, const Visit& 
 
 }  // namespace
 
-Sectioner::Sectioner(GridSurface surface, int layer_um)
-    : surface_(std::move(surface)), half_layer_(std::int64_t{layer_um} * grid_per_um / 2) {
+Sectioner::Sectioner(GridSurface surface, Layers layers) : surface_(std::move(surface)), layers_(std::move(layers)) {
     for (const Triangle& t : surface_.triangles) {
         const auto [low, high] = crossed(t);
         if (low < high) layer_count_ = std::max(layer_count_, high);
@@ -42,7 +41,7 @@ Sectioner::Sectioner(GridSurface surface, int layer_um)
 /// The layers [low, high) whose planes a triangle crosses.
 std::pair<int, int> Sectioner::crossed(const Triangle& t) const {
     const auto [low, high] = std::minmax({surface_.points[t[0]].z, surface_.points[t[1]].z, surface_.points[t[2]].z});
-    return {layers_below(low), layers_below(high)};
+    return {layers_.middles_up_to(low, grid_per_um), layers_.middles_up_to(high, grid_per_um)};
 }
 
 void Sectioner::plant_tree() {
@@ -59,12 +58,6 @@ void Sectioner::plant_tree() {
     std::vector<std::uint32_t> next(node_starts_.begin(), node_starts_.end() - 1);
     for (std::size_t i = 0; i < surface_.triangles.size(); ++i)
         each_node(i, [&](std::size_t node) { listed_[next[node]++] = static_cast<int>(i); });
-}
-
-/// The number of planes at or below height z.
-int Sectioner::layers_below(std::int64_t z) const {
-    if (z < half_layer_) return 0;
-    return static_cast<int>((z - half_layer_) / (2 * half_layer_)) + 1;
 }
 
 void Sectioner::cut(const Triangle& t, std::int64_t plane, std::vector<Segment>& segments) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slice/grid_surface.hpp"
+#include "slice/layers.hpp"
 
 namespace pliant::slice {
 
@@ -21,7 +22,7 @@ struct Segment {
 class Sectioner {
 public:
     /// Takes the surface over. Cost: triangles times the logarithm of the layers that each crosses.
-    Sectioner(GridSurface surface, int layer_um);
+    Sectioner(GridSurface surface, Layers layers);
 
     /// Layers [0, layer_count()) may have sections.
     [[nodiscard]] int layer_count() const { return layer_count_; }
@@ -30,14 +31,15 @@ public:
     void section(int layer, std::vector<Segment>& segments) const;
 
 private:
-    [[nodiscard]] std::int64_t plane(int layer) const { return (2 * std::int64_t{layer} + 1) * half_layer_; }
-    [[nodiscard]] int layers_below(std::int64_t z) const;
+    [[nodiscard]] std::int64_t plane(int layer) const {
+        return std::int64_t{layers_.middle2_um(layer)} * grid_per_um / 2;
+    }
     void cut(const Triangle& t, std::int64_t plane, std::vector<Segment>& segments) const;
     [[nodiscard]] std::pair<int, int> crossed(const Triangle& t) const;
     void plant_tree();
 
     GridSurface surface_;
-    std::int64_t half_layer_;
+    Layers layers_;
     int layer_count_ = 0;
     /// A segment tree over layers: node n covers those of nodes 2n and 2n + 1, the leaves are the nodes from leaves_
     /// on. A triangle is listed at the fewest nodes that together cover the layers that it crosses, so that a layer

@@ -6,6 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "slice/blend.hpp"
+#include "slice/mask.hpp"
+#include "slice/overlap.hpp"
 #include "slice/raster_frame.hpp"
 #include "slice/repair.hpp"
 
@@ -16,6 +19,12 @@ Status check(const Settings& settings) {
     if (auto status = check(settings.raster); !status) return status;
     if (settings.layer_um < 1 || settings.layer_um > 10000)
         return input_error("layer of {} um: must be 1 to 10000 um", settings.layer_um);
+    int below_um = 0;
+    for (const int top_um : settings.tops_um) {
+        if (top_um <= below_um || top_um - below_um > 10000)
+            return input_error("a layer from {} to {} um: must be 1 to 10000 um thick", below_um, top_um);
+        below_um = top_um;
+    }
     if (!(settings.rules.threshold > 0 && settings.rules.threshold <= 1))
         return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
     if (!(settings.rules.close_gap_um >= 0))
@@ -59,6 +68,13 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, cons
     return {};
 }
 
+/// All pixels that have any light.
+RunSet lit(const ComposedLayer& layer, const Raster& raster) {
+    RunSet all(raster.width_px, raster.height_px);
+    for (const MaterialImage& m : layer.images) all = united(all, RunSet::lit(m.image));
+    return all;
+}
+
 std::string size_text(const Vec3& size) {
     return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x / 1000, size.y / 1000, size.z / 1000);
 }
@@ -69,11 +85,12 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
     if (auto status = check(settings); !status) return tl::unexpected(status.error());
     Slicer slicer;
     slicer.settings_ = settings;
+    slicer.layers_ = settings.layers();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (auto status = slicer.add_body(bodies[i], describe(bodies[i], i)); !status)
             return tl::unexpected(status.error());
     }
-    if (auto status = slicer.check_teeth(); !status) return tl::unexpected(status.error());
+    if (auto status = slicer.check_pairs(); !status) return tl::unexpected(status.error());
     if (slicer.layer_count_ == 0)
         return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
     return slicer;
@@ -81,21 +98,25 @@ Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& set
 
 Status Slicer::add_body(const Body& body, const std::string& label) {
     labels_.push_back(label);
+    fillers_.push_back(body.filler);
     const auto box = bounds(body, label);
     if (!body.slices.empty()) {
         if (!box) return tl::unexpected(box.error());
-        auto stack = OutlineStack::from(body.slices, settings_.layer_um, label);
+        auto stack = OutlineStack::from(body.slices, layers_, label);
         if (!stack) return tl::unexpected(stack.error());
         measures_.push_back({stack->volume_mm3(), stack->area_mm2()});
         shapes_.emplace_back(std::move(*stack));
     } else {
-        auto repaired = repair(body.surface_um, label, settings_.layer_um);
+        auto repaired = repair(body.surface_um, label, layers_);
         if (!repaired) return tl::unexpected(repaired.error());
         std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(warnings_));
         measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
-        shapes_.emplace_back(Sectioner(std::move(repaired->surface), settings_.layer_um));
+        shapes_.emplace_back(Sectioner(std::move(repaired->surface), layers_));
     }
     if (!box) return tl::unexpected(box.error());
+    if (body.blend) {
+        if (auto status = check(*body.blend, label); !status) return status;
+    }
     if (auto status = check_place(body, *box, settings_.raster, label); !status) return status;
     add_shape(body, box->size());
     return {};
@@ -103,11 +124,11 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
 
 /// What is noted of the shape that was added last.
 void Slicer::add_shape(const Body& body, const Vec3& size_um) {
-    const auto known = std::find(materials_.begin(), materials_.end(), body.material);
-    material_of_.push_back(static_cast<int>(known - materials_.begin()));
-    if (known == materials_.end()) materials_.push_back(body.material);
+    material_of_.push_back(add_material(body.material));
+    zone_of_.push_back(add_zone(body));
     const int layers = std::visit([](const auto& shape) { return shape.layer_count(); }, shapes_.back());
     layer_count_ = std::max(layer_count_, layers);
+    if (body.filler) return;
     if (layers == 0) {
         warnings_.push_back(fmt::format("{}: {} lies between the middles of two layers of {} um and is not printed",
                                         labels_.back(), size_text(size_um), settings_.layer_um));
@@ -117,26 +138,61 @@ void Slicer::add_shape(const Body& body, const Vec3& size_um) {
     }
 }
 
+int Slicer::add_material(const std::string& name) {
+    if (material(name) < 0) materials_.push_back(name);
+    return material(name);
+}
+
+int Slicer::add_zone(const Body& body) {
+    Zone zone{material(body.material), -1, static_cast<int>(material_of_.size()) - 1, body.blend};
+    if (zone.blend && zone.blend->cell_um > 0)
+        zone.blend->cell_px =
+            std::clamp(static_cast<int>(std::lround(zone.blend->cell_um / settings_.raster.pixel_um)), 1, 1000);
+    if (body.blend) {
+        zone.second = add_material(body.blend->second);
+    } else {
+        for (std::size_t z = 0; z < zones_.size(); ++z) {
+            if (zones_[z].material == zone.material && !zones_[z].blend) return static_cast<int>(z);
+        }
+    }
+    zones_.push_back(std::move(zone));
+    return static_cast<int>(zones_.size()) - 1;
+}
+
 void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments) const {
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
-ComposedLayer Slicer::composed(int layer, const Raster& raster, const ComposeRules& rules) const {
+ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
     CellBuffer cells(raster);
     std::vector<Segment> segments;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
-        section(b, layer, segments);
+        section(b, k, segments);
         cells.add(static_cast<int>(b), segments);
     }
-    return compose(cells.sorted(), material_of_, raster, rules);
+    ComposedLayer layer = compose(cells.sorted(), zone_of_, raster, rules);
+    if (layer.overlapping) measure_overlap(k, raster, layer);
+    return layer;
 }
 
-/// Per material; empty where no border of the layer moves.
+/// From the outlines, not from pixels.
+void Slicer::measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const {
+    std::vector<std::vector<Segment>> outlines(shapes_.size());
+    for (std::size_t b = 0; b < shapes_.size(); ++b) section(b, layer, outlines[b]);
+    const std::vector<Overlap> areas = overlaps(outlines, material_of_);
+    const double pixel = raster.pixel_um * grid_per_um;
+    for (std::size_t b = 0; b < areas.size(); ++b) {
+        composed.lost_px[b] = areas[b].others / (pixel * pixel);
+        composed.doubled_px[b] = areas[b].own / (pixel * pixel);
+    }
+}
+
+/// Per zone; empty where no border of the layer moves.
 std::vector<double> Slicer::offsets_um(int layer) const {
     std::vector<double> offsets;
-    for (const std::string& material : materials_) {
-        const auto known = settings_.compensation.find(material);
+    for (const Zone& zone : zones_) {
+        const auto known = settings_.compensation.find(materials_[zone.material]);
         offsets.push_back(known == settings_.compensation.end() ? 0 : known->second.offset_um(layer));
     }
     if (std::all_of(offsets.begin(), offsets.end(), [](double um) { return um == 0; })) offsets.clear();
@@ -152,12 +208,96 @@ ComposedLayer Slicer::outlined(int k) const {
     return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
 }
 
-SlicedLayer Slicer::layer(int k) const {
-    SlicedLayer layer = outlined(k);
+/// From zones to materials.
+void Slicer::deal_out(int k, ComposedLayer& layer) const {
+    std::vector<RunImage> images(materials_.size());
+    const double z_um = layers_.middle2_um(k) / 2.0;
+    for (MaterialImage& m : layer.images) {
+        const Zone& zone = zones_[m.material];
+        RunImage own = std::move(m.image);
+        if (zone.blend) {
+            auto [first, second] = dealt(own, *zone.blend, settings_.raster, z_um, k);
+            layer.dealt.push_back({zone.body, static_cast<double>(first.value_sum()) / 255,
+                                   static_cast<double>(second.value_sum()) / 255});
+            images[zone.second] = slice::together(images[zone.second], second);
+            own = std::move(first);
+        }
+        images[zone.material] = slice::together(images[zone.material], own);
+    }
+    layer.images.clear();
+    for (std::size_t m = 0; m < images.size(); ++m) {
+        if (images[m].blank()) continue;
+        const std::int64_t sum = images[m].value_sum();
+        layer.images.push_back({static_cast<int>(m), std::move(images[m]), sum, 0});
+    }
+}
+
+void Slicer::take_out(int k, ComposedLayer& layer) const {
+    const RunSet removed = settings_.removed->at(k);
+    if (removed.empty()) return;
+    for (MaterialImage& m : layer.images) {
+        m.image = outside(m.image, removed);
+        m.value_sum = m.image.value_sum();
+    }
+    std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
+}
+
+/// Every pixel with one owner, before light is added or left out.
+ComposedLayer Slicer::owned(int k) const {
+    ComposedLayer layer = outlined(k);
+    if (settings_.removed) take_out(k, layer);
+    const bool blends = std::any_of(zones_.begin(), zones_.end(), [](const Zone& z) { return z.blend.has_value(); });
+    if (blends) deal_out(k, layer);
     for (const Teeth& teeth : settings_.teeth) {
         int taker = material(teeth.first), giver = material(teeth.second);
         if (k / teeth.layers % 2 == 1) std::swap(taker, giver);
         take_teeth(layer, taker, giver, teeth.depth_px);
+    }
+    return layer;
+}
+
+/// How many layers below a layer must be solid where a material is lit: those whose middle light would reach that goes
+/// too deep by the material's bleed.
+int Slicer::bleed_layers(int material, int k) const {
+    const auto known = settings_.compensation.find(materials_[material]);
+    if (known == settings_.compensation.end() || known->second.bleed_um <= 0) return 0;
+    int count = 0;
+    while (count < k && layers_.bottom_um(k) - layers_.middle2_um(k - count - 1) / 2.0 < known->second.bleed_um)
+        ++count;
+    return count;
+}
+
+/// Without the light that would go too deep.
+ComposedLayer Slicer::bled(int k) const {
+    ComposedLayer layer = owned(k);
+    std::vector<RunSet> held;  // by how many layers below are solid
+    for (MaterialImage& m : layer.images) {
+        const auto count = static_cast<std::size_t>(bleed_layers(m.material, k));
+        if (count == 0) continue;
+        while (held.size() < count) {
+            RunSet solid = lit(owned(k - 1 - static_cast<int>(held.size())), settings_.raster);
+            held.push_back(held.empty() ? std::move(solid) : common(held.back(), solid));
+        }
+        m.image = inside(m.image, held[count - 1]);
+        m.value_sum = m.image.value_sum();
+    }
+    std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
+    return layer;
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    SlicedLayer layer = bled(k);
+    if (settings_.bonds.empty()) return layer;
+    const ComposedLayer owned = layer;
+    std::map<int, ComposedLayer> known;
+    for (const Bond& bond : settings_.bonds) {
+        std::vector<ComposedLayer> around;
+        for (int j = std::max(0, k - bond.layers); j <= std::min(layer_count_ - 1, k + bond.layers); ++j) {
+            if (j == k) continue;
+            if (!known.contains(j)) known[j] = bled(j);
+            around.push_back(known[j]);
+        }
+        add_bond(layer, owned, around, material(bond.first), material(bond.second), bond.depth_px);
     }
     return layer;
 }
@@ -168,22 +308,45 @@ int Slicer::material(const std::string& name) const {
     return found == materials_.end() ? -1 : static_cast<int>(found - materials_.begin());
 }
 
-Status Slicer::check_teeth() const {
-    for (const Teeth& teeth : settings_.teeth) {
-        if (auto status = check(teeth); !status) return status;
-        for (const std::string& name : {teeth.first, teeth.second}) {
-            if (material(name) < 0)
-                return input_error("interlock '{}' with '{}': there is no material '{}', only {}", teeth.first,
-                                   teeth.second, name, join_names(materials_));
-        }
+Status Slicer::check_pair(const char* what, const std::string& first, const std::string& second) const {
+    for (const std::string& name : {first, second}) {
+        if (material(name) < 0)
+            return input_error("{} '{}' with '{}': there is no material '{}', only {}", what, first, second, name,
+                               join_names(materials_));
     }
     return {};
 }
 
-Tally::Tally(const Slicer& slicer) : slicer_(slicer), lost_px_(slicer.body_labels().size(), 0.0) {}
+Status Slicer::check_pairs() const {
+    for (const Teeth& teeth : settings_.teeth) {
+        if (auto status = check(teeth); !status) return status;
+        if (auto status = check_pair("interlock", teeth.first, teeth.second); !status) return status;
+    }
+    for (const Bond& bond : settings_.bonds) {
+        if (auto status = check(bond); !status) return status;
+        if (auto status = check_pair("overlap", bond.first, bond.second); !status) return status;
+    }
+    return {};
+}
+
+Tally::Tally(const Slicer& slicer)
+    : slicer_(slicer),
+      lost_mm3_(slicer.body_labels().size(), 0.0),
+      doubled_mm3_(lost_mm3_),
+      first_mm3_(lost_mm3_),
+      second_mm3_(lost_mm3_) {}
 
 void Tally::add(int k, const SlicedLayer& layer) {
-    for (std::size_t b = 0; b < lost_px_.size(); ++b) lost_px_[b] += layer.lost_px[b];
+    const double pixel_um = slicer_.settings().raster.pixel_um;
+    const double voxel_mm3 = pixel_um * pixel_um * slicer_.layers().thickness_um(k) / 1e9;
+    for (std::size_t b = 0; b < lost_mm3_.size(); ++b) {
+        lost_mm3_[b] += layer.lost_px[b] * voxel_mm3;
+        doubled_mm3_[b] += layer.doubled_px[b] * voxel_mm3;
+    }
+    for (const DealtBody& d : layer.dealt) {
+        first_mm3_[static_cast<std::size_t>(d.body)] += d.first_px * voxel_mm3;
+        second_mm3_[static_cast<std::size_t>(d.body)] += d.second_px * voxel_mm3;
+    }
     closed_gap_pixels_ += layer.closed_gap_pixels;
     if (layer.images.empty()) {
         if (pending_empty_++ == 0 && empty_between_ == 0) first_empty_ = k;
@@ -198,11 +361,15 @@ void Tally::add(int k, const SlicedLayer& layer) {
 Summary Tally::summary() const {
     const Settings& settings = slicer_.settings();
     Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings(), {}};
-    const double voxel_mm3 = settings.raster.pixel_um * settings.raster.pixel_um * settings.layer_um / 1e9;
-    for (std::size_t b = 0; b < lost_px_.size(); ++b) {
-        const double lost_mm3 = lost_px_[b] * voxel_mm3;
+    const double voxel_mm3 =
+        settings.raster.pixel_um * settings.raster.pixel_um * slicer_.layers().thickness_um(0) / 1e9;
+    for (std::size_t b = 0; b < lost_mm3_.size(); ++b) {
+        const double lost_mm3 = lost_mm3_[b];
         summary.lost_mm3.push_back(lost_mm3);
-        if (lost_mm3 < voxel_mm3) continue;
+        summary.doubled_mm3.push_back(doubled_mm3_[b]);
+        const double all = first_mm3_[b] + second_mm3_[b];
+        summary.second_share.push_back(all > 0 ? second_mm3_[b] / all : 0);
+        if (lost_mm3 < voxel_mm3 || slicer_.fillers()[b]) continue;
         summary.overlap_mm3 += lost_mm3;
         summary.warnings.push_back(
             fmt::format("{}: {:.4g} mm^3 overlap with later bodies of other materials, which keep them",

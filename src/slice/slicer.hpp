@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -18,9 +19,12 @@
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "slice/body.hpp"
+#include "slice/bond.hpp"
 #include "slice/compensate.hpp"
 #include "slice/compose.hpp"
+#include "slice/layers.hpp"
 #include "slice/outline_stack.hpp"
+#include "slice/removal.hpp"
 #include "slice/run_image.hpp"
 #include "slice/section.hpp"
 #include "slice/teeth.hpp"
@@ -33,6 +37,11 @@ struct Settings {
     ComposeRules rules;
     std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
     std::vector<Teeth> teeth{};                          ///< cut one after the other, after compensation
+    std::vector<Bond> bonds{};                           ///< after teeth
+    std::vector<int> tops_um{};  ///< of layers that are not alike, rising; where empty, all are `layer_um` thick
+    std::shared_ptr<const Removal> removed{};  ///< from the inside of the part; none: nothing
+
+    [[nodiscard]] Layers layers() const { return tops_um.empty() ? Layers(layer_um) : Layers(tops_um); }
 };
 
 /// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
@@ -62,9 +71,12 @@ public:
 
     /// Per body.
     [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
+    [[nodiscard]] const std::vector<bool>& fillers() const { return fillers_; }
 
-    /// Layer k lies between k and k + 1 times the layer's thickness and is cut in its middle; 0 <= k < layer_count().
-    /// Safe to call from several threads. Cost: the pixels that outlines pass through.
+    [[nodiscard]] const Layers& layers() const { return layers_; }
+
+    /// Layer k is cut in its middle; 0 <= k < layer_count(). Safe to call from several threads. Cost: the pixels that
+    /// outlines pass through; with bleed compensation or bonds over layers, those of the layers around it too.
     [[nodiscard]] SlicedLayer layer(int k) const;
 
 private:
@@ -74,14 +86,33 @@ private:
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
     [[nodiscard]] std::vector<double> offsets_um(int layer) const;
     [[nodiscard]] int material(const std::string& name) const;
-    [[nodiscard]] Status check_teeth() const;
+    [[nodiscard]] Status check_pairs() const;
+    [[nodiscard]] Status check_pair(const char* what, const std::string& first, const std::string& second) const;
+    int add_material(const std::string& name);
+    int add_zone(const Body& body);
+    void deal_out(int layer, ComposedLayer& composed) const;
+    void take_out(int layer, ComposedLayer& composed) const;
+    [[nodiscard]] int bleed_layers(int material, int layer) const;
+    [[nodiscard]] ComposedLayer owned(int layer) const;
+    [[nodiscard]] ComposedLayer bled(int layer) const;
     [[nodiscard]] ComposedLayer outlined(int layer) const;
+    void measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const;
     [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
+    Layers layers_ = 1;
     std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
-    std::vector<int> material_of_;                               ///< per body
-    std::vector<Measures> measures_;                             ///< per body
+    /// Bodies whose pixels are dealt out in the same way: all of one material, or one that has a blend.
+    struct Zone {
+        int material = 0;
+        int second = -1;  ///< of the blend
+        int body = 0;     ///< the first
+        std::optional<Blend> blend;
+    };
+    std::vector<Zone> zones_;
+    std::vector<int> zone_of_, material_of_;  ///< per body
+    std::vector<Measures> measures_;          ///< per body
+    std::vector<bool> fillers_;               ///< per body
     std::vector<std::string> materials_, labels_, warnings_;
     int layer_count_ = 0;
 };
@@ -92,7 +123,9 @@ struct Summary {
     double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
     std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
     std::vector<std::string> warnings;
-    std::vector<double> lost_mm3{};  ///< per body: its share of overlap_mm3, which a later body keeps
+    std::vector<double> lost_mm3{};      ///< per body: its share of overlap_mm3, which a later body keeps
+    std::vector<double> second_share{};  ///< per body: of its light that the second material of its blend got
+    std::vector<double> doubled_mm3{};   ///< per body: what a later body of the same material fills too
 };
 
 /// Collects the remarks of all layers, added in order.
@@ -104,7 +137,7 @@ public:
 
 private:
     const Slicer& slicer_;
-    std::vector<double> lost_px_;
+    std::vector<double> lost_mm3_, doubled_mm3_, first_mm3_, second_mm3_;  ///< per body
     std::int64_t closed_gap_pixels_ = 0;
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };

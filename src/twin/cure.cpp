@@ -11,26 +11,7 @@ namespace {
 constexpr std::size_t most_faults = 1000;
 constexpr double rounding_um = 0.01;
 
-/// Light of an irradiance that the printer file leaves open: all that matters is its share of the exposure.
-double irradiance(const machine::Printer& printer) {
-    return printer.projector.irradiance_W_m2 > 0 ? printer.projector.irradiance_W_m2 : 1;
-}
-
 }  // namespace
-
-double WorkingCurve::depth_um(double dose_J_m2) const {
-    return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
-}
-
-WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin) {
-    if (resin.penetration_um > 0) return {resin.penetration_um, resin.critical_J_m2};
-    const double dose = irradiance(printer) * resin.exposure_s;
-    const double depth = resin.cure_depth_um;
-    const double layer = std::min<double>(printer.layer_um, depth / 2);
-    const double share = resin.critical_share;
-    const double penetration = share < 1 ? (depth - layer) / std::log(1 / share) : depth;
-    return {penetration, dose * std::exp(-depth / penetration)};
-}
 
 Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
     for (const machine::Vat& vat : printer.vats) {
@@ -53,7 +34,7 @@ void Cure::fault(std::string text) {
 std::string Cure::why_not(int vat, double seconds, int z_um, double area_mm2) const {
     const machine::Vat& place = printer_->vats[static_cast<std::size_t>(vat)];
     const machine::Resin* resin = printer_->find_resin(place.resin);
-    const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(irradiance(*printer_) * seconds);
+    const double depth = curves_[static_cast<std::size_t>(vat)].depth_um(machine::irradiance_W_m2(*printer_) * seconds);
     if (resin == nullptr) return fmt::format("slot {} holds no resin", place.slot);
     if (z_um <= top_um_) return fmt::format("no gap is left at {} um", z_um);
     if (depth + rounding_um < z_um - top_um_) {
@@ -88,7 +69,7 @@ void Cure::give_up_faint() {
 
 void Cure::expose(const Runs& light, int vat, double seconds, int z_um) {
     if (open_ && open_->top_um != z_um) finish();
-    const double dose = irradiance(*printer_) * seconds;
+    const double dose = machine::irradiance_W_m2(*printer_) * seconds;
     if (Lit* before = lit_before(light, vat, z_um)) {
         before->seconds += seconds;
         ++before->pieces;
@@ -109,7 +90,7 @@ void Cure::expose(const Runs& light, int vat, double seconds, int z_um) {
     open(z_um);
     section_mm2_ += area_mm2;
     left_ml_[static_cast<std::size_t>(vat)] -= area_mm2 * open_->thickness_um / 1e6;
-    shine_through(light, vat, irradiance(*printer_) * lit.seconds);
+    shine_through(light, vat, machine::irradiance_W_m2(*printer_) * lit.seconds);
     open_->lit[static_cast<std::size_t>(vat)].push_back(std::move(lit));
 }
 

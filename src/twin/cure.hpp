@@ -18,20 +18,13 @@
 
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "machine/working_curve.hpp"
 #include "twin/runs.hpp"
 
 namespace pliant::twin {
 
-/// Depth over dose of one resin.
-struct WorkingCurve {
-    double penetration_um = 1;
-    double critical_J_m2 = 1;
-    [[nodiscard]] double depth_um(double dose_J_m2) const;
-};
-
-/// The resin's own curve, or one through the two points that the printer file gives: the exposure cures `cure_depth`,
-/// and its critical share just one layer.
-[[nodiscard]] WorkingCurve working_curve(const machine::Printer& printer, const machine::Resin& resin);
+using machine::working_curve;
+using machine::WorkingCurve;
 
 /// Light of one picture from one vat on one layer, given in one piece or in several: doses add up.
 struct Lit {

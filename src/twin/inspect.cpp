@@ -203,13 +203,22 @@ Status compare_layer(Report& report, Twin& twin, const job::Manifest& job, const
     }
     std::vector<Runs> wanted;
     wanted.reserve(layer.images.size());
+    bool shared = false;
     for (const job::LayerImage& listed : layer.images) {
         auto image = images(index, listed.material);
         if (!image) return tl::unexpected(image.error());
-        wanted.push_back(std::move(*image));
+        wanted.push_back(twin.screen().coverage(*image).runs);
+        shared = shared || listed.shared_mm2 > 0;
+        report.materials[static_cast<std::size_t>(listed.material)].asked_mm3 +=
+            listed.area_mm2 * layer.thickness_um / 1000;
         comparison.add_wanted(listed.material, job.materials[static_cast<std::size_t>(listed.material)].resin,
                               wanted.back());
         if (cured != nullptr) count_too_long(report, *cured, wanted.back(), asked_s(job, index, listed.material));
+    }
+    if (shared) {
+        for (const Run& run : sum_of(wanted, projector.width_px)) {
+            if (run.value > 255) report.pixels_lit_twice -= run.end - run.begin;
+        }
     }
     const double pixel_mm2 = projector.pixel_um * projector.pixel_um / 1e6;
     const long wrong_before = report.wrong_pixels;
@@ -280,6 +289,12 @@ void judge_materials(Report& report, const job::Manifest& job) {
     for (std::size_t i = 0; i < job.materials.size(); ++i) {
         const job::Material& drawn = job.materials[i];
         MaterialReport& m = report.materials[i];
+        if (job.compensated) m.model_mm3 = m.asked_mm3;
+        // Showing rounds grey to whole values; a job made for another projector is further off.
+        if (std::abs(m.wanted_mm3 - m.asked_mm3) > 0.01 * m.asked_mm3)
+            report.reasons.push_back(
+                fmt::format("{}: on this projector the images hold {:.3f} mm^3, the job says {:.3f} (grey, mask)",
+                            m.name, m.wanted_mm3, m.asked_mm3));
         m.tolerance_mm3 = 0.01 * drawn.model_volume_mm3 + drawn.model_area_mm2 * job.pixel_um / 2000;
         const double off = m.model_mm3 > 0 ? std::abs(m.cured_mm3 - m.model_mm3) : 0;
         m.passed = off <= m.tolerance_mm3 && m.foreign_mm3 == 0 && m.missing_mm3 == 0;
@@ -303,6 +318,7 @@ void judge(Report& report, Twin& twin) {
     count(report.wrong_thickness, "layers of the wrong thickness");
     count(report.wrong_pixels, "pixels with more or less of a resin than asked for");
     count(report.pixels_lit_twice, "pixels lit twice on one layer");
+    count(report.log.overlit_pixels, "pixels shown more light than a whole one needs (mask)");
     count(report.contaminated_layers, "layers printed in a vat with more foreign resin than allowed");
     count(report.log.short_cleanings, "swaps with too little cleaning");
     for (const std::string& fault : twin.cured().faults()) report.reasons.push_back(fault);
@@ -316,11 +332,11 @@ void judge(Report& report, Twin& twin) {
 Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& images) {
     Report report;
     for (const job::Material& m : job.materials) {
-        report.materials.push_back({m.name, m.resin, m.model_volume_mm3, 0, 0, 0, 0, 0, false});
+        report.materials.push_back({m.name, m.resin, m.model_volume_mm3, 0, 0, 0, 0, 0, 0, false});
     }
     if (Status status = compare_layers(report, twin, job, images); !status) return tl::unexpected(status.error());
     report.layers = static_cast<int>(twin.cured().layers().size());
-    report.pixels_lit_twice += twin.cured().pixels_lit_twice();
+    report.pixels_lit_twice = std::max(0L, report.pixels_lit_twice + twin.cured().pixels_lit_twice());
     report.deepest_overcure_um = twin.cured().deepest_overcure_um();
     report.log = twin.log();
     report.clock_s = twin.now();

@@ -20,9 +20,10 @@ using RunSource = std::function<Result<Runs>(int layer, int material)>;
 struct MaterialReport {
     std::string name;
     std::string resin;
-    double model_mm3 = 0;      ///< as drawn; 0: the job does not say
-    double wanted_mm3 = 0;     ///< by the job's images
-    double cured_mm3 = 0;      ///< of that, in the right resin
+    double model_mm3 = 0;   ///< as drawn; of a job that changed outlines on purpose, asked_mm3; 0: the job does not say
+    double asked_mm3 = 0;   ///< by the areas that the job states
+    double wanted_mm3 = 0;  ///< by the job's images, on this projector
+    double cured_mm3 = 0;   ///< of that, in the right resin
     double foreign_mm3 = 0;    ///< of that, in another resin
     double missing_mm3 = 0;    ///< of that, not at all
     double tolerance_mm3 = 0;  ///< between model and cured: 1 % and one pixel layer (surface times half a pixel)
@@ -47,8 +48,8 @@ struct Report {
     int stray_layers = 0;             ///< at a height where the job has none
     int wrong_thickness = 0;          ///< layers thicker or thinner than the job's
     long wrong_pixels = 0;            ///< that cured more or less of a resin than the images ask for
-    long pixels_lit_twice = 0;
-    std::string first_deviation;  ///< layer, material, what and by which step; "" if the print passed
+    long pixels_lit_twice = 0;        ///< other than those that the job asks for
+    std::string first_deviation;      ///< layer, material, what and by which step; "" if the print passed
     int contaminated_layers = 0;
     double worst_foreign = 0;  ///< share of foreign resin in a vat that printed
     double worst_residue = 0;  ///< share of the film that a cleaning left
@@ -59,8 +60,9 @@ struct Report {
 };
 
 /// Compares the cured block with the job, pixel by pixel and by volume. The part passes if every layer is there at its
-/// height and thickness, every pixel holds what its images say, the volume of every material agrees with the model's,
-/// and nothing happened on the way that must not. Fails (as an error) only if an image cannot be had.
+/// height and thickness, every pixel holds what its images say (light seen through the projector's mask and the resin's
+/// grey, see Screen), the volume of every material agrees with the model's and with the areas that the job states, and
+/// nothing happened on the way that must not. Fails (as an error) only if an image cannot be had.
 [[nodiscard]] Result<Report> inspect(Twin& twin, const job::Manifest& job, const ImageSource& images);
 [[nodiscard]] Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& images);
 

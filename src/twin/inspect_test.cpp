@@ -36,7 +36,7 @@ job::Manifest half_job() {
 }
 
 /// Homes, fetches the vat of slot 1 and lights the image at every height.
-void print(Twin& twin, const std::vector<double>& heights_mm, double seconds = 2.5) {
+void print(Twin& twin, const std::vector<double>& heights_mm, double seconds = 2.5, const job::Image& image = half) {
     const auto send = [&](const std::string& line) {
         twin.receive(line + "\n");
         twin.advance_to(twin.now() + 100);
@@ -45,7 +45,7 @@ void print(Twin& twin, const std::vector<double>& heights_mm, double seconds = 2
         send(line);
     for (const double z : heights_mm) {
         send(fmt::format("G1 Z{:.3f}", z));
-        twin.light_on(half);
+        twin.light_on(image);
         twin.advance_to(twin.now() + seconds);
         twin.light_off();
     }
@@ -113,4 +113,32 @@ TEST_CASE("an image that cannot be had is an error") {
     const auto printer = small_tower();
     Twin twin(printer);
     CHECK_FALSE(inspect(twin, half_job(), [](int, int) -> Result<job::Image> { return input_error("gone"); }));
+}
+
+TEST_CASE("the oracle sees through the projector's grey and mask") {
+    machine::Printer printer = small_tower();
+    printer.projector.grey = {0, 0.8, 1};
+    // Two whole pixels and two covered by 128 / 255, to which the grey gives 204; the lower row is masked to 200.
+    const job::Image shown{4, 2, {255, 204, 0, 0, 200, 160, 0, 0}};
+    Options options;
+    options.mask = job::Image{4, 2, {255, 255, 255, 255, 200, 200, 200, 200}};
+    job::Manifest job = half_job();
+    const double area_mm2 = (255 + 128 + 255 + 128) / 255.0;
+    job.materials[0].model_volume_mm3 = area_mm2 / 10;
+    for (job::Layer& layer : job.layers) layer.images[0].area_mm2 = area_mm2;
+    const auto verdict = [&](const Options& with, const job::Image& image) {
+        Twin twin(printer, with);
+        print(twin, {0.05, 0.1}, 2.5, image);
+        return inspect(twin, job, ImageSource([&](int, int) -> Result<job::Image> { return image; })).value();
+    };
+    const Report good = verdict(options, shown);
+    CHECK_MESSAGE(good.passed, (good.reasons.empty() ? "" : good.reasons.front()));
+    CHECK(good.materials[0].cured_mm3 == doctest::Approx(area_mm2 / 10).epsilon(0.005));
+    // The same images on a projector without that mask, and images without mask on this projector.
+    const Report uneven = verdict(Options{}, shown);
+    CHECK(!uneven.passed);
+    CHECK(uneven.reasons.at(0).find("on this projector the images hold") != std::string::npos);
+    const Report bright = verdict(options, {4, 2, {255, 204, 0, 0, 255, 204, 0, 0}});
+    CHECK(!bright.passed);
+    CHECK(bright.log.overlit_pixels == 4);
 }

@@ -68,6 +68,7 @@ std::string report_json(const Report& r) {
                        {"wrong_thickness", r.wrong_thickness},
                        {"wrong_pixels", r.wrong_pixels},
                        {"pixels_lit_twice", r.pixels_lit_twice},
+                       {"overlit_pixels", r.log.overlit_pixels},
                        {"swaps", r.log.swaps},
                        {"short_cleanings", r.log.short_cleanings},
                        {"exposures", r.log.exposures},

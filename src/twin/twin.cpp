@@ -38,6 +38,7 @@ std::string_view without_blanks(std::string_view line) {
 Twin::Twin(const machine::Printer& printer, Options options)
     : printer_(printer),
       options_(std::move(options)),
+      screen_(printer_.projector, options_.mask),
       motors_(printer_, unknown_start(printer_)),
       cure_(printer_),
       fluids_(printer_),
@@ -288,7 +289,9 @@ void Twin::light_on(const job::Image& image) {
         return violation(status.error().message);
     }
     if (last_vat_ < 0) last_vat_ = interlock().hooked_vat().value_or(-1);
-    shown_ = runs_of(image);
+    Screen::Picture picture = screen_.coverage(runs_of(image));
+    log_.overlit_pixels += picture.overlit_px;
+    shown_ = std::move(picture.runs);
     shown_since_s_ = now_s_;
     shown_vat_ = vat_under_light();
     if (shown_vat_ >= 0) change_vat_part(shown_vat_);

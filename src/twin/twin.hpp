@@ -25,6 +25,7 @@
 #include "twin/fluids.hpp"
 #include "twin/line_reader.hpp"
 #include "twin/motors.hpp"
+#include "twin/screen.hpp"
 
 namespace pliant::twin {
 
@@ -38,6 +39,9 @@ struct Options {
     bool report_fans = false;      ///< `M106 P0 S255` whenever a fan changes
     double wait_every_s = 0;       ///< `wait` while idle (builds with NO_TIMEOUTS); 0: never
     double boot_s = 0;             ///< silence after a reset, before `start`
+    /// The projector's mask, of its size: how evenly it lights. None: where the printer file names one, it is unknown
+    /// here, and light is taken for even.
+    std::optional<job::Image> mask{};
 };
 
 /// What happened that must not, or should be known.
@@ -47,6 +51,7 @@ struct Log {
     int swaps = 0;                        ///< another vat was hooked than the one before
     int short_cleanings = 0;  ///< of those, with less spray since the last light than the machine should give
     int exposures = 0;
+    long overlit_pixels = 0;  ///< shown more light than a whole pixel needs, in all exposures
     int homings = 0;
     int bad_lines = 0;
     int resets = 0;
@@ -89,6 +94,7 @@ public:
     [[nodiscard]] const machine::Printer& printer() const { return printer_; }
     [[nodiscard]] const machine::Interlock& interlock() const { return motors_.interlock(); }
     [[nodiscard]] const Log& log() const { return log_; }
+    [[nodiscard]] const Screen& screen() const { return screen_; }
     /// The cured block, closed up to now.
     [[nodiscard]] const Cure& cured();
     [[nodiscard]] const Fluids& fluids() const { return fluids_; }
@@ -146,6 +152,7 @@ private:
 
     const machine::Printer printer_;
     const Options options_;
+    const Screen screen_;
     Motors motors_;
     Cure cure_;
     Fluids fluids_;

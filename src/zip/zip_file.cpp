@@ -3,7 +3,6 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <deque>
 
 namespace pliant {
 namespace {
@@ -24,50 +23,6 @@ std::string text_of(int code) {
 constexpr std::uint64_t max_deflate_ratio = 1032;
 
 }  // namespace
-
-struct ZipWriter::State {
-    std::string path;
-    std::deque<std::string> entries;  ///< libzip reads them when the archive is closed, so they must outlive it
-    Handle archive;
-};
-
-ZipWriter::ZipWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
-ZipWriter::ZipWriter(ZipWriter&&) noexcept = default;
-ZipWriter& ZipWriter::operator=(ZipWriter&&) noexcept = default;
-ZipWriter::~ZipWriter() = default;
-
-Result<ZipWriter> ZipWriter::create(const std::filesystem::path& path) {
-    int code = 0;
-    Handle archive(zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
-    if (!archive) return failure("{}: cannot be written: {}", path.string(), text_of(code));
-    return ZipWriter(std::make_unique<State>(State{path.string(), {}, std::move(archive)}));
-}
-
-Status ZipWriter::add(const std::string& name, std::string bytes, Method method) {
-    zip_t* archive = state_->archive.get();
-    const auto fail = [&] { return failure("{}: {}: {}", state_->path, name, zip_strerror(archive)); };
-    const std::string& kept = state_->entries.emplace_back(std::move(bytes));
-    zip_source_t* source = zip_source_buffer(archive, kept.data(), kept.size(), 0);
-    if (source == nullptr) return fail();
-    const zip_int64_t index = zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
-    if (index < 0) {
-        zip_source_free(source);
-        return fail();
-    }
-    const auto entry = static_cast<zip_uint64_t>(index);
-    constexpr zip_uint16_t first_of_january_1980 = (1 << 5) | 1;
-    const int packing = method == Method::store ? ZIP_CM_STORE : ZIP_CM_DEFLATE;
-    if (zip_set_file_compression(archive, entry, packing, 0) != 0) return fail();
-    if (zip_file_set_dostime(archive, entry, 0, first_of_january_1980, 0) != 0) return fail();
-    return {};
-}
-
-Status ZipWriter::close() {
-    if (zip_close(state_->archive.get()) != 0)
-        return failure("{}: cannot be written: {}", state_->path, zip_strerror(state_->archive.get()));
-    (void)state_->archive.release();
-    return {};
-}
 
 struct ZipReader::State {
     std::string path;

@@ -1,26 +1,28 @@
-// Zip files: written whole and reproducibly, read with limits. The only user of libzip.
+// Zip files: written whole and reproducibly, read with limits. Read by libzip.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/error.hpp"
 
 namespace pliant {
 
-/// Gathers entries in memory; close() writes the file.
+/// Writes entries as they come; what stays in memory is a line per entry. Zip64 where there are many.
 class ZipWriter {
 public:
     [[nodiscard]] static Result<ZipWriter> create(const std::filesystem::path& path);
     ZipWriter(ZipWriter&&) noexcept;
     ZipWriter& operator=(ZipWriter&&) noexcept;
-    ~ZipWriter();  ///< without close() nothing has been written
+    ~ZipWriter();  ///< without close() the file is removed
 
     enum class Method { store, deflate };
-    /// Every entry gets the same date, so that equal calls give equal bytes.
-    [[nodiscard]] Status add(const std::string& name, std::string bytes, Method method);
+    /// Every entry gets the same date, so that equal calls give equal bytes. Errors: a name that was used before or has
+    /// more than 65535 bytes, an entry of 4 GB or more, the disk.
+    [[nodiscard]] Status add(const std::string& name, std::string_view bytes, Method method);
     [[nodiscard]] Status close();
 
 private:

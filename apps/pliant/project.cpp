@@ -1,0 +1,219 @@
+// pliant project: the projector by itself: displays, test patterns, what is measured on them.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "host/projector.hpp"
+#include "host/test_patterns.hpp"
+#include "job/png.hpp"
+#include "machine/printer.hpp"
+
+namespace pliant::app {
+namespace {
+
+struct Options {
+    std::string where = "0";
+    std::string printer, pattern, image, readings, save;
+    std::vector<double> measured_mm;
+    std::vector<int> size_px, points = {5, 3};
+    int square_px = 1;
+    double seconds = 0, gamma = 1;
+    bool list = false, release = false;
+    Output output;
+};
+
+struct Setting {
+    std::optional<machine::Printer> printer;
+    host::PatternOptions pattern;
+};
+
+/// Size and scale from the printer file, or as given.
+Result<Setting> read_setting(const Options& options) {
+    Setting setting;
+    if (!options.printer.empty()) {
+        Result<machine::Printer> printer = machine::load_printer(options.printer);
+        if (!printer) return tl::unexpected(printer.error());
+        setting.printer = std::move(*printer);
+        const machine::Projector& p = setting.printer->projector;
+        setting.pattern.width_px = p.width_px;
+        setting.pattern.height_px = p.height_px;
+        setting.pattern.pixel_um = p.pixel_um;
+    } else if (options.size_px.size() == 2) {
+        setting.pattern.width_px = options.size_px[0];
+        setting.pattern.height_px = options.size_px[1];
+    }
+    setting.pattern.square_px = options.square_px;
+    setting.pattern.columns = options.points[0];
+    setting.pattern.rows = options.points[1];
+    return setting;
+}
+
+Status list_displays() {
+    const auto displays = host::list_displays();
+    if (!displays) return tl::unexpected(displays.error());
+    for (const host::PanelInfo& d : *displays) {
+        const std::string rate = d.refresh_hz > 0 ? fmt::format("{:g} Hz", d.refresh_hz) : "rate not known";
+        fmt::print("display {}: {} x {} px, {}, {}\n", d.number, d.width_px, d.height_px, rate, d.name);
+    }
+    return {};
+}
+
+Status release(const Options& options) {
+    const Result<bool> released = host::release_display(std::atoi(options.where.c_str()));
+    if (!released) return tl::unexpected(released.error());
+    if (!options.output.quiet) fmt::print("{}\n", *released ? "given back" : "nothing held it");
+    return {};
+}
+
+/// Measured distances become the printer file's pixel.
+Status calibrate_size(const Options& options, const Setting& setting) {
+    const auto& p = setting.pattern;
+    if (p.width_px == 0) return input_error("--measured: give --printer, or --size");
+    const auto size = host::pixel_size(p.width_px, p.height_px, options.measured_mm[0], options.measured_mm[1]);
+    if (!size) return tl::unexpected(size.error());
+    fmt::print("x {:.3f} um, y {:.3f} um a pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
+               size->off_percent);
+    if (p.pixel_um > 0)
+        fmt::print("the printer file says {:.3f} um: parts come out {:+.2f} %\n", p.pixel_um,
+                   100 * (size->pixel_um / p.pixel_um - 1));
+    fmt::print("put into its [projector]:\npixel = \"{:.3f} um\"\n", size->pixel_um);
+    if (std::abs(size->off_percent) > 0.2)
+        fmt::print(stderr, "warning: pixels are not square to 0.2 %: square up projector and vat floor first\n");
+    return {};
+}
+
+Status make_mask(const Options& options, const Setting& setting) {
+    const auto& p = setting.pattern;
+    if (p.width_px == 0) return input_error("--mask-from: give --printer, or --size");
+    if (options.save.empty()) return input_error("--mask-from: give -o, the file for the mask (.png)");
+    if (!(options.gamma >= 0.2 && options.gamma <= 5))
+        return input_error("--gamma {:g}: must be 0.2 to 5", options.gamma);
+    const Result<std::string> text = read_file(options.readings, 1 << 20);
+    if (!text) return tl::unexpected(text.error());
+    const auto table = host::parse_light_table(*text, options.readings);
+    if (!table) return tl::unexpected(table.error());
+    const host::LightMask mask = host::light_mask(*table, p.width_px, p.height_px, options.gamma);
+    if (Status status = write_file(options.save, job::encode_png(mask.mask)); !status) return status;
+    fmt::print("{}: {} x {} px; every pixel gets {:.1f} % of the brightest place's light\n", options.save, p.width_px,
+               p.height_px, 100 * mask.least);
+    fmt::print("put it beside the printer file, and into its [projector]:\nmask = \"{}\"\n",
+               std::filesystem::path(options.save).filename().string());
+    return {};
+}
+
+Result<job::Image> read_image(const std::string& file) {
+    const Result<std::string> bytes = read_file(file, std::uintmax_t{1} << 30);
+    if (!bytes) return tl::unexpected(bytes.error());
+    const auto size = job::any_png_size(*bytes, file);
+    if (!size) return tl::unexpected(size.error());
+    return job::decode_any_png(*bytes, *size, file);
+}
+
+Result<job::Image> wanted_image(const Options& options, const host::PatternOptions& pattern) {
+    if (!options.image.empty()) return read_image(options.image);
+    return host::test_pattern(options.pattern, pattern);
+}
+
+/// Until the time is over or Ctrl-C comes. The projector itself ends a light that has an end.
+Status light(const Options& options, Setting setting) {
+    host::ScreenOptions screen;
+    screen.width_px = setting.pattern.width_px;
+    screen.height_px = setting.pattern.height_px;
+    if (setting.printer) screen.longest_light_s = setting.printer->limits.exposure_s;
+    if (options.seconds == 0) screen.longest_light_s = 86400;
+    auto projector = host::ScreenProjector::open(options.where, screen);
+    if (!projector) return tl::unexpected(projector.error());
+    const host::PanelInfo& panel = projector->panel();
+    setting.pattern.width_px = panel.width_px;
+    setting.pattern.height_px = panel.height_px;
+    const Result<job::Image> image = wanted_image(options, setting.pattern);
+    if (!image) return tl::unexpected(image.error());
+    const auto progress = terminal_progress(options.output);
+    const Status lit = options.seconds > 0 ? projector->show_for(*image, options.seconds) : projector->show(*image);
+    if (!lit) return lit;
+    if (!options.output.quiet)
+        fmt::print("{} x {} px at {:g} Hz ({}), {}; Ctrl-C is black\n", panel.width_px, panel.height_px,
+                   panel.refresh_hz, panel.name,
+                   options.seconds > 0 ? fmt::format("{:g} s", std::min(options.seconds, screen.longest_light_s))
+                                       : "until it is ended");
+    std::fflush(stdout);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto end = begin + std::chrono::duration<double>(
+                                 std::min(options.seconds > 0 ? options.seconds : 86400, screen.longest_light_s));
+    while (!progress->cancelled() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (progress->cancelled()) {
+        if (Status status = projector->black(); !status) return status;
+    } else if (const auto finished = projector->finish(); !finished) {
+        return tl::unexpected(finished.error());
+    }
+    const auto& measured = projector->last_light();
+    if (!options.output.quiet && measured)
+        fmt::print("on for {:.4f} s, {} frames, the longest {:.1f} ms\n", measured->on_s, measured->frames,
+                   1000 * measured->longest_frame_s);
+    return {};
+}
+
+Status save_pattern(const Options& options, const Setting& setting) {
+    if (setting.pattern.width_px == 0) return input_error("-o: give --printer, or --size");
+    const Result<job::Image> image = wanted_image(options, setting.pattern);
+    if (!image) return tl::unexpected(image.error());
+    return write_file(options.save, job::encode_png(*image));
+}
+
+Status run_project(const Options& options) {
+    if (options.list) return list_displays();
+    if (options.release && options.pattern.empty() && options.image.empty()) return release(options);
+    if (!(options.seconds >= 0 && options.seconds <= 86400))
+        return input_error("--seconds {:g}: must be above 0, at most a day", options.seconds);
+    const Result<Setting> setting = read_setting(options);
+    if (!setting) return tl::unexpected(setting.error());
+    if (!options.measured_mm.empty()) return calibrate_size(options, *setting);
+    if (!options.readings.empty()) return make_mask(options, *setting);
+    if (options.pattern.empty() == options.image.empty())
+        return input_error("give --pattern or --image (or --list, --release, --measured, --mask-from)");
+    if (!options.save.empty()) return save_pattern(options, *setting);
+    Status status = light(options, *setting);
+    if (options.release && status) status = release(options);
+    return status;
+}
+
+}  // namespace
+
+void add_project(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        app.add_subcommand("project", "show test patterns and images on the projector, and calibrate it");
+    command->add_option("projector", options->where, "number of a display (0), or a folder for the images");
+    command->add_flag("--list", options->list, "list the displays");
+    command->add_option("--printer", options->printer, "printer file: the panel must have its size");
+    command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, without a printer file")->expected(2);
+    command->add_option("--pattern", options->pattern, "white, black, checkerboard, grid, border, ramp or points");
+    command->add_option("--square", options->square_px, "pixels of a checkerboard's square; 1 if not given");
+    command->add_option("--points", options->points, "COLUMNS ROWS of the pattern points; 5 3 if not given")
+        ->expected(2);
+    command->add_option("--image", options->image, "image file (.png) of the panel's size");
+    command->add_option("--seconds", options->seconds, "how long; until Ctrl-C if not given");
+    command->add_flag("--release", options->release, "give the display back, which otherwise stays black");
+    command
+        ->add_option("--measured", options->measured_mm, "X Y: what the rectangle of the pattern border measures, mm")
+        ->expected(2);
+    command->add_option("--mask-from", options->readings, "table of light readings: makes a mask of them");
+    command->add_option("--gamma", options->gamma, "of the projector, for the mask; 1 if not given");
+    command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
+    add_output_options(*command, options->output, false);
+    command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");
+    command->callback([options, &status] {
+        const Status result = run_project(*options);
+        status = result ? exit_done : report(result.error());
+    });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,337 @@
+#include "slice_settings.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/units.hpp"
+#include "job_tools.hpp"
+#include "machine/working_curve.hpp"
+
+namespace pliant::app {
+namespace {
+
+/// A material with what the printer file says of its resin; for one that it does not know, the longest exposures that
+/// it has are taken.
+job::Material with_exposure(const std::string& name, const std::string& resin, const machine::Printer& printer,
+                            std::vector<std::string>& warnings) {
+    job::Material entry;
+    entry.name = name;
+    entry.resin = resin;
+    if (const machine::Resin* known = printer.find_resin(resin)) {
+        entry.exposure_s = known->exposure_s;
+        entry.bottom_exposure_s = known->bottom_exposure_s;
+        return entry;
+    }
+    for (const machine::Resin& other : printer.resins) {
+        entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
+        entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
+    }
+    warnings.push_back(
+        fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed",
+                    resin, entry.exposure_s, entry.bottom_exposure_s));
+    return entry;
+}
+
+std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Printer& printer) {
+    std::vector<job::Material> materials;
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        const auto same_name = [&name = material](const job::Material& known) { return known.name == name; };
+        if (std::any_of(materials.begin(), materials.end(), same_name)) continue;
+        job::Material entry = with_exposure(material, resin, printer, drawing.warnings);
+        if (const auto own = drawing.exposure_of_material.find(material); own != drawing.exposure_of_material.end()) {
+            if (own->second.first > 0) entry.exposure_s = own->second.first;
+            entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, entry.exposure_s);
+            if (own->second.second > 0) entry.bottom_exposure_s = own->second.second;
+        }
+        materials.push_back(std::move(entry));
+    }
+    return materials;
+}
+
+/// A length in micrometres, as an option gives it; 0 where it was not given.
+Result<double> length_um(const char* option, const std::string& text, double least_um, double most_um) {
+    if (text.empty()) return 0;
+    const Result<double> length = parse_quantity(text, Dimension::length);
+    if (!length) return input_error("{}: {}", option, length.error().message);
+    if (!(*length * 1e6 >= least_um - 1e-6 && *length * 1e6 <= most_um + 1e-6))
+        return input_error("{} {}: must be {:.6g} to {:.6g} mm", option, text, least_um / 1000, most_um / 1000);
+    return *length * 1e6;
+}
+
+Result<int> layer_height_um(const char* option, const std::string& text) {
+    const Result<double> height = parse_quantity(text, Dimension::length);
+    if (!height) return input_error("{}: {}", option, height.error().message);
+    const double um = std::round(*height * 1e6);
+    if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
+        return input_error("{} {}: a whole number of micrometres from 1 to 1000 is needed", option, text);
+    return static_cast<int>(um);
+}
+
+/// Of every material, as the resin that it is printed in asks for.
+std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
+    std::map<std::string, slice::Compensation> result;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr) continue;
+        const slice::Compensation c{static_cast<double>(resin->xy_compensation_um),
+                                    static_cast<double>(resin->elephant_foot_um), resin->elephant_foot_layers,
+                                    static_cast<double>(resin->bleed_compensation_um)};
+        if (c.grow_um != 0 || c.foot_um != 0 || c.bleed_um != 0) result[material] = c;
+    }
+    return result;
+}
+
+/// How layers of each material are lit where they are not all alike.
+std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, const machine::Printer& printer,
+                                                        int bottom_layers, bool many_heights) {
+    std::map<std::string, job::ExposureRule> rules;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr) continue;
+        job::ExposureRule rule{bottom_layers, resin->transition_layers, 0, printer.layer_um, {}};
+        if (many_heights) rule.penetration_um = machine::working_curve(printer, *resin).penetration_um;
+        if (rule.transition_layers > 0 || rule.penetration_um > 0) rules[material] = rule;
+    }
+    return rules;
+}
+
+/// A whole number without anything around it; -1 for anything else.
+int plain_number(const std::string& text) {
+    int number = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? number : -1;
+}
+
+struct Pair {
+    std::string first, second;
+    int pixels = 0, layers = 0;
+};
+
+/// FIRST+SECOND=PIXELS or FIRST+SECOND=PIXELS,LAYERS.
+Result<Pair> read_pair(const char* option, const std::string& text, int default_layers) {
+    const std::size_t equals = text.rfind('='), plus = text.find('+');
+    if (equals == std::string::npos || plus == std::string::npos || plus > equals)
+        return input_error("{} {}: write MATERIAL+MATERIAL=PIXELS or MATERIAL+MATERIAL=PIXELS,LAYERS", option, text);
+    const std::string numbers = text.substr(equals + 1);
+    const std::size_t comma = std::min(numbers.find(','), numbers.size());
+    Pair pair{text.substr(0, plus), text.substr(plus + 1, equals - plus - 1), 0, default_layers};
+    pair.pixels = plain_number(numbers.substr(0, comma));
+    if (comma < numbers.size()) pair.layers = plain_number(numbers.substr(comma + 1));
+    if (pair.pixels < 0 || pair.layers < 0)
+        return input_error("{} {}: \"{}\" must be whole numbers, as in 4 or 4,2", option, text, numbers);
+    return pair;
+}
+
+Status set_pairs(const SliceOptions& options, const Drawing& drawing, slice::Settings& slicing) {
+    if (!drawing.stacks.empty() && !(options.interlocks.empty() && options.overlaps.empty()))
+        return input_error("--interlock, --overlap: layer images are printed as they are");
+    for (const std::string& text : options.interlocks) {
+        const Result<Pair> pair = read_pair("--interlock", text, 1);
+        if (!pair) return tl::unexpected(pair.error());
+        slicing.teeth.push_back({pair->first, pair->second, pair->pixels, pair->layers});
+    }
+    for (const std::string& text : options.overlaps) {
+        const Result<Pair> pair = read_pair("--overlap", text, 0);
+        if (!pair) return tl::unexpected(pair.error());
+        slicing.bonds.push_back({pair->first, pair->second, pair->pixels, pair->layers});
+    }
+    return {};
+}
+
+Result<double> seconds_of(const std::string& option, const std::string& text) {
+    const Result<double> seconds = parse_quantity(text, Dimension::time);
+    if (!seconds) return input_error("--exposure {}: {}", option, seconds.error().message);
+    if (!(*seconds > 0 && *seconds <= 3600))
+        return input_error("--exposure {}: must be above 0 s and at most an hour", option);
+    return *seconds;
+}
+
+/// MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME.
+Status set_exposure(const std::string& text, job::JobSettings& settings) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+        return input_error("--exposure {}: write MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME",
+                           text);
+    std::string name = text.substr(0, equals);
+    const std::string times = text.substr(equals + 1);
+    const std::size_t colon = name.rfind(':'), comma = std::min(times.find(','), times.size());
+    std::optional<job::ExposureSpan> span;
+    if (colon != std::string::npos) {
+        const std::string layers = name.substr(colon + 1);
+        const std::size_t dash = std::min(layers.find('-'), layers.size());
+        span = job::ExposureSpan{plain_number(layers.substr(0, dash)), 0, 0};
+        span->last = dash < layers.size() ? plain_number(layers.substr(dash + 1)) : span->first;
+        if (span->first < 0 || span->last < span->first || comma < times.size())
+            return input_error("--exposure {}: layers are FIRST-LAST, counted from 0, and have one time", text);
+        name.resize(colon);
+    }
+    const auto material = std::find_if(settings.materials.begin(), settings.materials.end(),
+                                       [&](const job::Material& m) { return m.name == name; });
+    if (material == settings.materials.end())
+        return input_error("--exposure {}: there is no material \"{}\"", text, name);
+    const Result<double> seconds = seconds_of(text, times.substr(0, comma));
+    if (!seconds) return tl::unexpected(seconds.error());
+    if (span) {
+        span->seconds = *seconds;
+        auto [rule, added] = settings.exposures.try_emplace(name);
+        if (added) rule->second.bottom_layers = settings.bottom_layers;
+        rule->second.spans.push_back(*span);
+        return {};
+    }
+    material->exposure_s = *seconds;
+    material->bottom_exposure_s = std::max(material->bottom_exposure_s, *seconds);
+    if (comma == times.size()) return {};
+    const Result<double> bottom = seconds_of(text, times.substr(comma + 1));
+    if (!bottom) return tl::unexpected(bottom.error());
+    material->bottom_exposure_s = *bottom;
+    return {};
+}
+
+int bottom_layers(const machine::Printer& printer) {
+    int layers = 0;
+    for (const machine::Resin& resin : printer.resins) layers = std::max(layers, resin.bottom_layers);
+    return layers;
+}
+
+slice::Raster raster_of(const machine::Projector& p) {
+    return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
+}
+
+/// The mask lies beside the printer file and has the projector's size.
+Result<slice::LightCorrection> light_of(const machine::Projector& projector, const std::string& printer) {
+    slice::LightCorrection light;
+    if (!projector.grey.empty()) light.grey = slice::grey_values(projector.grey);
+    Result<std::optional<job::Image>> mask = load_mask(projector, printer);
+    if (!mask) return tl::unexpected(mask.error());
+    light.mask = std::move(*mask);
+    return light;
+}
+
+/// The material of supports, in the resin of its name where no body has it.
+void add_support_material(const SliceOptions& options, Drawing& drawing) {
+    if (options.support.empty()) return;
+    const auto known = [&](const auto& pair) { return pair.first == options.support; };
+    if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
+        drawing.resin_of_material.emplace_back(options.support, options.support);
+}
+
+/// What layer images cannot be asked for.
+Status check_stacks(const SliceOptions& options, const Drawing& drawing) {
+    if (drawing.stacks.empty()) return {};
+    const std::pair<const char*, bool> given[] = {{"--copies", options.copies != 1},
+                                                  {"--turn", !options.turn.empty()},
+                                                  {"--least-layer", !options.least_layer.empty()},
+                                                  {"--support", !options.support.empty()},
+                                                  {"--hollow", !options.hollow.empty()}};
+    for (const auto& [option, is_given] : given) {
+        if (is_given) return input_error("{}: layer images are printed as they are", option);
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<job::JobSettings> job_settings(const SliceOptions& options, const machine::Printer& printer, Drawing& drawing) {
+    if (Status status = check_stacks(options, drawing); !status) return tl::unexpected(status.error());
+    add_support_material(options, drawing);
+    if (Status status = set_resins(options.resins, drawing); !status) return tl::unexpected(status.error());
+    job::JobSettings settings;
+    settings.name = drawing.name;
+    settings.pliant_version = PLIANT_VERSION;
+    settings.bottom_layers = bottom_layers(printer);
+    settings.slicing.raster = raster_of(printer.projector);
+    Result<slice::LightCorrection> light = light_of(printer.projector, options.printer);
+    if (!light) return tl::unexpected(light.error());
+    settings.light = std::move(*light);
+    settings.copies = options.copies;
+    const Result<int> layer_um = options.layer.empty() ? printer.layer_um : layer_height_um("--layer", options.layer);
+    if (!layer_um) return tl::unexpected(layer_um.error());
+    settings.slicing.layer_um = *layer_um;
+    settings.materials = with_exposures(drawing, printer);
+    settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !options.least_layer.empty());
+    for (const std::string& text : options.exposures) {
+        if (Status status = set_exposure(text, settings); !status) return tl::unexpected(status.error());
+    }
+    settings.slicing.compensation = compensations(drawing, printer);
+    if (!drawing.stacks.empty() && !settings.slicing.compensation.empty()) {
+        settings.slicing.compensation.clear();
+        drawing.warnings.emplace_back(
+            "xy_compensation, elephant_foot and bleed_compensation: layer images are printed as they are");
+    }
+    if (Status status = set_pairs(options, drawing, settings.slicing); !status) return tl::unexpected(status.error());
+    const Result<double> least = length_um("--least-feature", options.least_feature, 1e-3, 10000);
+    if (!least) return tl::unexpected(least.error());
+    settings.least_feature_um = *least;
+    settings.slicing.rules.anti_alias = !options.no_anti_alias;
+    settings.slicing.rules.threshold = options.threshold;
+    return settings;
+}
+
+job::Request request_of(const SliceOptions& options, const job::JobSettings& settings) {
+    job::Request request{options.inputs, options.assignments, options.turn, options.spacing};
+    if (!settings.slicing.tops_um.empty()) {
+        const Result<int> least = layer_height_um("--least-layer", options.least_layer);
+        request.least_layer_um = least.value_or(0);
+    }
+    const std::pair<const char*, const std::string*> texts[] = {{"support", &options.support},
+                                                                {"support_angle", &options.support_angle},
+                                                                {"support_spacing", &options.support_spacing},
+                                                                {"support_tip", &options.support_tip},
+                                                                {"support_pillar", &options.support_pillar},
+                                                                {"lift", &options.lift},
+                                                                {"raft", &options.raft},
+                                                                {"hollow", &options.hollow},
+                                                                {"drain", &options.drain}};
+    for (const auto& [key, text] : texts) {
+        if (!text->empty()) request.supports.emplace_back(key, *text);
+    }
+    return request;
+}
+
+void add_slice_options(CLI::App& command, SliceOptions& options) {
+    command
+        .add_option("inputs", options.inputs,
+                    "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE or "
+                    "folder or zip of layer images")
+        ->required();
+    command.add_option("--printer", options.printer, "printer file (TOML)")->required();
+    command.add_option("-o,--output", options.job, "job file to write (.zip)")->required();
+    command.add_option("--picture", options.picture, "PNG file: the part from the front, and some layers");
+    command.add_option("--layer", options.layer, "layer height, as in \"50 um\"; the printer file's where not given");
+    command.add_option("--least-layer", options.least_layer,
+                       "layers follow the slope: as thin as this where it is flat, as thick as --layer where steep");
+    const auto each = [&](const char* name, std::vector<std::string>& values, const char* type, const char* text) {
+        command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
+    };
+    each("--resin", options.resins, "MATERIAL=RESIN", "what a material is printed in");
+    each("--exposure", options.exposures, "MATERIAL[:FIRST-LAST]=TIME[,BOTTOM]",
+         "light of a material, and of its first layers; or of some layers");
+    each("--interlock", options.interlocks, "A+B=PIXELS[,LAYERS]",
+         "teeth so deep between two materials, changing sides every so many layers");
+    each("--overlap", options.overlaps, "A+B=PIXELS[,LAYERS]",
+         "A lights so much of B too where they meet, side by side and above each other");
+    command.add_option("--least-feature", options.least_feature,
+                       "warn of walls and tips narrower than this, as in \"0.3 mm\"");
+    command.add_option("--copies", options.copies, "how many of the part, side by side");
+    command.add_option("--spacing", options.spacing, "between copies, as in \"2 mm\"")->capture_default_str();
+    command.add_option("--turn", options.turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
+    command.add_flag("--no-anti-alias", options.no_anti_alias, "pixels are full or dark");
+    command.add_option("--threshold", options.threshold, "without anti-aliasing: least coverage of a full pixel")
+        ->capture_default_str();
+    command.add_option("--support", options.support, "supports in this material under islands and overhangs");
+    command.add_option("--support-angle", options.support_angle,
+                       "undersides flatter than so many degrees are supported; 45, 0: islands only");
+    command.add_option("--support-spacing", options.support_spacing, "between tips, at most; \"3 mm\"");
+    command.add_option("--support-tip", options.support_tip, "diameter where it touches the part; \"0.4 mm\"");
+    command.add_option("--support-pillar", options.support_pillar, "diameter below; \"1 mm\"");
+    command.add_option("--lift", options.lift, "how high above the platform the part begins, on supports");
+    command.add_option("--raft", options.raft, "thickness of a plate under the supports");
+    command.add_option("--hollow", options.hollow, "hollow the part out, down to walls of this, as in \"2 mm\"");
+    command.add_option("--drain", options.drain, "diameter of the holes that let the resin out of a hollow part");
+    each("--set", options.assignments, "KEY=VALUE", "change any key of the robot file");
+    add_output_options(command, options.output, false);
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,36 @@
+// What is known about a matrix before its numbers: the order of elimination and where each of its blocks goes.
+#pragma once
+
+#include <vector>
+
+#include "linalg/elimination.hpp"
+#include "linalg/panel.hpp"
+#include "linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// Where a block of the matrix goes.
+struct Source {
+    int pair;        ///< of the pattern
+    int row;         ///< node, counted from the top of the panel
+    int column;      ///< node of the supernode
+    bool transpose;  ///< the order of elimination turned the pair round
+};
+
+struct Analysis {
+    SymmetricPattern pattern;
+    Elimination e;
+    std::vector<std::vector<int>> children;  ///< (supernodes)
+    std::vector<Source> sources;             ///< in the order of the supernodes
+    std::vector<int> source_start;           ///< (supernodes + 1)
+
+    /// Row of a node in the front of s: its own nodes first, then those below.
+    [[nodiscard]] int local_row(int s, int node) const;
+    /// Where the rows below a child are in the front of its parent s.
+    [[nodiscard]] std::vector<Stretch> stretches(int child, int s) const;
+};
+
+/// Copies the pattern.
+[[nodiscard]] Analysis analyse(const SymmetricPattern& pattern);
+
+}  // namespace pliant::linalg

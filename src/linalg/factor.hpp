@@ -1,0 +1,58 @@
+// The numbers of a multifrontal factorisation (Duff and Reid 1983), in single or double precision.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/aligned_array.hpp"
+#include "core/array_pool.hpp"
+#include "linalg/analysis.hpp"
+#include "linalg/multifrontal.hpp"
+#include "linalg/panel.hpp"
+
+namespace pliant::linalg {
+
+/// Real: float or double. The same bits on any number of cores.
+template <class Real>
+class Factor {
+public:
+    explicit Factor(std::shared_ptr<const Analysis> analysis);
+
+    /// False if the matrix is not positive definite in this precision.
+    [[nodiscard]] bool factorise(std::span<const double> values);
+    /// In place, for at most four right-hand sides of pattern.size() each, one after the other.
+    void solve(double* right_side, int count) const;
+
+    /// For one that will not factorise again: the work space goes, the factor stays.
+    void release_work_space();
+
+    [[nodiscard]] const FrontLayout& layout() const { return layout_; }
+
+private:
+    [[nodiscard]] int block() const { return analysis_->pattern.block; }
+    [[nodiscard]] Panel<Real> panel(int s) const;
+    [[nodiscard]] std::size_t leading(int s) const;
+    /// Updates of the children begin at `below`; its own goes to `above`.
+    [[nodiscard]] bool eliminate_supernode(int s, std::span<const double> values, const Real* below, Real* above) const;
+    [[nodiscard]] bool eliminate_branch(const FrontLayout::Branch& branch, std::span<const double> values) const;
+    template <int b>
+    void add_sources(int s, std::span<const double> values) const;
+    void add_to_panel(int child, const Real* update, const std::vector<Stretch>& stretches, int s) const;
+    void add_to_update(int child, const Real* update, const std::vector<Stretch>& stretches, int s, Real* to) const;
+
+    class Sweep;  ///< the right-hand sides on their way through the tree
+
+    std::shared_ptr<const Analysis> analysis_;
+    FrontLayout layout_;
+    AlignedArray<Real> factor_;
+    AlignedArray<Real> work_;
+    mutable ArrayPool<Real> branches_;  ///< space of each that is worked on
+    mutable ArrayPool<Real> scratch_;   ///< of solve()
+};
+
+extern template class Factor<float>;
+extern template class Factor<double>;
+
+}  // namespace pliant::linalg

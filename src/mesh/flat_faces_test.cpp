@@ -1,0 +1,140 @@
+#include "mesh/flat_faces.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/mesh_report.hpp"
+#include "mesh/mesher.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+Solid solid(decltype(SolidNode::shape) shape) {
+    return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
+}
+
+Solid box(Vec3 low, Vec3 high) {
+    return solid(BoxSolid{low, high});
+}
+
+Solid combined(CombinedSolid::Operation operation, std::vector<Solid> parts) {
+    return solid(CombinedSolid{operation, std::move(parts)});
+}
+
+TriMesh triangles(const Solid& shape, double tolerance = 0.05) {
+    const Result<TriMesh> surface = tessellate(shape, tolerance);
+    REQUIRE(surface);
+    return *surface;
+}
+
+/// Coordinates as an STL file holds them.
+TriMesh rounded(TriMesh surface) {
+    for (Vec3& p : surface.points) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
+    return surface;
+}
+
+std::size_t face_count(const FacetedSurface& surface) {
+    std::size_t count = 0;
+    for (const auto& piece : surface.pieces) {
+        for (const auto& shell : piece) count += shell.size();
+    }
+    return count;
+}
+
+/// Turned so that no face lies along an axis.
+Solid askew(const Solid& shape) {
+    return solid(RotatedSolid{shape, {1, 2, 3}, {1, 0.3, 0.7}, 0.6});
+}
+
+TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size) {
+    Progress silent;
+    Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = 1, .close_gaps = 1e-3 * size}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    return *mesh;
+}
+
+/// Area that two regions share, by the nodes of their faces.
+double shared_area(const TetMesh& mesh, int one, int other) {
+    const auto key = [](const Face& face) {
+        std::array<int, 3> nodes = {face.nodes[0], face.nodes[1], face.nodes[2]};
+        std::sort(nodes.begin(), nodes.end());
+        return nodes;
+    };
+    std::vector<std::array<int, 3>> theirs;
+    for (const Face& face : region_faces(mesh, other)) theirs.push_back(key(face));
+    std::sort(theirs.begin(), theirs.end());
+    double area = 0;
+    for (const Face& face : region_faces(mesh, one)) {
+        if (!std::binary_search(theirs.begin(), theirs.end(), key(face))) continue;
+        const auto at = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(face.nodes[k])]; };
+        area += norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
+    }
+    return area;
+}
+
+using Operation = CombinedSolid::Operation;
+
+}  // namespace
+
+TEST_CASE("triangles become the faces that were drawn: holes, cavities and coordinates of 32 bits too") {
+    const Solid frame = combined(Operation::subtract, {box({0, 0, 0}, {9, 8, 7}), box({2, 2, -1}, {5, 5, 8})});
+    const Solid hollow = combined(Operation::subtract, {box({0, 0, 0}, {9, 8, 7}), box({2, 2, 2}, {5, 5, 5})});
+    struct Row {
+        Solid shape;
+        std::size_t faces, shells;
+        double volume;
+    };
+    for (const Row& row :
+         {Row{box({0, 0, 0}, {1, 2, 3}), 6, 1, 6}, Row{frame, 10, 1, 504 - 63}, Row{hollow, 12, 2, 504 - 27}}) {
+        for (const Solid& shape : {row.shape, askew(row.shape)}) {
+            const TriMesh surface = rounded(triangles(shape));
+            const Result<FacetedSurface> faceted = flat_faces(surface, 100);
+            REQUIRE_MESSAGE(faceted, (faceted ? "" : faceted.error().message));
+            CHECK(face_count(*faceted) == row.faces);
+            REQUIRE(faceted->pieces.size() == 1);
+            CHECK(faceted->pieces[0].size() == row.shells);
+            const Result<Solid> whole = polyhedron(surface);
+            REQUIRE(whole);
+            const Result<double> volume = solid_volume(*whole);
+            REQUIRE_MESSAGE(volume, (volume ? "" : volume.error().message));
+            CHECK(*volume == doctest::Approx(row.volume).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("what is open, or has too many faces, is refused with a reason") {
+    TriMesh open = triangles(box({0, 0, 0}, {1, 1, 1}));
+    open.triangles.pop_back();
+    CHECK_FALSE(flat_faces(open, 100));
+    const Result<FacetedSurface> many = flat_faces(triangles(solid(SphereSolid{{0, 0, 0}, 5})), 100);
+    REQUIRE_FALSE(many);
+    CHECK(many.error().message.find("up to 100 can be joined") != std::string::npos);
+}
+
+TEST_CASE("surfaces that touch each other or a drawn body share the nodes of their common face") {
+    const TriMesh below = rounded(triangles(askew(box({0, 0, 0}, {20, 20, 5}))));
+    const TriMesh above = rounded(triangles(askew(box({5, 5, 5}, {12, 12, 15}))));
+    const TetMesh both = mesh_of({{"below", below}, {"above", above}}, 3);
+    CHECK(volume(both, 0) == doctest::Approx(2000).epsilon(1e-4));
+    CHECK(volume(both, 1) == doctest::Approx(490).epsilon(1e-4));
+    CHECK(shared_area(both, 0, 1) == doctest::Approx(49).epsilon(1e-4));
+    const TetMesh mixed = mesh_of({{"below", below}, {"above", askew(box({5, 5, 5}, {12, 12, 15}))}}, 3);
+    CHECK(shared_area(mixed, 0, 1) == doctest::Approx(49).epsilon(1e-4));
+}
+
+TEST_CASE("of surfaces that overlap the later one has what they share; a cylinder of chords joins too") {
+    const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
+    const TriMesh pin = triangles(solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3}), 0.3);
+    const TetMesh mesh = mesh_of({{"plate", plate}, {"pin", pin}}, 3);
+    const double whole = signed_volume(pin);
+    CHECK(whole == doctest::Approx(9 * std::numbers::pi * 13).epsilon(0.05));
+    CHECK(volume(mesh, 1) == doctest::Approx(whole).epsilon(1e-6));
+    CHECK(volume(mesh, 0) == doctest::Approx(2000 - whole * 3 / 13).epsilon(1e-4));  // the chords are no prism
+    REQUIRE(mesh.notes.size() >= 1);
+    CHECK(mesh.notes[0].find("overlap") != std::string::npos);
+}

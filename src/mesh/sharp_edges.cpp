@@ -1,0 +1,231 @@
+#include "mesh/sharp_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+namespace pliant::mesh {
+namespace {
+
+/// Points of the surface, in order.
+using Chain = std::vector<int>;
+
+constexpr double inside = 0.5;
+/// Between edges that do not meet, as a share of the mesh size.
+constexpr double least_room = 0.02;
+
+class EdgeFinder {
+public:
+    EdgeFinder(const TriangleTree& tree, double size, double angle_deg)
+        : tree_(tree), size_(size), least_cosine_(std::cos(angle_deg * std::numbers::pi / 180)) {}
+
+    /// Chains of sharp edges that bound material, broken where three or more meet and at sharp bends.
+    std::vector<Chain> find() {
+        collect();
+        std::vector<Chain> lines;
+        for (const auto& [node, ends] : next_) {
+            if (ends.size() != 2) {
+                for (const int end : ends) walk(node, end, lines);
+            }
+        }
+        for (const auto& [node, ends] : next_) {  // what is left are closed loops
+            for (const int end : ends) walk(node, end, lines);
+        }
+        return lines;
+    }
+
+private:
+    void collect() {
+        std::map<std::pair<int, int>, std::vector<int>> triangles_of;
+        const TriMesh& surface = tree_.surface();
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto [low, high] = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
+                triangles_of[{low, high}].push_back(static_cast<int>(t));
+            }
+        }
+        for (const auto& [edge, triangles] : triangles_of) {
+            if (triangles.size() != 2 || dot(normal(triangles[0]), normal(triangles[1])) > least_cosine_) continue;
+            if (!bounds_material(edge.first, edge.second)) continue;
+            next_[edge.first].push_back(edge.second);
+            next_[edge.second].push_back(edge.first);
+        }
+    }
+
+    [[nodiscard]] Vec3 normal(int triangle) const {
+        const auto& [a, b, c] = tree_.surface().triangles[static_cast<std::size_t>(triangle)];
+        const Vec3 n = cross(at(b) - at(a), at(c) - at(a));
+        return n / norm(n);
+    }
+    [[nodiscard]] const Vec3& at(int node) const { return tree_.surface().points[static_cast<std::size_t>(node)]; }
+
+    /// Both material and none close to the middle of the edge.
+    [[nodiscard]] bool bounds_material(int a, int b) const {
+        const Vec3 along = at(b) - at(a);
+        const Vec3 middle = 0.5 * (at(a) + at(b));
+        const double radius = 0.02 * std::min(size_, norm(along));
+        const Vec3 other = std::fabs(along.x) < 0.6 * norm(along) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+        Vec3 u = cross(along, other);
+        u = u / norm(u);
+        const Vec3 v = cross(along, u) / norm(along);
+        int held = 0;
+        constexpr int directions = 16;
+        for (int i = 0; i < directions; ++i) {
+            const double turn = 2 * std::numbers::pi * (i + 0.37) / directions;
+            held += tree_.winding_number(middle + radius * (std::cos(turn) * u + std::sin(turn) * v)) > inside ? 1 : 0;
+        }
+        return held > 0 && held < directions;
+    }
+
+    /// Goes from `from` over `to` to the end of the chain, unless that was done from the other end.
+    void walk(int from, int to, std::vector<Chain>& lines) {
+        if (!done_.insert(std::minmax(from, to)).second) return;
+        const int start = from;
+        Chain line = {from, to};
+        while (to != start && next_[to].size() == 2) {
+            const int onward = next_[to][0] == from ? next_[to][1] : next_[to][0];
+            const Vec3 before = at(to) - at(from);
+            const Vec3 after = at(onward) - at(to);
+            if (dot(before, after) < least_cosine_ * norm(before) * norm(after)) break;  // a corner
+            if (!done_.insert(std::minmax(to, onward)).second) break;
+            from = to;
+            to = onward;
+            line.push_back(to);
+        }
+        lines.push_back(std::move(line));
+    }
+
+    const TriangleTree& tree_;
+    double size_;
+    double least_cosine_;
+    std::map<int, std::vector<int>> next_;
+    std::set<std::pair<int, int>> done_;
+};
+
+/// Distance between two segments (Ericson, Real-Time Collision Detection, 5.1.9).
+double distance_between(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
+    const Vec3 d1 = q1 - p1;
+    const Vec3 d2 = q2 - p2;
+    const Vec3 r = p1 - p2;
+    const double a = dot(d1, d1);
+    const double e = dot(d2, d2);
+    const double b = dot(d1, d2);
+    const double c = dot(d1, r);
+    const double f = dot(d2, r);
+    const double denominator = a * e - b * b;
+    double s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+    double t = (b * s + f) / e;
+    if (t < 0 || t > 1) {
+        t = std::clamp(t, 0.0, 1.0);
+        s = std::clamp((b * t - c) / a, 0.0, 1.0);
+    }
+    return norm(p1 + s * d1 - p2 - t * d2);
+}
+
+struct Segment {
+    int chain, index;  ///< from this point of the chain to the next
+    Vec3 from, to;
+    double start, end;  ///< along the chain
+    double low, high;   ///< in x, with room
+    bool dropped = false;
+};
+
+class CollisionFinder {
+public:
+    CollisionFinder(const std::vector<Vec3>& points, const std::vector<Chain>& chains, double room)
+        : chains_(chains), room_(room) {
+        for (std::size_t c = 0; c < chains.size(); ++c) {
+            double along = 0;
+            for (std::size_t i = 0; i + 1 < chains[c].size(); ++i) {
+                const Vec3& a = points[static_cast<std::size_t>(chains[c][i])];
+                const Vec3& b = points[static_cast<std::size_t>(chains[c][i + 1])];
+                const double end = along + norm(b - a);
+                segments_.push_back({static_cast<int>(c), static_cast<int>(i), a, b, along, end,
+                                     std::min(a.x, b.x) - room, std::max(a.x, b.x) + room});
+                along = end;
+            }
+            length_.push_back(along);
+        }
+    }
+
+    /// Marks every segment that comes too near to one that it does not meet.
+    const std::vector<Segment>& find() {
+        std::vector<std::size_t> order(segments_.size());
+        for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return segments_[a].low < segments_[b].low; });
+        std::vector<std::size_t> open;
+        for (const std::size_t i : order) {
+            std::erase_if(open, [&](std::size_t o) { return segments_[o].high < segments_[i].low; });
+            for (const std::size_t o : open) {
+                if (!collide(segments_[i], segments_[o])) continue;
+                segments_[i].dropped = true;
+                segments_[o].dropped = true;
+            }
+            open.push_back(i);
+        }
+        return segments_;
+    }
+
+private:
+    [[nodiscard]] bool collide(const Segment& a, const Segment& b) const {
+        for (std::size_t k = 1; k < 3; ++k) {
+            if (std::min(a.from[k], a.to[k]) > std::max(b.from[k], b.to[k]) + room_ ||
+                std::min(b.from[k], b.to[k]) > std::max(a.from[k], a.to[k]) + room_)
+                return false;
+        }
+        return path_between(a, b) > 3 * room_ && distance_between(a.from, a.to, b.from, b.to) < room_;
+    }
+
+    /// How far it is from one to the other along the chains, by way of at most one common end.
+    [[nodiscard]] double path_between(const Segment& a, const Segment& b) const {
+        const Chain& one = chains_[static_cast<std::size_t>(a.chain)];
+        const Chain& other = chains_[static_cast<std::size_t>(b.chain)];
+        const double length_a = length_[static_cast<std::size_t>(a.chain)];
+        const double length_b = length_[static_cast<std::size_t>(b.chain)];
+        double least = std::numeric_limits<double>::infinity();
+        if (a.chain == b.chain) least = std::max(b.start - a.end, a.start - b.end);
+        const auto by_end = [&](int p, int q, double from_a, double from_b) {
+            if (p == q) least = std::min(least, from_a + from_b);
+        };
+        by_end(one.front(), other.front(), a.start, b.start);
+        by_end(one.front(), other.back(), a.start, length_b - b.end);
+        by_end(one.back(), other.front(), length_a - a.end, b.start);
+        by_end(one.back(), other.back(), length_a - a.end, length_b - b.end);
+        return least;
+    }
+
+    const std::vector<Chain>& chains_;
+    double room_;
+    std::vector<Segment> segments_;  ///< chain by chain, in order
+    std::vector<double> length_;
+};
+
+}  // namespace
+
+SharpEdges sharp_edges(const TriangleTree& tree, double size, double angle_deg) {
+    const std::vector<Vec3>& points = tree.surface().points;
+    const std::vector<Chain> chains = EdgeFinder(tree, size, angle_deg).find();
+    SharpEdges edges;
+    std::vector<Vec3> chain;
+    const auto end_chain = [&] {
+        if (chain.size() > 1) edges.chains.push_back(chain);
+        chain.clear();
+    };
+    CollisionFinder finder(points, chains, least_room * size);
+    for (const Segment& segment : finder.find()) {
+        if (segment.index == 0 || segment.dropped) end_chain();
+        edges.dropped += segment.dropped ? 1 : 0;
+        if (segment.dropped) continue;
+        if (chain.empty()) chain.push_back(segment.from);
+        chain.push_back(segment.to);
+    }
+    end_chain();
+    return edges;
+}
+
+}  // namespace pliant::mesh

@@ -1,0 +1,58 @@
+#include "mesh/step_file.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "mesh/gmsh_kernel.hpp"
+#include "mesh/triangle_tree.hpp"
+
+namespace pliant::mesh {
+namespace {
+
+void append(TriMesh& mesh, const TriMesh& other) {
+    const int offset = static_cast<int>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
+    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + offset, b + offset, c + offset});
+}
+
+}  // namespace
+
+bool looks_like_step(std::string_view bytes) {
+    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
+    return begin != std::string_view::npos && bytes.substr(begin).starts_with("ISO-10303-21");
+}
+
+Result<Solid> read_step(const std::filesystem::path& path, const std::string& part, double scale) {
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (!looks_like_step(*bytes)) return input_error("{}: is no STEP file", path.string());
+    if (bytes->find("END-ISO-10303-21") == std::string::npos)
+        return input_error("{}: the file is cut off: END-ISO-10303-21 is missing", path.string());
+    const auto is_text = [](char c) {
+        return c == '\t' || c == '\n' || c == '\r' || static_cast<unsigned char>(c) >= 32;
+    };
+    for (const char* const keyword : {"HEADER;", "DATA;", "ENDSEC;"}) {
+        if (bytes->find(keyword) == std::string::npos)
+            return input_error("{}: is no STEP file: {} is missing", path.string(), keyword);
+    }
+    if (!std::all_of(bytes->begin(), bytes->end(), is_text))
+        return input_error("{}: is damaged: it holds bytes that are no text", path.string());
+    Result<kernel::StepContent> content = kernel::read_step(path.string(), scale);
+    if (!content) return input_error("{}: {}", path.string(), content.error().message);
+    StepSolid step{path.string(), {}, scale, {}};
+    TriMesh surface;
+    for (std::size_t i = 0; i < content->names.size(); ++i) {
+        if (!part.empty() && content->names[i] != part) continue;
+        step.numbers.push_back(static_cast<int>(i));
+        append(surface, content->surfaces[i]);
+    }
+    if (step.numbers.empty())
+        return input_error("{}: has no solid \"{}\"; it has {}", path.string(), part, join_names(content->names));
+    step.surface = std::make_shared<const TriangleTree>(std::move(surface));
+    return std::make_shared<const SolidNode>(SolidNode{std::move(step)});
+}
+
+}  // namespace pliant::mesh

@@ -1,0 +1,102 @@
+#include "mesh/step_file.hpp"
+
+#include <doctest/doctest.h>
+#include <gmsh.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "core/files.hpp"
+#include "mesh/mesher.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A plate of 20 x 20 x 5 mm with a ball of radius 3 beside it, written by Gmsh with Open CASCADE.
+fs::path written() {
+    const fs::path path = fs::temp_directory_path() / "pliant_step_file_test.step";
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::model::add("drawing");
+    gmsh::model::occ::addBox(0, 0, 0, 20, 20, 5);
+    gmsh::model::occ::addSphere(40, 10, 2, 3);
+    gmsh::model::occ::synchronize();
+    gmsh::write(path.string());
+    gmsh::finalize();
+    return path;
+}
+
+double volume_of(const Solid& solid) {
+    const Result<double> volume = solid_volume(solid);
+    REQUIRE_MESSAGE(volume, (volume ? "" : volume.error().message));
+    return *volume;
+}
+
+}  // namespace
+
+TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or all of them") {
+    const fs::path path = written();
+    const double ball = 4.0 / 3 * std::numbers::pi * 27;
+    const Result<Solid> all = read_step(path, "", 1);
+    REQUIRE_MESSAGE(all, (all ? "" : all.error().message));
+    CHECK(volume_of(*all) == doctest::Approx(2000 + ball).epsilon(1e-9));
+    const Result<Solid> metres = read_step(path, "", 1e-3);
+    REQUIRE(metres);
+    CHECK(volume_of(*metres) == doctest::Approx((2000 + ball) * 1e-9).epsilon(1e-6));
+    CHECK(bounds(*metres).high.x == doctest::Approx(0.043).epsilon(1e-3));
+    CHECK(contains(*all, {1, 1, 1}));
+    CHECK(contains(*all, {40, 10, 4.5}));
+    CHECK_FALSE(contains(*all, {30, 10, 2}));
+
+    const Result<Solid> none = read_step(path, "lid", 1);
+    REQUIRE_FALSE(none);
+    const std::string& said = none.error().message;
+    CHECK(said.find("has no solid \"lid\"; it has ") != std::string::npos);
+    const std::size_t quote = said.find("it has ") + 7;
+    const std::string name = said.substr(quote, said.find(" and ", quote) - quote);
+    std::string bare;
+    for (const char c : name) bare += c == '"' ? "" : std::string(1, c);
+    const Result<Solid> first = read_step(path, bare, 1);
+    REQUIRE_MESSAGE(first, (first ? "" : first.error().message));
+    CHECK(volume_of(*first) == doctest::Approx(2000).epsilon(1e-9));
+    fs::remove(path);
+}
+
+TEST_CASE("a STEP file is joined to what it touches, and its curved faces stay curved") {
+    const fs::path path = written();
+    const Result<Solid> drawn = read_step(path, "", 1);
+    REQUIRE(drawn);
+    const Solid lid = std::make_shared<const SolidNode>(SolidNode{BoxSolid{{0, 0, 5}, {20, 20, 8}}});
+    Progress silent;
+    const std::vector<BodyGeometry> bodies = {{"drawn", *drawn}, {"lid", lid}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 4, .order = 2}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume(*mesh, 1) == doctest::Approx(1200).epsilon(1e-9));
+    CHECK(boundary_faces(*mesh).size() < region_faces(*mesh, 0).size() + region_faces(*mesh, 1).size());
+    const Result<TriMesh> surface = tessellate(*drawn, 0.005);
+    REQUIRE(surface);
+    CHECK(signed_volume(*surface) == doctest::Approx(2000 + 4.0 / 3 * std::numbers::pi * 27).epsilon(1e-3));
+    fs::remove(path);
+}
+
+TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused with its name") {
+    const fs::path path = written();
+    const Result<std::string> whole = read_file(path);
+    REQUIRE(whole);
+    const auto refused = [&](const std::string& text) {
+        REQUIRE(write_file(path, text));
+        const Result<Solid> solid = read_step(path, "", 1);
+        REQUIRE_FALSE(solid);
+        CHECK(solid.error().message.find("pliant_step_file_test.step") != std::string::npos);
+        return solid.error().message;
+    };
+    CHECK(refused(whole->substr(0, whole->size() / 2)).find("cut off") != std::string::npos);
+    CHECK(refused("solid cube").find("no STEP file") != std::string::npos);
+    (void)refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
+    (void)refused("ISO-10303-21;\n\x01\xff\nEND-ISO-10303-21;\n");
+    fs::remove(path);
+}

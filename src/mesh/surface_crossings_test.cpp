@@ -1,0 +1,53 @@
+#include "mesh/surface_crossings.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+TriMesh cube(const Vec3& low, double side) {
+    TriMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.points.push_back(low + side * Vec3{double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
+TriMesh joined(TriMesh a, const TriMesh& b) {
+    const int offset = static_cast<int>(a.points.size());
+    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
+    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+    return a;
+}
+
+}  // namespace
+
+TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; and those that do not") {
+    const TriMesh one = cube({0, 0, 0}, 10);
+    CHECK_FALSE(cuts_itself(one));
+    CHECK_FALSE(cuts_itself(joined(one, cube({10.01, 0, 0}, 10))));
+    CHECK_FALSE(cuts_itself(joined(one, cube({3, 3, 3}, 4))));  // a shell inside
+    CHECK(cuts_itself(joined(one, cube({9, 9, 9}, 10))));
+    CHECK(cuts_itself(joined(one, cube({10, 2, 2}, 5))));  // face on face
+    CHECK(cuts_itself(joined(one, cube({10, 3, 3}, 10))));
+    TriMesh folded = one;
+    folded.points.push_back({5, 5, 0});
+    folded.points.push_back({5, 5, 1e-9});
+    folded.triangles[0] = {0, 2, 8};
+    folded.triangles.push_back({2, 1, 8});
+    folded.triangles.push_back({1, 0, 9});
+    folded.triangles.push_back({0, 8, 9});
+    folded.triangles.push_back({8, 1, 9});
+    CHECK(cuts_itself(folded));
+}
+
+TEST_CASE("the finest detail is the smallest height over the size") {
+    CHECK(finest_detail(cube({1, 2, 3}, 10)) == doctest::Approx(1 / std::sqrt(2.0) / std::sqrt(3.0)));
+    TriMesh thin{{{0, 0, 0}, {4, 0, 0}, {2, 1e-3, 3}, {2, 1e-3, 0}}, {{0, 1, 2}, {0, 1, 3}}};
+    CHECK(finest_detail(thin) == doctest::Approx(1e-3 / 5).epsilon(1e-3));
+}
