@@ -136,7 +136,7 @@ public:
               options.stop = [this] { return stop_.load(); };
               options.lights = [this](twin::Twin&) { return look(); };
               options.tick = [this](double now_s) { clock_.set(now_s); };
-              options.longest_step_s = 0.005;
+              options.longest_step_s = 0.1 / speed;
               (void)twin::serve(twin_, pty_, options);
           }) {}
     ~Machine() { (void)end(); }

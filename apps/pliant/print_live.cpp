@@ -9,10 +9,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include "host/control.hpp"
+#include "host/image_ahead.hpp"
+#include "host/projector.hpp"
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
@@ -268,17 +271,38 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     return report_twin(machine.end(), ready, options.output, *status);
 }
 
-Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+/// A display or a folder with a process that keeps the time of every light; for a virtual printer with another time a
+/// plain folder.
+Result<std::unique_ptr<host::Projector>> open_projector(const LiveOptions& options, const machine::Printer& printer) {
+    const bool real_time = options.speed == 1 && options.clock_file.empty();
+    if (real_time) {
+        host::ScreenOptions screen;
+        screen.width_px = printer.projector.width_px;
+        screen.height_px = printer.projector.height_px;
+        screen.longest_light_s = printer.limits.exposure_s;
+        auto projector = host::ScreenProjector::open(options.projector, screen);
+        if (!projector) return tl::unexpected(projector.error());
+        return std::make_unique<host::ScreenProjector>(std::move(*projector));
+    }
     std::error_code error;
     if (!std::filesystem::is_directory(options.projector, error))
         return input_error("--projector {}: no such folder", options.projector);
-    operate::PictureProjector projector(options.projector);
-    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard", projector.shown(),
+    return std::make_unique<operate::PictureProjector>(options.projector);
+}
+
+Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+    // The guard first: what this program opens later must not live on in it.
+    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard",
+                                                       std::filesystem::path(options.projector) / "shown.png",
                                                        options.speed, options.clock_file.empty() ? nullptr : &clock};
     auto guard = operate::ProcessGuard::start(guard_options);
     if (!guard) return tl::unexpected(guard.error());
-    if (Status dark = projector.black(); !dark) return tl::unexpected(dark.error());
-    host::Control control(setup_of(options, ready, options.port, projector, clock, &*guard));
+    auto projector = open_projector(options, ready.printer);
+    if (!projector) return tl::unexpected(projector.error());
+    if (Status dark = (*projector)->black(); !dark) return tl::unexpected(dark.error());
+    host::ImageAhead ahead(ready.job.images, host::order_of_exposures(ready.job.gcode));
+    ready.job.images = [&ahead](int layer, int material) { return ahead.get(layer, material); };
+    host::Control control(setup_of(options, ready, options.port, **projector, clock, &*guard));
     return run(control, options, ready);
 }
 

@@ -121,7 +121,7 @@ Status run_twin(const Options& options) {
         auto made = operate::ClockFile::create(options.clock);
         if (!made) return tl::unexpected(made.error());
         clock.emplace(std::move(*made));
-        serve.longest_step_s = 0.005;
+        serve.longest_step_s = 0.1 / options.speed;  // of the machine's clock
         serve.tick = [&](double now_s) { clock->set(now_s); };
     }
     if (options.trace) {

@@ -33,15 +33,6 @@ struct Light {
     double longest_frame_s = 0;  ///< of those lit: over `frame_s` where the machine was late
 };
 
-/// A light as the projector measured it, from the frames that it presented.
-struct Light {
-    double asked_s = 0;
-    double on_s = 0;             ///< from the first lit frame to the first black one
-    int frames = 0;              ///< that were lit
-    double frame_s = 0;          ///< nominal time of a frame
-    double longest_frame_s = 0;  ///< of those lit: over `frame_s` where the machine was late
-};
-
 class Projector {
 public:
     virtual ~Projector() = default;
