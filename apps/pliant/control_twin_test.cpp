@@ -306,6 +306,17 @@ TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print g
     b.must_be_whole();
 }
 
+TEST_CASE("a firmware without emergency parser is known by its capabilities, and is reset to be stopped") {
+    twin::Options options;
+    options.emergency_parser = false;
+    ControlBench b(options);
+    Person person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
+    b.start();
+    CHECK(has_event(b, "log", "no EMERGENCY_PARSER"));
+    CHECK(b.life->resets == 1);
+    CHECK(b.snapshot().state == State::halted);
+}
+
 TEST_CASE("a changed exposure takes effect at the next layer and is kept across a restart of the host") {
     ControlBench b;
     Person person(b, lit_on_layer(2), [&] {
