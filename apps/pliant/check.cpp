@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "board.hpp"
 #include "command.hpp"
 #include "core/config.hpp"
 #include "core/files.hpp"
 #include "job/job.hpp"
 #include "job/verify.hpp"
 #include "job_tools.hpp"
+#include "machine/firmware.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
 #include "plan/safe_stop.hpp"
@@ -27,6 +29,8 @@ namespace {
 struct Options {
     std::vector<std::string> files;
     std::string printer;
+    std::string port;
+    bool firmware = false;
     int cancel_after = -1;
     Output output;
 };
@@ -113,7 +117,29 @@ Result<std::string> check_program(const std::string& file, const Options& option
                        printer->name);
 }
 
+/// What a board has answered, against the machine that it is to drive.
+Result<std::string> check_firmware(const std::string& where, const Result<std::string>& answers,
+                                   const machine::Printer& printer) {
+    if (!answers) return tl::unexpected(answers.error());
+    const machine::BoardReport board = machine::parse_board_report(*answers);
+    std::string problems;
+    for (const std::string& problem : machine::check_board(board, printer))
+        problems += fmt::format("{}{}: {}", problems.empty() ? "" : "\n", where, problem);
+    if (!problems.empty()) return failure("{}", problems);
+    return fmt::format("firmware \"{}\" fits {}", board.name, printer.name);
+}
+
+Result<std::string> check_boards(const std::string& file, const Options& options) {
+    if (options.printer.empty())
+        return input_error("--firmware: give --printer, the machine that the board is to drive");
+    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    if (!printer) return tl::unexpected(printer.error());
+    if (file == options.port) return check_firmware(file, ask_board(file, printer->controller.baud_rate), *printer);
+    return check_firmware(file, read_file(file, 1 << 20), *printer);
+}
+
 Result<std::string> check(const std::string& file, const Options& options, Progress& progress) {
+    if (options.firmware) return check_boards(file, options);
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
     if (extension == ".zip") return check_job(file);
@@ -127,7 +153,10 @@ Result<std::string> check(const std::string& file, const Options& options, Progr
 void add_check(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("check", "validate robot, printer, job, G-code and mesh files");
-    command->add_option("files", options->files, "files to check")->required();
+    command->add_option("files", options->files, "files to check");
+    command->add_flag("--firmware", options->firmware,
+                      "ask the board at --port what it was built with; files: answers to M115, M503, M119, M113");
+    command->add_option("--port", options->port, "serial port of the board, such as /dev/ttyACM0");
     command->add_option("--printer", options->printer, "machine that G-code files are checked against");
     command->add_option("--cancel-after", options->cancel_after,
                         "line of a G-code program after which to end it: prints what would do so safely");
@@ -135,6 +164,8 @@ void add_check(CLI::App& app, int& status) {
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {
         const auto progress = terminal_progress(options->output);
+        if (!options->port.empty() && options->firmware) options->files.push_back(options->port);
+        if (options->files.empty()) status = report({Cause::input, "give files to check, or --firmware with --port"});
         for (const std::string& file : options->files) {
             const Result<std::string> text = check(file, *options, *progress);
             if (!text)

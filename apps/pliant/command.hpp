@@ -29,6 +29,7 @@ void add_export(CLI::App& app, int& status);
 void add_print(CLI::App& app, int& status);
 void add_twin(CLI::App& app, int& status);
 void add_compare_printers(CLI::App& app, int& status);
+void add_firmware(CLI::App& app, int& status);
 void add_project(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_materials(CLI::App& app, int& status);

@@ -19,6 +19,7 @@
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
+#include "job_tools.hpp"
 #include "operate/clock_file.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/picture_projector.hpp"
@@ -101,8 +102,8 @@ private:
 /// The virtual printer on a pseudo-terminal, in a thread of its own.
 class LiveTwin {
 public:
-    LiveTwin(const machine::Printer& printer, twin::Pty pty, double speed)
-        : pty_(std::move(pty)), twin_(printer), thread_([this, speed] {
+    LiveTwin(const machine::Printer& printer, twin::Options wanted, twin::Pty pty, double speed)
+        : pty_(std::move(pty)), twin_(printer, std::move(wanted)), thread_([this, speed] {
               twin::ServeOptions options;
               options.speed = speed;
               options.stop = [this] { return stop_.load(); };
@@ -263,7 +264,13 @@ Result<int> report_twin(twin::Twin& twin, const operate::ReadyJob& ready, const 
 Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
     Result<twin::Pty> pty = twin::Pty::open();
     if (!pty) return tl::unexpected(pty.error());
-    LiveTwin machine(ready.printer, std::move(*pty), options.speed);
+    twin::Options wanted;
+    if (!ready.printer.projector.mask.empty()) {
+        Result<job::Image> mask = ready.archive->image(mask_entry);
+        if (!mask) return tl::unexpected(mask.error());
+        wanted.mask = std::move(*mask);
+    }
+    LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     ready.job.journal.clear();  // this printer is gone when the program ends
     host::Control control(setup_of(options, ready, machine.device(), machine.light, clock, nullptr));
     const Result<int> status = run(control, options, ready);

@@ -39,6 +39,18 @@ struct Position {
     bool operator==(const Position&) const = default;
 };
 
+/// What is between the controller and an axis. Not needed to plan or print: for building and checking the firmware.
+struct Drive {
+    int motors = 1;          ///< on an output each, stepping together
+    int motor_steps = 200;   ///< full steps of the motor's turn
+    int microsteps = 16;     ///< of a full step
+    double gear = 1;         ///< turns of the motor for one behind its gear
+    double per_turn_mm = 0;  ///< way of one turn behind the gear (degrees if rotary); 0: not known
+
+    [[nodiscard]] bool known() const { return per_turn_mm > 0; }
+    [[nodiscard]] double steps_per_mm() const { return motor_steps * microsteps * gear / per_turn_mm; }
+};
+
 struct AxisSpec {
     char letter = '?';  ///< in G-code; '?': the machine has no such axis
     int min_um = 0, max_um = 0;
@@ -48,6 +60,7 @@ struct AxisSpec {
     double jerk_mm_s = 0;        ///< speed from which it may stop at once, and to which it may start
     bool rotary = false;         ///< degrees for mm everywhere; positions repeat every full turn
     bool homes_by_hand = false;  ///< no limit switch (E of a classic build): stood there by a person, set with G92
+    Drive drive{};               ///< what is between motor and axis
 
     [[nodiscard]] bool present() const { return letter != '?'; }
     [[nodiscard]] int home_um() const { return homes_to_max ? max_um : min_um; }

@@ -95,6 +95,19 @@ void read_motion(Reader& r, AxisSpec& axis) {
         axis.homing_speed_mm_s = positive(r, "homing_speed", speeds, factor);
 }
 
+/// Steps a mm follow from what can be counted on the machine.
+Drive read_drive(Reader& r, bool rotary) {
+    Drive d;
+    if (r.has("motors")) d.motors = whole(r, "motors", 1, 2);
+    if (r.has("motor_steps")) d.motor_steps = whole(r, "motor_steps", 1, 10000);
+    if (r.has("microsteps")) d.microsteps = whole(r, "microsteps", 1, 256);
+    d.gear = r.number("gear", 1);
+    if (!(d.gear > 0 && d.gear <= 1e6))
+        r.problem("gear", "must be above 0: turns of the motor for one behind the gear");
+    if (r.has("per_turn")) d.per_turn_mm = positive(r, "per_turn", place_dimension(rotary), rotary ? degrees : 1e3);
+    return d;
+}
+
 AxisSpec read_axis(Reader r, Dialect dialect, bool may_rotate) {
     AxisSpec axis;
     axis.letter = read_letter(r, dialect);
@@ -106,6 +119,7 @@ AxisSpec read_axis(Reader r, Dialect dialect, bool may_rotate) {
         if (axis.min_um >= axis.max_um) r.problem("travel", "must be [lowest, highest]");
     }
     read_motion(r, axis);
+    axis.drive = read_drive(r, axis.rotary);
     r.finish();
     return axis;
 }

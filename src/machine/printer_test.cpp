@@ -75,7 +75,7 @@ TEST_CASE("offsets of outlines belong to a resin") {
 
 TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
-    CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:30: axis.tower.letter"));
+    CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:36: axis.tower.letter"));
     CHECK(holds(message_with("slots = 8", "slots = 3"), "must be from 1 to 3"));
     CHECK(holds(message_with("slot = 2", "slot = 1"), "1 holds a vat already"));
     CHECK(holds(message_with("resin = \"tough\"", "resin = \"touhg\""), "no [resin.touhg] table"));

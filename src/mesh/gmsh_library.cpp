@@ -277,7 +277,7 @@ int add_volume(std::vector<int> shells) {
     return call(PLIANT_GMSH(gmshModelOccAddVolume), shells.data(), shells.size(), -1);
 }
 
-Entities extrude(Entities what, double dx, double dy, double dz) {
+Entities extrude(const Entities& what, double dx, double dy, double dz) {
     std::vector<int> in = flat(what);
     Given<int> out;
     call(PLIANT_GMSH(gmshModelOccExtrude), in.data(), in.size(), dx, dy, dz, &out.data, &out.count, nullptr,
@@ -307,45 +307,45 @@ Outcome combine(Function* function, const Entities& objects, const Entities& too
 
 }  // namespace
 
-Outcome fuse(Entities objects, Entities tools) {
+Outcome fuse(const Entities& objects, const Entities& tools) {
     return combine(PLIANT_GMSH(gmshModelOccFuse), objects, tools);
 }
 
-Outcome cut(Entities objects, Entities tools) {
+Outcome cut(const Entities& objects, const Entities& tools) {
     return combine(PLIANT_GMSH(gmshModelOccCut), objects, tools);
 }
 
-Outcome intersect(Entities objects, Entities tools) {
+Outcome intersect(const Entities& objects, const Entities& tools) {
     return combine(PLIANT_GMSH(gmshModelOccIntersect), objects, tools);
 }
 
-Outcome fragment(Entities objects, Entities tools) {
+Outcome fragment(const Entities& objects, const Entities& tools) {
     return combine(PLIANT_GMSH(gmshModelOccFragment), objects, tools);
 }
 
-Entities copy(Entities what) {
+Entities copy(const Entities& what) {
     std::vector<int> in = flat(what);
     Given<int> out;
     call(PLIANT_GMSH(gmshModelOccCopy), in.data(), in.size(), &out.data, &out.count);
     return entities(out);
 }
 
-void translate(Entities what, double dx, double dy, double dz) {
+void translate(const Entities& what, double dx, double dy, double dz) {
     std::vector<int> in = flat(what);
     call(PLIANT_GMSH(gmshModelOccTranslate), in.data(), in.size(), dx, dy, dz);
 }
 
-void rotate(Entities what, double x, double y, double z, double ax, double ay, double az, double angle_rad) {
+void rotate(const Entities& what, double x, double y, double z, double ax, double ay, double az, double angle_rad) {
     std::vector<int> in = flat(what);
     call(PLIANT_GMSH(gmshModelOccRotate), in.data(), in.size(), x, y, z, ax, ay, az, angle_rad);
 }
 
-void dilate(Entities what, double factor) {
+void dilate(const Entities& what, double factor) {
     std::vector<int> in = flat(what);
     call(PLIANT_GMSH(gmshModelOccDilate), in.data(), in.size(), 0.0, 0.0, 0.0, factor, factor, factor);
 }
 
-void remove(Entities what, bool recursive) {
+void remove(const Entities& what, bool recursive) {
     std::vector<int> in = flat(what);
     call(PLIANT_GMSH(gmshModelOccRemove), in.data(), in.size(), int{recursive});
 }

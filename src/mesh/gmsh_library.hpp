@@ -83,24 +83,24 @@ int add_curve_loop(std::vector<int> curves);
 int add_plane_surface(std::vector<int> loops);
 int add_surface_loop(std::vector<int> surfaces);
 int add_volume(std::vector<int> shells);
-Entities extrude(Entities what, double dx, double dy, double dz);
+Entities extrude(const Entities& what, double dx, double dy, double dz);
 
 /// What a Boolean operation leaves, and what became of each entity that went in. Objects and tools are used up.
 struct Outcome {
     Entities entities;
     std::vector<Entities> became;
 };
-Outcome fuse(Entities objects, Entities tools);
-Outcome cut(Entities objects, Entities tools);
-Outcome intersect(Entities objects, Entities tools);
-Outcome fragment(Entities objects, Entities tools);
+Outcome fuse(const Entities& objects, const Entities& tools);
+Outcome cut(const Entities& objects, const Entities& tools);
+Outcome intersect(const Entities& objects, const Entities& tools);
+Outcome fragment(const Entities& objects, const Entities& tools);
 
-Entities copy(Entities what);
-void translate(Entities what, double dx, double dy, double dz);
-void rotate(Entities what, double x, double y, double z, double ax, double ay, double az, double angle_rad);
+Entities copy(const Entities& what);
+void translate(const Entities& what, double dx, double dy, double dz);
+void rotate(const Entities& what, double x, double y, double z, double ax, double ay, double az, double angle_rad);
 /// By the same factor everywhere, about the origin.
-void dilate(Entities what, double factor);
-void remove(Entities what, bool recursive);
+void dilate(const Entities& what, double factor);
+void remove(const Entities& what, bool recursive);
 /// Solids, or else the shapes of highest dimension, of a STEP file.
 Entities import_shapes(const std::string& file);
 /// Low and high corner.

@@ -16,7 +16,7 @@ using Chain = std::vector<int>;
 
 constexpr double inside = 0.5;
 /// Between edges that do not meet, as a share of the mesh size.
-constexpr double least_room = 0.02;
+constexpr double least_room = 0.1;
 
 class EdgeFinder {
 public:

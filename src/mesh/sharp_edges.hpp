@@ -15,7 +15,7 @@ struct SharpEdges {
 
 /// Edges of two triangles that are sharper than `angle_deg` and bound material (by the winding number), in chains that
 /// are broken where three or more meet and at sharp bends. Edges that cross another one, or come nearer to it than a
-/// fiftieth of `size` without meeting it, are left out: a mesher that keeps them would never come to an end.
+/// tenth of `size` without meeting it, are left out: a mesher that keeps them would never come to an end.
 [[nodiscard]] SharpEdges sharp_edges(const TriangleTree& tree, double size, double angle_deg);
 
 }  // namespace pliant::mesh

@@ -90,7 +90,7 @@ std::size_t node_limit(const TriMesh& surface, double size) {
         area += norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
     }
     const double nodes = std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
-    return 15000 + static_cast<std::size_t>(std::min(8 * nodes, 20e6));
+    return 6000 + static_cast<std::size_t>(std::min(6 * nodes, 20e6));
 }
 
 /// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.

@@ -205,7 +205,10 @@ void Twin::execute_other(const Command& c) {
         else if (!c.is('M', 85))
             motors_.release(now_s_);
     } else if (c.is('M', 113)) {
-        if (const auto every = c.value('S')) busy_every_s_ = std::clamp(*every, 0.0, 60.0);
+        if (const auto every = c.value('S'))
+            busy_every_s_ = std::clamp(*every, 0.0, 60.0);
+        else
+            say(fmt::format("echo:M113 S{:g}", busy_every_s_));
     } else if (c.is('M', 112)) {
         kill();
     } else if (c.is('M', 410)) {
@@ -229,14 +232,51 @@ void Twin::execute_query(const Command& c) {
         }
         say(line);
     } else if (c.is('M', 115)) {
-        say("FIRMWARE_NAME:Pliant twin, Marlin dialect PROTOCOL_VERSION:1.0 MACHINE_TYPE:" + printer_.name);
+        say("FIRMWARE_NAME:Pliant twin, Marlin dialect PROTOCOL_VERSION:1.0 MACHINE_TYPE:" + printer_.name +
+            " EXTRUDER_COUNT:0");
+        for (const char* capability : {"SERIAL_XON_XOFF:0", "EEPROM:0", "AUTOREPORT_TEMP:0", "SDCARD:0"})
+            say(fmt::format("Cap:{}", capability));
         say(fmt::format("Cap:EMERGENCY_PARSER:{}", options_.emergency_parser ? 1 : 0));
+    } else if (c.is('M', 119)) {
+        say_switches();
+    } else if (c.is('M', 503)) {
+        say_settings();
     } else if (c.is('M', 118)) {
         say(fmt::format("{}{}", c.value('E') == 1 ? "echo:" : (c.value('A') == 1 ? "//" : ""), c.text));
     } else if (c.is('M', 0) || c.is('M', 1)) {
         say("//action:prompt_end");
     } else {
         say(fmt::format("echo:Unknown command: \"{}{}\"", c.letter, c.number));
+    }
+}
+
+/// As Marlin reports them: comments and commands, every axis by its letter.
+void Twin::say_settings() {
+    const auto row = [&](const char* heading, const char* code, const auto& value) {
+        say(fmt::format("echo:; {}:", heading));
+        std::string line = fmt::format("echo:  {}", code);
+        for (const Axis axis : machine::all_axes) {
+            const machine::AxisSpec& spec = printer_.axis(axis);
+            if (spec.present()) line += fmt::format(" {}{:.2f}", spec.letter, value(spec));
+        }
+        say(line);
+    };
+    using machine::AxisSpec;
+    constexpr double unknown_steps_per_mm = 80;
+    row("Steps per unit", "M92",
+        [&](const AxisSpec& a) { return a.drive.known() ? a.drive.steps_per_mm() : unknown_steps_per_mm; });
+    row("Max feedrates (units/s)", "M203", [](const AxisSpec& a) { return a.speed_mm_s; });
+    row("Max Acceleration (units/s2)", "M201", [](const AxisSpec& a) { return a.acceleration_mm_s2; });
+}
+
+void Twin::say_switches() {
+    say("Reporting endstop status");
+    for (const Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = printer_.axis(axis);
+        if (!spec.present() || spec.homes_by_hand) continue;
+        const bool pressed = interlock().homed(axis) && interlock().position()[axis] == spec.home_um();
+        say(fmt::format("{}_{}: {}", static_cast<char>(spec.letter - 'A' + 'a'), spec.homes_to_max ? "max" : "min",
+                        pressed ? "TRIGGERED" : "open"));
     }
 }
 

@@ -132,6 +132,8 @@ private:
     void execute_switch(const machine::Command& command);
     void execute_set(const machine::Command& command);
     void execute_other(const machine::Command& command);
+    void say_settings();
+    void say_switches();
     void note_vat(std::optional<int> before);
     void count_swap(int vat);
     void miss_steps(const machine::Position& from, const machine::Position& to);

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "machine/firmware.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
@@ -52,6 +54,25 @@ TEST_CASE("it starts like Marlin and answers questions") {
     CHECK(b.send("M777 S7") == "echo:Unknown command: \"M777\"\nok\n");
     CHECK(b.send("hello") == "echo:Unknown command: \"hello\"\nok\n");
     CHECK(b.raw("\n;x\n").empty());
+}
+
+TEST_CASE("asked about its build it answers as a board that fits its machine, and not one without emergency parser") {
+    for (const bool parser : {true, false}) {
+        Options options;
+        options.emergency_parser = parser;
+        Bench b(options);
+        std::string answers;
+        for (const char* query : {"M115", "M503", "M119", "M113"}) answers += b.send(query);
+        CHECK(holds(answers, "echo:  M92 X525.21 Z800.00 Y315.13\n"));
+        const auto problems = machine::check_board(machine::parse_board_report(answers), b.printer);
+        CHECK(problems.size() == (parser ? 0 : 1));
+        b.send("M113 S0");
+        CHECK(holds(b.send("M113"), "echo:M113 S0\n"));
+    }
+    Bench b;
+    CHECK(holds(b.send("M119"), "z_max: open\n"));
+    b.home();
+    CHECK(holds(b.send("M119"), "z_max: TRIGGERED\n"));
 }
 
 TEST_CASE("a bad line gets Error, Resend and an ok; the right one is then taken") {

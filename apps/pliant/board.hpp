@@ -1,0 +1,14 @@
+// Asking a connected board what it is.
+#pragma once
+
+#include <string>
+
+#include "core/error.hpp"
+
+namespace pliant::app {
+
+/// Opens the port (which resets most boards), waits for the firmware, and returns its answers to M115, M503, M119 and
+/// M113. Takes some seconds. Errors: the port. A board that says nothing gives "".
+[[nodiscard]] Result<std::string> ask_board(const std::string& port, int baud_rate);
+
+}  // namespace pliant::app
