@@ -29,6 +29,8 @@ struct Life {
     long deeds = 0;
     long dies_at = -1;
     bool dead = false;
+    bool unplugged = false;  ///< the cable of the machine
+    int resets = 0;          ///< of the controller, asked for by the host
     std::function<void()> on_death;
     /// Called at every deed on the wire: for mishaps in the middle.
     std::function<void(long)> at_deed;
@@ -48,20 +50,29 @@ struct Life {
 
 class MortalWire final : public host::Wire {
 public:
-    MortalWire(twin::Twin& twin, Life& life) : wire_(twin), life_(life) {}
+    MortalWire(twin::Twin& twin, Life& life) : twin_(twin), wire_(twin), life_(life) {}
     [[nodiscard]] Status write(std::string_view bytes) override {
+        if (life_.unplugged) return failure("the device is gone");
         if (!life_.act()) return {};
         return wire_.write(bytes);
     }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
         if (life_.dead) return std::string();
         if (life_.at_look) life_.at_look();
+        if (life_.unplugged) return failure("the device is gone");
         auto said = wire_.read(timeout_s);
         if (said && !said->empty() && !life_.act()) return std::string();
         return said;
     }
 
+    [[nodiscard]] Status reset() override {
+        ++life_.resets;
+        twin_.reset();
+        return {};
+    }
+
 private:
+    twin::Twin& twin_;
     TwinWire wire_;
     Life& life_;
 };

@@ -1,7 +1,9 @@
 // A print under control against the virtual printer, in one thread and on its clock: pauses, changes, cancelling, and
 // resuming after every way to end.
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "control_bench.hpp"
@@ -304,6 +306,17 @@ TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print g
     b.must_be_whole();
 }
 
+TEST_CASE("a firmware without emergency parser is known by its capabilities, and is reset to be stopped") {
+    twin::Options options;
+    options.emergency_parser = false;
+    ControlBench b(options);
+    Person person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
+    b.start();
+    CHECK(has_event(b, "log", "no EMERGENCY_PARSER"));
+    CHECK(b.life->resets == 1);
+    CHECK(b.snapshot().state == State::halted);
+}
+
 TEST_CASE("a changed exposure takes effect at the next layer and is kept across a restart of the host") {
     ControlBench b;
     Person person(b, lit_on_layer(2), [&] {
@@ -481,5 +494,80 @@ TEST_CASE("every kind of machine is resumed after its host was killed") {
                 b.must_be_whole();
             }
         }
+    }
+}
+
+namespace {
+
+/// A disk that is full for files longer than so many bytes, while it lives.
+struct FullDisk {
+    rlimit before{};
+    explicit FullDisk(std::uintmax_t bytes) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+        const rlimit small{bytes, before.rlim_max};
+        REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+    }
+    ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before); }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+};
+
+}  // namespace
+
+TEST_CASE("a full disk stops the print dark and still, with the pump off; it goes on when there is room again") {
+    for (const double at : {0.2, 0.33, 0.45, 0.6, 0.75, 0.9}) {
+        CAPTURE(at);
+        ControlBench b;
+        std::unique_ptr<FullDisk> full;
+        Person person(b, completion_above(at),
+                      [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+        b.start();
+        full.reset();
+        CHECK(b.last_error().find("the journal cannot be written") != std::string::npos);
+        CHECK_FALSE(b.projector->lit);
+        CHECK_FALSE(b.twin->interlock().pump_runs());
+        CHECK(b.twin->log().violations.empty());
+        b.life->at_look = {};
+        b.start({true, {}});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        b.must_be_whole();
+    }
+}
+
+TEST_CASE("a disk that fills up in the light: the light is made dark, and somebody must say how long it was on") {
+    ControlBench b;
+    std::unique_ptr<FullDisk> full;
+    Person person(b, lit_on_layer(2, 1),
+                  [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+    b.start();
+    full.reset();
+    CHECK_FALSE(b.projector->lit);
+    b.life->at_look = {};
+    b.start({true, {}});
+    CHECK(b.last_error().find("--assume-lit") != std::string::npos);
+    b.start({true, {2.5, false}});
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    CHECK(b.lights() == 10);
+    b.must_be_whole();
+}
+
+TEST_CASE("a cable that is pulled stops the print dark; plugged in again it goes on") {
+    for (const double at : {0.15, 0.3, 0.55, 0.8}) {
+        CAPTURE(at);
+        ControlBench b;
+        Person person(b, completion_above(at), [&] { b.life->unplugged = true; });
+        b.start();
+        CHECK(b.last_error().find("the device is gone") != std::string::npos);
+        CHECK(b.snapshot().state == State::halted);
+        CHECK_FALSE(b.projector->lit);
+        b.life->unplugged = false;
+        b.life->at_look = {};
+        b.start({true, {}});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        b.must_be_whole();
     }
 }

@@ -23,6 +23,7 @@
 #include "core/files.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
+#include "operate/clock_file.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
@@ -126,6 +127,7 @@ class Machine {
 public:
     Machine(const machine::Printer& printer, const fs::path& folder, double speed)
         : shown_(folder / "shown.png"),
+          clock_(need(operate::ClockFile::create(folder / "clock"))),
           pty_(need(twin::Pty::open())),
           twin_(printer, booting()),
           thread_([this, speed] {
@@ -133,6 +135,8 @@ public:
               options.speed = speed;
               options.stop = [this] { return stop_.load(); };
               options.lights = [this](twin::Twin&) { return look(); };
+              options.tick = [this](double now_s) { clock_.set(now_s); };
+              options.longest_step_s = 0.1 / speed;
               (void)twin::serve(twin_, pty_, options);
           }) {}
     ~Machine() { (void)end(); }
@@ -166,6 +170,7 @@ private:
     }
 
     fs::path shown_;
+    operate::ClockFile clock_;
     twin::Pty pty_;
     twin::Twin twin_;
     std::atomic<bool> stop_ = false, reset_ = false;
@@ -180,6 +185,7 @@ public:
         std::vector<std::string> words = {wanted.program,  "print",   job.file.string(),
                                           "--port",        device,    "--projector",
                                           folder.string(), "--speed", fmt::format("{}", wanted.speed)};
+        words.insert(words.end(), {"--clock", (folder / "clock").string()});
         if (resume) words.emplace_back("--resume");
         std::vector<char*> arguments;
         for (std::string& word : words) arguments.push_back(word.data());

@@ -83,6 +83,7 @@ Result<int> print(const Options& options) {
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
     if (options.twin == !options.live.port.empty())
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
+    if (options.twin && !options.live.clock_file.empty()) return input_error("--clock goes with --port");
     if (options.twin && options.live.resume)
         return input_error("--resume needs a printer that is still there: --port DEVICE");
     if (!options.twin && options.live.projector.empty())
@@ -110,6 +111,7 @@ void add_print(CLI::App& app, int& status) {
     command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
     CLI::Option* speed = command->add_option(
         "--speed", live.speed, "seconds of the machine in one of the wall, for virtual printers; 1 is real time");
+    command->add_option("--clock", live.clock_file, "clock of the virtual printer (twin --clock FILE)");
     command->add_option("-o,--output", options->report_file, "file for the report of --twin (.json)");
     add_output_options(*command, live.output, true);
     command->footer(

@@ -9,14 +9,18 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include "host/control.hpp"
+#include "host/image_ahead.hpp"
+#include "host/projector.hpp"
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
 #include "job_tools.hpp"
+#include "operate/clock_file.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/picture_projector.hpp"
 #include "operate/print_job.hpp"
@@ -177,19 +181,23 @@ void press(host::Control& control, char key) {
     if (key == 'e') control.emergency_stop();
 }
 
-/// Until the print has ended. Ctrl-C suspends it; once more is an emergency stop.
+/// Until the print has ended. Ctrl-C suspends it; once more, later, is an emergency stop: some programs send the signal
+/// twice.
 void attend(host::Control& control, const Output& output) {
+    using namespace std::chrono;
     const Keys keys;
     Display display(output);
     int served = 0;
+    steady_clock::time_point first;
     do {
         press(control, keys.next(100));
-        if (interrupts > served) {
-            ++served;
-            if (served == 1)
-                (void)control.suspend();
-            else
-                control.emergency_stop();
+        if (interrupts > 0 && served == 0) {
+            served = interrupts;
+            first = steady_clock::now();
+            (void)control.suspend();
+        } else if (interrupts > served) {
+            served = interrupts;
+            if (steady_clock::now() - first > seconds(1)) control.emergency_stop();
         }
         display.show(control);
     } while (!is_over(control.snapshot()));
@@ -270,17 +278,38 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     return report_twin(machine.end(), ready, options.output, *status);
 }
 
-Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+/// A display or a folder with a process that keeps the time of every light; for a virtual printer with another time a
+/// plain folder.
+Result<std::unique_ptr<host::Projector>> open_projector(const LiveOptions& options, const machine::Printer& printer) {
+    const bool real_time = options.speed == 1 && options.clock_file.empty();
+    if (real_time) {
+        host::ScreenOptions screen;
+        screen.width_px = printer.projector.width_px;
+        screen.height_px = printer.projector.height_px;
+        screen.longest_light_s = printer.limits.exposure_s;
+        auto projector = host::ScreenProjector::open(options.projector, screen);
+        if (!projector) return tl::unexpected(projector.error());
+        return std::make_unique<host::ScreenProjector>(std::move(*projector));
+    }
     std::error_code error;
     if (!std::filesystem::is_directory(options.projector, error))
         return input_error("--projector {}: no such folder", options.projector);
-    operate::PictureProjector projector(options.projector);
-    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard", projector.shown(),
-                                                       options.speed};
+    return std::make_unique<operate::PictureProjector>(options.projector);
+}
+
+Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+    // The guard first: what this program opens later must not live on in it.
+    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard",
+                                                       std::filesystem::path(options.projector) / "shown.png",
+                                                       options.speed, options.clock_file.empty() ? nullptr : &clock};
     auto guard = operate::ProcessGuard::start(guard_options);
     if (!guard) return tl::unexpected(guard.error());
-    if (Status dark = projector.black(); !dark) return tl::unexpected(dark.error());
-    host::Control control(setup_of(options, ready, options.port, projector, clock, &*guard));
+    auto projector = open_projector(options, ready.printer);
+    if (!projector) return tl::unexpected(projector.error());
+    if (Status dark = (*projector)->black(); !dark) return tl::unexpected(dark.error());
+    host::ImageAhead ahead(ready.job.images, host::order_of_exposures(ready.job.gcode));
+    ready.job.images = [&ahead](int layer, int material) { return ahead.get(layer, material); };
+    host::Control control(setup_of(options, ready, options.port, **projector, clock, &*guard));
     return run(control, options, ready);
 }
 
@@ -292,6 +321,11 @@ Result<int> print_live(const LiveOptions& options) {
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;
+    if (!options.clock_file.empty()) {
+        auto clock = operate::ClockFile::open(options.clock_file);
+        if (!clock) return tl::unexpected(clock.error());
+        return print_on_port(options, *ready, *clock);
+    }
     host::SteadyClock steady;
     host::ScaledClock clock(steady, options.speed);
     return options.port.empty() ? print_on_live_twin(options, *ready, clock) : print_on_port(options, *ready, clock);

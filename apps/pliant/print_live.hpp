@@ -19,6 +19,7 @@ struct LiveOptions {
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;
     double speed = 1;
+    std::string clock_file;  ///< of the virtual printer; "": the wall's clock
     Output output;
 };
 

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "job/png.hpp"
 #include "job_tools.hpp"
 #include "machine/printer.hpp"
+#include "operate/clock_file.hpp"
 #include "twin/serve.hpp"
 
 namespace pliant::app {
@@ -21,6 +23,7 @@ struct Options {
     std::string printer;
     std::string link;
     std::string projector;
+    std::string clock;
     double speed = 1;
     double seconds = 0;
     std::vector<std::string> faults;
@@ -113,6 +116,14 @@ Status run_twin(const Options& options) {
     serve.stop = [&] { return interrupted != 0 || (options.seconds > 0 && twin.now() > options.seconds); };
     FolderProjector projector(std::filesystem::path(options.projector) / "shown.png");
     if (!options.projector.empty()) serve.lights = [&](twin::Twin& t) { return projector.look(t); };
+    std::optional<operate::ClockFile> clock;
+    if (!options.clock.empty()) {
+        auto made = operate::ClockFile::create(options.clock);
+        if (!made) return tl::unexpected(made.error());
+        clock.emplace(std::move(*made));
+        serve.longest_step_s = 0.1 / options.speed;  // of the machine's clock
+        serve.tick = [&](double now_s) { clock->set(now_s); };
+    }
     if (options.trace) {
         serve.log = [](std::string_view bytes, bool from_host) {
             fmt::print(stderr, "{} {}\n", from_host ? ">" : "<", bytes);
@@ -132,6 +143,8 @@ void add_twin(CLI::App& app, int& status) {
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
     command->add_option("--pty", options->link, "name of a link to the device, such as /tmp/printer");
     command->add_option("--projector", options->projector, "folder whose shown.png is what the projector shows");
+    command->add_option("--clock", options->clock,
+                        "file for its clock, for print --clock: both agree on how long light was on");
     command->add_option("--speed", options->speed, "seconds of the machine in one of the wall; 1 is real time");
     command->add_option("--seconds", options->seconds, "ends after so long on the machine's clock");
     command->add_option("--fault", options->faults, "KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())

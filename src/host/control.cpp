@@ -86,6 +86,7 @@ struct Control::State_ {
     std::condition_variable woken;
     std::deque<std::function<void()>> tasks;
     bool quitting = false;
+    bool hears_m112 = true;  ///< at once, even while it is busy: EMERGENCY_PARSER
     std::shared_ptr<Wire> wire;
 
     // ---------------
@@ -114,6 +115,7 @@ struct Control::State_ {
     [[nodiscard]] Status check_journal(const JournalFacts& facts) const;
     void finish(const Result<Ending>& ending);
     void show_machine();
+    void note_firmware();
     void fail(const Error& error);
     void look_at_journal();
 };
@@ -252,6 +254,8 @@ void Control::emergency_stop() {
     {
         const std::scoped_lock lock(state_->mutex);
         if (state_->wire) (void)state_->wire->write("\nM112\n");
+        // A firmware that reads it in its turn only is stopped by a reset, where the wire can.
+        if (state_->wire && !state_->hears_m112) (void)state_->wire->reset();
     }
     state_->desk.stop_everything();
     state_->woken.notify_all();
@@ -510,9 +514,21 @@ void Control::State_::do_connect() {
     Status status = open();
     if (status) status = machine->connect(last_base = new_base(setup.clock, std::max(last_line, last_base)));
     if (!status) return fail(status.error());
-    desk.update([&](Snapshot& s) { s.firmware = machine->firmware().name; });
+    note_firmware();
     show_machine();
     desk.state(State::idle);
+}
+
+void Control::State_::note_firmware() {
+    const Firmware& firmware = machine->firmware();
+    desk.update([&](Snapshot& s) { s.firmware = firmware.name; });
+    const auto parser = firmware.capabilities.find("EMERGENCY_PARSER");
+    const bool deaf = parser != firmware.capabilities.end() && !parser->second;
+    {
+        const std::scoped_lock lock(mutex);
+        hears_m112 = !deaf;
+    }
+    if (deaf) desk.event("log", "this firmware has no EMERGENCY_PARSER: an emergency stop waits or resets it");
 }
 
 void Control::State_::show_machine() {
@@ -552,7 +568,7 @@ Status Control::State_::new_session(Journal* journal, const JournalFacts& facts,
         if (!noted) return tl::unexpected(noted.error());
     }
     if (Status status = machine->connect(base); !status) return status;
-    desk.update([&](Snapshot& s) { s.firmware = machine->firmware().name; });
+    note_firmware();
     machine->keep(journal);
     return {};
 }

@@ -38,6 +38,7 @@ Status set_up(int file, int baud_rate) {
     settings.c_cc[VTIME] = 0;
     settings.c_ospeed = settings.c_ispeed = static_cast<speed_t>(baud_rate);
     if (ioctl(file, TCSETS2, &settings) != 0) return input_error("{}", std::strerror(errno));
+    (void)ioctl(file, TCFLSH, TCIFLUSH);  // what was said while nobody listened
     return {};
 }
 

@@ -39,8 +39,8 @@ double monotonic_s() {
 void make_dark(const ProcessGuard::Options& options, const std::string& boot, long light) {
     if (!options.shown.empty()) ::unlink(options.shown.c_str());
     std::array<char, 160> line{};
-    const int length = std::snprintf(line.data(), line.size(), "%s %ld %.6f\n", boot.c_str(), light,
-                                     monotonic_s() * options.clock_speed);
+    const double now_s = options.clock != nullptr ? options.clock->now() : monotonic_s() * options.clock_speed;
+    const int length = std::snprintf(line.data(), line.size(), "%s %ld %.6f\n", boot.c_str(), light, now_s);
     const int file = ::open(options.witness.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) return;
     if (::write(file, line.data(), static_cast<std::size_t>(length)) == length) ::fsync(file);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "host/devices.hpp"
 #include "host/guard.hpp"
 
 namespace pliant::operate {
@@ -13,9 +14,10 @@ namespace pliant::operate {
 class ProcessGuard final : public host::Guard {
 public:
     struct Options {
-        std::filesystem::path witness;  ///< file for what it has seen, beside the journal
-        std::filesystem::path shown;    ///< picture that a projector shows as long as it is there; "": none
-        double clock_speed = 1;         ///< seconds of the devices' clock in one of CLOCK_MONOTONIC
+        std::filesystem::path witness;       ///< file for what it has seen, beside the journal
+        std::filesystem::path shown;         ///< picture that a projector shows as long as it is there; "": none
+        double clock_speed = 1;              ///< seconds of the devices' clock in one of CLOCK_MONOTONIC
+        const host::Clock* clock = nullptr;  ///< or that clock itself; must outlive the guard
     };
     /// Starts the process. Call it before the program has other threads, and before it opens ports and journals.
     [[nodiscard]] static Result<ProcessGuard> start(const Options& options);

@@ -16,18 +16,21 @@ double wall_s() {
 }  // namespace
 
 Status serve(Twin& twin, Pty& pty, const ServeOptions& options) {
-    const double wall_start_s = wall_s();
-    const double twin_start_s = twin.now();
-    const auto twin_now = [&] { return twin_start_s + (wall_s() - wall_start_s) * options.speed; };
+    double wall_before_s = wall_s();
+    double now_s = twin.now();
     // Light that is looked at every 20 ms would be seconds off on a fast machine.
     const double look_every_s =
         options.lights ? std::clamp(longest_wait_s / options.speed, shortest_wait_s, longest_wait_s) : longest_wait_s;
     while (!options.stop()) {
         const auto next = twin.next_event();
-        const double until_s = next ? (*next - twin_now()) / options.speed : look_every_s;
+        const double until_s = next ? (*next - now_s) / options.speed : look_every_s;
         const Result<std::string> bytes = pty.read(std::clamp(until_s, shortest_wait_s, look_every_s));
         if (!bytes) return tl::unexpected(bytes.error());
-        twin.advance_to(std::max(twin.now(), twin_now()));
+        const double wall_now_s = wall_s();
+        now_s += std::min(wall_now_s - wall_before_s, options.longest_step_s) * options.speed;
+        wall_before_s = wall_now_s;
+        twin.advance_to(std::max(twin.now(), now_s));
+        if (options.tick) options.tick(twin.now());
         // A host makes dark before it sends the next move: so the light comes first here too.
         if (options.lights) {
             if (Status status = options.lights(twin); !status) return status;

@@ -47,7 +47,7 @@ TEST_CASE("a host opens the device like a serial port, homes the machine a thous
     {
         auto pty = Pty::open(link);
         REQUIRE_MESSAGE(pty, (pty ? "" : pty.error().message));
-        std::thread machine([&] { CHECK(serve(twin, *pty, {1000, [&] { return stop.load(); }, {}, {}})); });
+        std::thread machine([&] { CHECK(serve(twin, *pty, {1000, [&] { return stop.load(); }, {}, {}, {}})); });
         {
             Host host(link.string());
             CHECK(host.hears("start\n"));
