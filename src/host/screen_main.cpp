@@ -13,10 +13,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "host/frame_folder.hpp"
@@ -50,8 +52,19 @@ void answer_host(const std::string& line) {
     if (std::freopen("/dev/null", "w", stdout) == nullptr) std::fclose(stdout);
 }
 
+/// The screen of a host that has just ended takes a moment to make room.
+Result<ScreenSocket> listen_patiently(const std::string& name) {
+    constexpr int tries = 40;
+    auto listener = ScreenSocket::listen(name);
+    for (int k = 1; k < tries && !listener && asked_to_stop == 0; ++k) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        listener = ScreenSocket::listen(name);
+    }
+    return listener;
+}
+
 Status serve(Panel& panel, const Wanted& wanted, const std::string& driver, bool again) {
-    auto listener = ScreenSocket::listen(wanted.name);
+    auto listener = listen_patiently(wanted.name);
     if (!listener) return failure("another program is using this panel ({})", listener.error().message);
     ScreenServerOptions options;
     options.once = wanted.folder;
