@@ -143,7 +143,7 @@ function Swap({ job }: { job: Job }) {
           </svg>
         </div>
       ))}
-      <div class="gantt-row axis">
+      <div class="gantt-row scale">
         <span />
         <div>
           {[0, 0.25, 0.5, 0.75, 1].map((t) => (

@@ -348,8 +348,9 @@ function Status() {
       <span class="quiet">
         residual {head.residual.toExponential(0)} · {s.tets.toLocaleString('en')} tets · {head.solve_ms.toFixed(0)} ms
         <span class="wide">
-          {' '}
-          · {frameRate.value} frames/s · {latency.value.toFixed(0)} ms to picture
+          {/* a rate is one while the robot moves: a single frame of a second says nothing */}
+          {frameRate.value >= 5 && ` · ${frameRate.value} frames/s`}
+          {latency.value > 0 && ` · ${latency.value.toFixed(0)} ms to picture`}
         </span>
       </span>
     </div>
