@@ -15,10 +15,10 @@
 #include "core/files.hpp"
 #include "job/job.hpp"
 #include "job/verify.hpp"
-#include "job_tools.hpp"
 #include "machine/firmware.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
+#include "operate/job_file.hpp"
 #include "plan/safe_stop.hpp"
 #include "robot/build.hpp"
 #include "threemf/read_3mf.hpp"
@@ -69,7 +69,7 @@ Result<std::string> check_toml(const std::string& file, Progress& progress) {
 }
 
 Result<std::string> check_job(const std::string& file) {
-    const Result<OpenJob> job = open_job(file);
+    const Result<operate::OpenJob> job = operate::open_job(file);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
     const machine::Projector& projector = job->printer.projector;

@@ -5,7 +5,7 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "job_tools.hpp"
+#include "operate/job_file.hpp"
 #include "plan/timeline.hpp"
 #include "report/plan_picture.hpp"
 
@@ -20,7 +20,7 @@ struct Options {
 };
 
 Status make_plan(const Options& options) {
-    Result<OpenJob> job = open_job(options.job);
+    Result<operate::OpenJob> job = operate::open_job(options.job);
     if (!job) return tl::unexpected(job.error());
     if (!options.printer.empty()) {
         Result<machine::Printer> other = machine::load_printer(options.printer);

@@ -10,7 +10,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "host/serial.hpp"
-#include "job_tools.hpp"
+#include "operate/job_file.hpp"
 #include "plan/plan.hpp"
 #include "print_live.hpp"
 #include "twin/inspect.hpp"
@@ -29,7 +29,7 @@ struct Options {
 
 Result<int> print_on_twin(const Options& options) {
     const auto progress = terminal_progress(options.live.output);
-    const Result<OpenJob> job = open_job(options.live.job);
+    const Result<operate::OpenJob> job = operate::open_job(options.live.job);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
     const Result<std::string> gcode = job->archive.file("job.gcode");
@@ -37,7 +37,7 @@ Result<int> print_on_twin(const Options& options) {
     const Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
     if (!plan) return tl::unexpected(plan.error());
 
-    Result<std::optional<job::Image>> mask = mask_of(*job);
+    Result<std::optional<job::Image>> mask = operate::mask_of(job->archive, job->printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     twin::Options twin_options;
     twin_options.mask = std::move(*mask);
@@ -45,13 +45,13 @@ Result<int> print_on_twin(const Options& options) {
     // What has been shown is remembered: decoding is most of the work.
     std::map<std::pair<int, int>, twin::Runs> shown;
     const auto images = [&](int layer, int material) {
-        Result<job::Image> image = image_of(job->archive, layer, material);
+        Result<job::Image> image = operate::image_of(job->archive, layer, material);
         if (image) shown[{layer, material}] = twin::runs_of(*image);
         return image;
     };
     const twin::RunSource runs = [&](int layer, int material) -> Result<twin::Runs> {
         if (const auto known = shown.find({layer, material}); known != shown.end()) return known->second;
-        return image_of(job->archive, layer, material).map(twin::runs_of);
+        return operate::image_of(job->archive, layer, material).map(twin::runs_of);
     };
     host::PrintRecord record;
     const host::LinkOptions link = link_options(job->printer.controller);

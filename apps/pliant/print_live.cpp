@@ -19,8 +19,8 @@
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
-#include "job_tools.hpp"
 #include "operate/clock_file.hpp"
+#include "operate/job_file.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/picture_projector.hpp"
 #include "operate/print_job.hpp"
@@ -265,11 +265,9 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     Result<twin::Pty> pty = twin::Pty::open();
     if (!pty) return tl::unexpected(pty.error());
     twin::Options wanted;
-    if (!ready.printer.projector.mask.empty()) {
-        Result<job::Image> mask = ready.archive->image(mask_entry);
-        if (!mask) return tl::unexpected(mask.error());
-        wanted.mask = std::move(*mask);
-    }
+    Result<std::optional<job::Image>> mask = operate::mask_of(*ready.archive, ready.printer.projector);
+    if (!mask) return tl::unexpected(mask.error());
+    wanted.mask = std::move(*mask);
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     ready.job.journal.clear();  // this printer is gone when the program ends
     host::Control control(setup_of(options, ready, machine.device(), machine.light, clock, nullptr));

@@ -4,16 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "command.hpp"
 #include "core/files.hpp"
 #include "job/png.hpp"
-#include "job_tools.hpp"
-#include "plan/check.hpp"
+#include "operate/job_file.hpp"
 #include "plan/plan.hpp"
+#include "prepare/slice_job.hpp"
 #include "report/job_picture.hpp"
-#include "slice_settings.hpp"
 
 namespace pliant::app {
 namespace {
+
+struct SliceOptions {
+    prepare::Order order;
+    std::string printer, job, picture;
+    Output output;
+};
 
 /// "50 um", or "25 to 100 um" where layers are not alike.
 std::string heights_text(const job::Manifest& manifest) {
@@ -47,48 +53,74 @@ Status draw_picture(const SliceOptions& options) {
     return write_file(options.picture, *png);
 }
 
-/// All files of the job beside its images.
-Status add_files(const SliceOptions& options, const machine::Printer& printer, const std::string& printer_text,
-                 const job::JobSettings& settings, const job::Manifest& manifest, const plan::Plan& plan,
-                 job::Writer& writer) {
-    const std::string gcode = plan::write_gcode(plan, manifest, printer);
-    Status status = plan::check_gcode(gcode, printer);
-    if (status) status = writer.add_file("printer.toml", printer_text);
-    if (status && settings.light.mask) status = writer.add_image(mask_entry, *settings.light.mask);
-    if (status) status = writer.add_file("settings.json", job::settings_json(settings, request_of(options, settings)));
-    if (status) status = writer.add_file("plan.json", plan::plan_json(plan));
-    if (status) status = writer.add_file("job.gcode", gcode);
-    return status;
+Result<prepare::PrinterFile> read_printer(const std::string& file) {
+    Result<machine::Printer> printer = machine::load_printer(file);
+    if (!printer) return tl::unexpected(printer.error());
+    Result<std::string> text = read_file(file);
+    if (!text) return tl::unexpected(text.error());
+    Result<std::optional<job::Image>> mask = operate::load_mask(printer->projector, file);
+    if (!mask) return tl::unexpected(mask.error());
+    return prepare::PrinterFile{std::move(*printer), std::move(*text), std::move(*mask)};
 }
 
 Status slice(const SliceOptions& options) {
     const auto progress = terminal_progress(options.output);
-    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    const Result<prepare::PrinterFile> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
-    const Result<std::string> printer_text = read_file(options.printer);
-    if (!printer_text) return tl::unexpected(printer_text.error());
-    Result<Drawing> drawing = read_drawing(options.inputs, options.assignments, *progress);
+    const prepare::Order& order = options.order;
+    Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
-    Result<job::JobSettings> settings = job_settings(options, *printer, *drawing);
-    if (!settings) return tl::unexpected(settings.error());
-    std::vector<std::string> notes;
-    if (Status status = arrange(options, *settings, *drawing, notes, *progress); !status) return status;
-
-    Result<job::Writer> writer = job::Writer::create(options.job);
-    if (!writer) return tl::unexpected(writer.error());
-    Result<job::MadeJob> made = drawing->stacks.empty()
-                                    ? job::slice_to_job(drawing->bodies, *settings, *writer, *progress)
-                                    : job::stacks_to_job(drawing->stacks, *settings, *writer, *progress);
+    const auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
-    job::Manifest& manifest = made->manifest;
-    manifest.warnings.insert(manifest.warnings.begin(), drawing->warnings.begin(), drawing->warnings.end());
-    const Result<plan::Plan> plan = plan::make_plan(manifest, *printer);
-    if (!plan) return tl::unexpected(plan.error());
-    Status status = add_files(options, *printer, *printer_text, *settings, manifest, *plan, *writer);
-    if (status) status = writer->finish(manifest);
-    if (status && !options.picture.empty()) status = draw_picture(options);
-    if (status) print_summary(options, manifest, *plan, notes);
+    Status status;
+    if (!options.picture.empty()) status = draw_picture(options);
+    if (status) print_summary(options, made->manifest, made->plan, made->notes);
     return status;
+}
+
+void add_slice_options(CLI::App& command, SliceOptions& options) {
+    prepare::Order& order = options.order;
+    command
+        .add_option("inputs", order.inputs,
+                    "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE or "
+                    "folder or zip of layer images")
+        ->required();
+    command.add_option("--printer", options.printer, "printer file (TOML)")->required();
+    command.add_option("-o,--output", options.job, "job file to write (.zip)")->required();
+    command.add_option("--picture", options.picture, "PNG file: the part from the front, and some layers");
+    command.add_option("--layer", order.layer, "layer height, as in \"50 um\"; the printer file's where not given");
+    command.add_option("--least-layer", order.least_layer,
+                       "layers follow the slope: as thin as this where it is flat, as thick as --layer where steep");
+    const auto each = [&](const char* name, std::vector<std::string>& values, const char* type, const char* text) {
+        command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
+    };
+    each("--resin", order.resins, "MATERIAL=RESIN", "what a material is printed in");
+    each("--exposure", order.exposures, "MATERIAL[:FIRST-LAST]=TIME[,BOTTOM]",
+         "light of a material, and of its first layers; or of some layers");
+    each("--interlock", order.interlocks, "A+B=PIXELS[,LAYERS]",
+         "teeth so deep between two materials, changing sides every so many layers");
+    each("--overlap", order.overlaps, "A+B=PIXELS[,LAYERS]",
+         "A lights so much of B too where they meet, side by side and above each other");
+    command.add_option("--least-feature", order.least_feature,
+                       "warn of walls and tips narrower than this, as in \"0.3 mm\"");
+    command.add_option("--copies", order.copies, "how many of the part, side by side");
+    command.add_option("--spacing", order.spacing, "between copies, as in \"2 mm\"")->capture_default_str();
+    command.add_option("--turn", order.turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
+    command.add_flag("--no-anti-alias", order.no_anti_alias, "pixels are full or dark");
+    command.add_option("--threshold", order.threshold, "without anti-aliasing: least coverage of a full pixel")
+        ->capture_default_str();
+    command.add_option("--support", order.support, "supports in this material under islands and overhangs");
+    command.add_option("--support-angle", order.support_angle,
+                       "undersides flatter than so many degrees are supported; 45, 0: islands only");
+    command.add_option("--support-spacing", order.support_spacing, "between tips, at most; \"3 mm\"");
+    command.add_option("--support-tip", order.support_tip, "diameter where it touches the part; \"0.4 mm\"");
+    command.add_option("--support-pillar", order.support_pillar, "diameter below; \"1 mm\"");
+    command.add_option("--lift", order.lift, "how high above the platform the part begins, on supports");
+    command.add_option("--raft", order.raft, "thickness of a plate under the supports");
+    command.add_option("--hollow", order.hollow, "hollow the part out, down to walls of this, as in \"2 mm\"");
+    command.add_option("--drain", order.drain, "diameter of the holes that let the resin out of a hollow part");
+    each("--set", order.assignments, "KEY=VALUE", "change any key of the robot file");
+    add_output_options(command, options.output, false);
 }
 
 }  // namespace
@@ -96,6 +128,7 @@ Status slice(const SliceOptions& options) {
 void add_slice(CLI::App& app, int& status) {
     auto options = std::make_shared<SliceOptions>();
     CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
+    options->order.version = PLIANT_VERSION;
     add_slice_options(*command, *options);
     command->footer(
         "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "

@@ -11,9 +11,9 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "job/png.hpp"
-#include "job_tools.hpp"
 #include "machine/printer.hpp"
 #include "operate/clock_file.hpp"
+#include "operate/job_file.hpp"
 #include "twin/serve.hpp"
 
 namespace pliant::app {
@@ -98,7 +98,7 @@ Status run_twin(const Options& options) {
     if (!printer) return tl::unexpected(printer.error());
     Result<twin::Options> wanted = twin_options(options);
     if (!wanted) return tl::unexpected(wanted.error());
-    Result<std::optional<job::Image>> mask = load_mask(printer->projector, options.printer);
+    Result<std::optional<job::Image>> mask = operate::load_mask(printer->projector, options.printer);
     if (!mask) return tl::unexpected(mask.error());
     wanted->mask = std::move(*mask);
     Result<twin::Pty> pty = twin::Pty::open(options.link);

@@ -18,6 +18,9 @@
 
 namespace pliant::job {
 
+/// What a job calls the projector's mask, whatever its name beside the printer file.
+inline constexpr const char* mask_entry = "mask.png";
+
 using Image = slice::Image;
 
 struct Material {

@@ -22,7 +22,4 @@ struct ReadyJob {
 /// Errors: no job, no printer or no G-code in it.
 [[nodiscard]] Result<ReadyJob> load_job(const std::filesystem::path& path);
 
-/// The image of a layer and a material (indices into the manifest).
-[[nodiscard]] Result<job::Image> image_of(const job::Archive& archive, int layer, int material);
-
 }  // namespace pliant::operate

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "operate/job_file.hpp"
 #include "report/colour.hpp"
 #include "studio/access.hpp"
 #include "studio/slice_robot.hpp"
@@ -53,19 +54,15 @@ Status MakeSession::open(const std::filesystem::path& file) {
 }
 
 Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
-    Result<job::Archive> archive = job::Archive::open(file);
-    if (!archive) return tl::unexpected(archive.error());
-    const Result<std::string> text = archive->file("printer.toml");
-    if (!text) return input_error("{}: {}; slice the robot again with --printer", file.string(), text.error().message);
-    Result<machine::Printer> printer = machine::parse_printer(*text, file / "printer.toml");
-    if (!printer) return tl::unexpected(printer.error());
-    const std::size_t materials = archive->manifest().materials.size();
+    Result<operate::OpenJob> open = operate::open_job(file);
+    if (!open) return tl::unexpected(open.error());
+    const std::size_t materials = open->archive.manifest().materials.size();
     for (std::size_t m = colours.size(); m < materials; ++m)
         colours.push_back(report::hex(report::palette(static_cast<int>(m))));
     std::string news;
     {
         const std::lock_guard lock(mutex_);
-        job_ = std::make_shared<OpenJob>(std::move(*archive), std::move(*printer), file, ++revision_);
+        job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
         job_->colours = std::move(colours);
         news = last_event_ = event({{"type", "job"}, {"revision", revision_}});
     }

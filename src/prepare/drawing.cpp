@@ -1,4 +1,4 @@
-#include "slice_input.hpp"
+#include "prepare/drawing.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,7 +12,7 @@
 #include "robot/build.hpp"
 #include "threemf/read_3mf.hpp"
 
-namespace pliant::app {
+namespace pliant::prepare {
 namespace {
 
 constexpr double um_per_mm = 1e3;
@@ -36,34 +36,6 @@ slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend)
                         blend.shares, 1};
     result.cell_um = um * blend.cell;
     return result;
-}
-
-Result<Drawing> read_robot(const std::string& path, const std::vector<std::string>& assignments, Progress& progress) {
-    const Result<robot::Robot> robot = robot::load_robot(path, assignments);
-    if (!robot) return tl::unexpected(robot.error());
-    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(*robot, progress);
-    if (!surfaces) return tl::unexpected(surfaces.error());
-    Drawing drawing;
-    drawing.name = robot->name;
-    for (robot::BodySurface& body : *surfaces) {
-        const robot::MaterialSpec& material = robot->materials[static_cast<std::size_t>(body.material)];
-        const robot::BodySpec& spec = body_named(*robot, body.body);
-        std::string name = material.name;
-        // A body with light of its own is a material of its own in the same resin.
-        if (spec.exposure_s > 0) {
-            name += " of " + spec.name;
-            add_resin(drawing, name, material.resin);
-            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
-        }
-        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
-        if (spec.blend) drawing.bodies.back().blend = blend_of(*robot, *spec.blend);
-    }
-    for (const robot::MaterialSpec& material : robot->materials) {
-        add_resin(drawing, material.name, material.resin);
-        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
-            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
-    }
-    return drawing;
 }
 
 std::vector<slice::OutlineSlice> in_um(const std::vector<threemf::Slice>& slices) {
@@ -158,10 +130,39 @@ Status add_file(const std::string& input, Drawing& drawing) {
 
 }  // namespace
 
+Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
+    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(robot, progress);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    Drawing drawing;
+    drawing.name = robot.name;
+    for (robot::BodySurface& body : *surfaces) {
+        const robot::MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
+        const robot::BodySpec& spec = body_named(robot, body.body);
+        std::string name = material.name;
+        // A body with light of its own is a material of its own in the same resin.
+        if (spec.exposure_s > 0) {
+            name += " of " + spec.name;
+            add_resin(drawing, name, material.resin);
+            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
+        }
+        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);
+    }
+    for (const robot::MaterialSpec& material : robot.materials) {
+        add_resin(drawing, material.name, material.resin);
+        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
+            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
+    }
+    return drawing;
+}
+
 Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::vector<std::string>& assignments,
                              Progress& progress) {
-    if (inputs.size() == 1 && std::filesystem::path(inputs.front()).extension() == ".toml")
-        return read_robot(inputs.front(), assignments, progress);
+    if (inputs.size() == 1 && std::filesystem::path(inputs.front()).extension() == ".toml") {
+        const Result<robot::Robot> robot = robot::load_robot(inputs.front(), assignments);
+        if (!robot) return tl::unexpected(robot.error());
+        return drawing_of(*robot, progress);
+    }
     Drawing drawing;
     for (const std::string& input : inputs) {
         if (std::filesystem::path(input).extension() == ".toml")
@@ -192,4 +193,4 @@ Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
     return {};
 }
 
-}  // namespace pliant::app
+}  // namespace pliant::prepare

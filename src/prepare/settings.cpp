@@ -1,4 +1,4 @@
-#include "slice_settings.hpp"
+#include "prepare/settings.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -6,10 +6,9 @@
 #include <optional>
 
 #include "core/units.hpp"
-#include "job_tools.hpp"
 #include "machine/working_curve.hpp"
 
-namespace pliant::app {
+namespace pliant::prepare {
 namespace {
 
 /// A material with what the printer file says of its resin; for one that it does not know, the longest exposures that
@@ -124,15 +123,15 @@ Result<Pair> read_pair(const char* option, const std::string& text, int default_
     return pair;
 }
 
-Status set_pairs(const SliceOptions& options, const Drawing& drawing, slice::Settings& slicing) {
-    if (!drawing.stacks.empty() && !(options.interlocks.empty() && options.overlaps.empty()))
+Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& slicing) {
+    if (!drawing.stacks.empty() && !(order.interlocks.empty() && order.overlaps.empty()))
         return input_error("--interlock, --overlap: layer images are printed as they are");
-    for (const std::string& text : options.interlocks) {
+    for (const std::string& text : order.interlocks) {
         const Result<Pair> pair = read_pair("--interlock", text, 1);
         if (!pair) return tl::unexpected(pair.error());
         slicing.teeth.push_back({pair->first, pair->second, pair->pixels, pair->layers});
     }
-    for (const std::string& text : options.overlaps) {
+    for (const std::string& text : order.overlaps) {
         const Result<Pair> pair = read_pair("--overlap", text, 0);
         if (!pair) return tl::unexpected(pair.error());
         slicing.bonds.push_back({pair->first, pair->second, pair->pixels, pair->layers});
@@ -199,32 +198,22 @@ slice::Raster raster_of(const machine::Projector& p) {
     return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
 }
 
-/// The mask lies beside the printer file and has the projector's size.
-Result<slice::LightCorrection> light_of(const machine::Projector& projector, const std::string& printer) {
-    slice::LightCorrection light;
-    if (!projector.grey.empty()) light.grey = slice::grey_values(projector.grey);
-    Result<std::optional<job::Image>> mask = load_mask(projector, printer);
-    if (!mask) return tl::unexpected(mask.error());
-    light.mask = std::move(*mask);
-    return light;
-}
-
 /// The material of supports, in the resin of its name where no body has it.
-void add_support_material(const SliceOptions& options, Drawing& drawing) {
-    if (options.support.empty()) return;
-    const auto known = [&](const auto& pair) { return pair.first == options.support; };
+void add_support_material(const Order& order, Drawing& drawing) {
+    if (order.support.empty()) return;
+    const auto known = [&](const auto& pair) { return pair.first == order.support; };
     if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
-        drawing.resin_of_material.emplace_back(options.support, options.support);
+        drawing.resin_of_material.emplace_back(order.support, order.support);
 }
 
 /// What layer images cannot be asked for.
-Status check_stacks(const SliceOptions& options, const Drawing& drawing) {
+Status check_stacks(const Order& order, const Drawing& drawing) {
     if (drawing.stacks.empty()) return {};
-    const std::pair<const char*, bool> given[] = {{"--copies", options.copies != 1},
-                                                  {"--turn", !options.turn.empty()},
-                                                  {"--least-layer", !options.least_layer.empty()},
-                                                  {"--support", !options.support.empty()},
-                                                  {"--hollow", !options.hollow.empty()}};
+    const std::pair<const char*, bool> given[] = {{"--copies", order.copies != 1},
+                                                  {"--turn", !order.turn.empty()},
+                                                  {"--least-layer", !order.least_layer.empty()},
+                                                  {"--support", !order.support.empty()},
+                                                  {"--hollow", !order.hollow.empty()}};
     for (const auto& [option, is_given] : given) {
         if (is_given) return input_error("{}: layer images are printed as they are", option);
     }
@@ -233,25 +222,25 @@ Status check_stacks(const SliceOptions& options, const Drawing& drawing) {
 
 }  // namespace
 
-Result<job::JobSettings> job_settings(const SliceOptions& options, const machine::Printer& printer, Drawing& drawing) {
-    if (Status status = check_stacks(options, drawing); !status) return tl::unexpected(status.error());
-    add_support_material(options, drawing);
-    if (Status status = set_resins(options.resins, drawing); !status) return tl::unexpected(status.error());
+Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
+                                      std::optional<job::Image> mask, Drawing& drawing) {
+    if (Status status = check_stacks(order, drawing); !status) return tl::unexpected(status.error());
+    add_support_material(order, drawing);
+    if (Status status = set_resins(order.resins, drawing); !status) return tl::unexpected(status.error());
     job::JobSettings settings;
     settings.name = drawing.name;
-    settings.pliant_version = PLIANT_VERSION;
+    settings.pliant_version = order.version;
     settings.bottom_layers = bottom_layers(printer);
     settings.slicing.raster = raster_of(printer.projector);
-    Result<slice::LightCorrection> light = light_of(printer.projector, options.printer);
-    if (!light) return tl::unexpected(light.error());
-    settings.light = std::move(*light);
-    settings.copies = options.copies;
-    const Result<int> layer_um = options.layer.empty() ? printer.layer_um : layer_height_um("--layer", options.layer);
+    if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
+    settings.light.mask = std::move(mask);
+    settings.copies = order.copies;
+    const Result<int> layer_um = order.layer.empty() ? printer.layer_um : layer_height_um("--layer", order.layer);
     if (!layer_um) return tl::unexpected(layer_um.error());
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(drawing, printer);
-    settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !options.least_layer.empty());
-    for (const std::string& text : options.exposures) {
+    settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
+    for (const std::string& text : order.exposures) {
         if (Status status = set_exposure(text, settings); !status) return tl::unexpected(status.error());
     }
     settings.slicing.compensation = compensations(drawing, printer);
@@ -260,78 +249,34 @@ Result<job::JobSettings> job_settings(const SliceOptions& options, const machine
         drawing.warnings.emplace_back(
             "xy_compensation, elephant_foot and bleed_compensation: layer images are printed as they are");
     }
-    if (Status status = set_pairs(options, drawing, settings.slicing); !status) return tl::unexpected(status.error());
-    const Result<double> least = length_um("--least-feature", options.least_feature, 1e-3, 10000);
+    if (Status status = set_pairs(order, drawing, settings.slicing); !status) return tl::unexpected(status.error());
+    const Result<double> least = length_um("--least-feature", order.least_feature, 1e-3, 10000);
     if (!least) return tl::unexpected(least.error());
     settings.least_feature_um = *least;
-    settings.slicing.rules.anti_alias = !options.no_anti_alias;
-    settings.slicing.rules.threshold = options.threshold;
+    settings.slicing.rules.anti_alias = !order.no_anti_alias;
+    settings.slicing.rules.threshold = order.threshold;
     return settings;
 }
 
-job::Request request_of(const SliceOptions& options, const job::JobSettings& settings) {
-    job::Request request{options.inputs, options.assignments, options.turn, options.spacing};
+job::Request request_of(const Order& order, const job::JobSettings& settings) {
+    job::Request request{order.inputs, order.assignments, order.turn, order.spacing};
     if (!settings.slicing.tops_um.empty()) {
-        const Result<int> least = layer_height_um("--least-layer", options.least_layer);
+        const Result<int> least = layer_height_um("--least-layer", order.least_layer);
         request.least_layer_um = least.value_or(0);
     }
-    const std::pair<const char*, const std::string*> texts[] = {{"support", &options.support},
-                                                                {"support_angle", &options.support_angle},
-                                                                {"support_spacing", &options.support_spacing},
-                                                                {"support_tip", &options.support_tip},
-                                                                {"support_pillar", &options.support_pillar},
-                                                                {"lift", &options.lift},
-                                                                {"raft", &options.raft},
-                                                                {"hollow", &options.hollow},
-                                                                {"drain", &options.drain}};
+    const std::pair<const char*, const std::string*> texts[] = {{"support", &order.support},
+                                                                {"support_angle", &order.support_angle},
+                                                                {"support_spacing", &order.support_spacing},
+                                                                {"support_tip", &order.support_tip},
+                                                                {"support_pillar", &order.support_pillar},
+                                                                {"lift", &order.lift},
+                                                                {"raft", &order.raft},
+                                                                {"hollow", &order.hollow},
+                                                                {"drain", &order.drain}};
     for (const auto& [key, text] : texts) {
         if (!text->empty()) request.supports.emplace_back(key, *text);
     }
     return request;
 }
 
-void add_slice_options(CLI::App& command, SliceOptions& options) {
-    command
-        .add_option("inputs", options.inputs,
-                    "a robot file; or any of FILE.3mf, FILE.vtk (regions are materials), MATERIAL=FILE or "
-                    "folder or zip of layer images")
-        ->required();
-    command.add_option("--printer", options.printer, "printer file (TOML)")->required();
-    command.add_option("-o,--output", options.job, "job file to write (.zip)")->required();
-    command.add_option("--picture", options.picture, "PNG file: the part from the front, and some layers");
-    command.add_option("--layer", options.layer, "layer height, as in \"50 um\"; the printer file's where not given");
-    command.add_option("--least-layer", options.least_layer,
-                       "layers follow the slope: as thin as this where it is flat, as thick as --layer where steep");
-    const auto each = [&](const char* name, std::vector<std::string>& values, const char* type, const char* text) {
-        command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
-    };
-    each("--resin", options.resins, "MATERIAL=RESIN", "what a material is printed in");
-    each("--exposure", options.exposures, "MATERIAL[:FIRST-LAST]=TIME[,BOTTOM]",
-         "light of a material, and of its first layers; or of some layers");
-    each("--interlock", options.interlocks, "A+B=PIXELS[,LAYERS]",
-         "teeth so deep between two materials, changing sides every so many layers");
-    each("--overlap", options.overlaps, "A+B=PIXELS[,LAYERS]",
-         "A lights so much of B too where they meet, side by side and above each other");
-    command.add_option("--least-feature", options.least_feature,
-                       "warn of walls and tips narrower than this, as in \"0.3 mm\"");
-    command.add_option("--copies", options.copies, "how many of the part, side by side");
-    command.add_option("--spacing", options.spacing, "between copies, as in \"2 mm\"")->capture_default_str();
-    command.add_option("--turn", options.turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
-    command.add_flag("--no-anti-alias", options.no_anti_alias, "pixels are full or dark");
-    command.add_option("--threshold", options.threshold, "without anti-aliasing: least coverage of a full pixel")
-        ->capture_default_str();
-    command.add_option("--support", options.support, "supports in this material under islands and overhangs");
-    command.add_option("--support-angle", options.support_angle,
-                       "undersides flatter than so many degrees are supported; 45, 0: islands only");
-    command.add_option("--support-spacing", options.support_spacing, "between tips, at most; \"3 mm\"");
-    command.add_option("--support-tip", options.support_tip, "diameter where it touches the part; \"0.4 mm\"");
-    command.add_option("--support-pillar", options.support_pillar, "diameter below; \"1 mm\"");
-    command.add_option("--lift", options.lift, "how high above the platform the part begins, on supports");
-    command.add_option("--raft", options.raft, "thickness of a plate under the supports");
-    command.add_option("--hollow", options.hollow, "hollow the part out, down to walls of this, as in \"2 mm\"");
-    command.add_option("--drain", options.drain, "diameter of the holes that let the resin out of a hollow part");
-    each("--set", options.assignments, "KEY=VALUE", "change any key of the robot file");
-    add_output_options(command, options.output, false);
-}
-
-}  // namespace pliant::app
+}  // namespace pliant::prepare

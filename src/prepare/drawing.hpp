@@ -1,4 +1,4 @@
-// What `pliant slice` prints: bodies from robot files, 3MF files, surfaces and tet meshes.
+// What is printed: bodies from robot files, 3MF files, surfaces and tet meshes.
 #pragma once
 
 #include <map>
@@ -9,9 +9,10 @@
 #include "core/error.hpp"
 #include "core/progress.hpp"
 #include "job/make_job.hpp"
+#include "robot/robot.hpp"
 #include "slice/body.hpp"
 
-namespace pliant::app {
+namespace pliant::prepare {
 
 /// Bodies in micrometres, where they were drawn, and the resin of each material.
 struct Drawing {
@@ -32,7 +33,10 @@ struct Drawing {
 [[nodiscard]] Result<Drawing> read_drawing(const std::vector<std::string>& inputs,
                                            const std::vector<std::string>& assignments, Progress& progress);
 
+/// The bodies of a robot. Errors: of their geometry.
+[[nodiscard]] Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress);
+
 /// MATERIAL=RESIN: changes the resin of a material. Errors: no such material.
 [[nodiscard]] Status set_resins(const std::vector<std::string>& choices, Drawing& drawing);
 
-}  // namespace pliant::app
+}  // namespace pliant::prepare

@@ -1,9 +1,9 @@
-#include "job_tools.hpp"
+#include "operate/job_file.hpp"
 
 #include "core/files.hpp"
 #include "job/png.hpp"
 
-namespace pliant::app {
+namespace pliant::operate {
 
 Result<OpenJob> open_job(const std::filesystem::path& path) {
     Result<job::Archive> archive = job::Archive::open(path);
@@ -26,9 +26,9 @@ Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
     return std::optional(std::move(*mask));
 }
 
-Result<std::optional<job::Image>> mask_of(const OpenJob& job) {
-    if (job.printer.projector.mask.empty()) return std::nullopt;
-    Result<job::Image> mask = job.archive.image(mask_entry);
+Result<std::optional<job::Image>> mask_of(const job::Archive& archive, const machine::Projector& projector) {
+    if (projector.mask.empty()) return std::nullopt;
+    Result<job::Image> mask = archive.image(job::mask_entry);
     if (!mask) return tl::unexpected(mask.error());
     return std::optional(std::move(*mask));
 }
@@ -43,4 +43,4 @@ Result<job::Image> image_of(const job::Archive& archive, int layer, int material
     return input_error("layer {} has no image of material {}", layer, material);
 }
 
-}  // namespace pliant::app
+}  // namespace pliant::operate
