@@ -11,11 +11,6 @@ using machine::Axis;
 using machine::Interlock;
 using machine::Printer;
 
-bool all_homed(const Interlock& state, const Printer& p) {
-    return std::all_of(machine::all_axes.begin(), machine::all_axes.end(),
-                       [&](Axis axis) { return !p.axis(axis).present() || state.homed(axis); });
-}
-
 Sequence from(const Interlock& state, const Printer& p) {
     Sequence s(p);
     s.stand_at(state.position());
@@ -58,7 +53,7 @@ std::string cancel_program(const Interlock& state, const Printer& printer) {
     if (!state.homed(Axis::platform)) return s.text();
     const int up_um = printer.axis(Axis::platform).home_um();
     s.move(Axis::platform, up_um);
-    if (printer.store() == machine::Store::tower && all_homed(state, printer)) empty_carriage(s, state);
+    if (printer.store() == machine::Store::tower && state.all_homed()) empty_carriage(s, state);
     s.fence();
     return s.text();
 }
