@@ -20,8 +20,8 @@ int slot_of(const Printer& p, int vat) {
 
 void wake(Sequence& s) {
     for (const std::string& line : machine::preamble(s.printer())) s.command(line);
-    s.switch_to(s.printer().pump.off);
-    s.switch_to(s.printer().fans.off);
+    s.pump(false);
+    s.fans(false);
 }
 
 /// Off the vat's floor as gently as a layer is peeled, as far as it is known where that is.

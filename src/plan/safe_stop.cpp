@@ -39,8 +39,8 @@ void empty_carriage(Sequence& s, const Interlock& state) {
 }
 
 void switch_off(Sequence& s) {
-    s.switch_to(s.printer().pump.off);
-    s.switch_to(s.printer().fans.off);
+    s.pump(false);
+    s.fans(false);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ Pause pause_program(const Interlock& state, const Printer& printer) {
     if (back.position()[Axis::platform] > slow_from_um) back.move(Axis::platform, slow_from_um);
     back.move_to(before, platform.approach_speed_mm_s);
     back.fence();
-    if (state.pump_runs()) back.switch_to(printer.pump.on);
+    if (state.pump_runs()) back.pump(true);
     return {s.text(), back.text()};
 }
 
