@@ -103,20 +103,19 @@ private:
 /// A guard that sees everything, as the process of its own does.
 class SeeingGuard final : public host::Guard {
 public:
-    void lit(long light) override { light_ = light; }
-    void dark() override { light_ = 0; }
-    [[nodiscard]] std::optional<double> dark_at(long light) override {
-        return light == seen_ ? std::optional(at_s_) : std::nullopt;
-    }
-    void host_died(double now_s) {
-        if (light_ != 0) seen_ = light_, at_s_ = now_s;
-        light_ = 0;
+    explicit SeeingGuard(std::function<double()> now) : now_(std::move(now)) {}
+    void announced(long light) override { light_ = light, at_s_ = never_lit; }
+    void lit(long light) override { light_ = light, at_s_ = std::nullopt; }
+    void dark() override { at_s_ = now_(); }
+    [[nodiscard]] std::optional<double> dark_at(long light) override { return light == light_ ? at_s_ : std::nullopt; }
+    void host_died() {
+        if (!at_s_) at_s_ = now_();
     }
 
 private:
+    std::function<double()> now_;
     long light_ = 0;
-    long seen_ = -1;
-    double at_s_ = 0;
+    std::optional<double> at_s_;  ///< of that light; nullopt: it is on
 };
 
 struct ControlBench {
@@ -128,7 +127,7 @@ struct ControlBench {
     std::filesystem::path folder;
     std::unique_ptr<twin::Twin> twin;
     std::unique_ptr<Life> life = std::make_unique<Life>();
-    SeeingGuard guard;
+    SeeingGuard guard{[this] { return twin->now(); }};
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
@@ -207,7 +206,7 @@ struct ControlBench {
             },
             guarded ? &guard : nullptr};
         life->on_death = [this] {
-            guard.host_died(twin->now());
+            guard.host_died();
             twin->light_off();
         };
         control = std::make_unique<host::Control>(std::move(setup));

@@ -31,9 +31,12 @@ struct SwitchReading {
 /// nullopt: the readings do not name it.
 [[nodiscard]] std::optional<bool> door_open(const Printer& printer, const std::vector<SwitchReading>& readings);
 
-/// What the switches must not say of a machine that stands still in `state`: of a switch that the file lists nothing;
-/// pressed, though the axis is homed and stands elsewhere; both ends of an axis pressed at once; an open door. The
-/// error names the switch and what to look at. A machine whose file lists no switches and has no door passes.
+/// How far from the end of its travel an axis may stand with the switch there pressed, in um.
+inline constexpr int switch_reach_um = 5000;
+
+/// What the switches must not say of a machine that stands still in `state`: nothing of one that the file lists;
+/// pressed, though the axis is homed and stands elsewhere; both ends of an axis pressed at once. The error names the
+/// switch and what to look at. A machine whose file lists no switches and has no door passes.
 [[nodiscard]] Status check_switches(const Printer& printer, const Interlock& state,
                                     const std::vector<SwitchReading>& readings);
 
