@@ -107,15 +107,20 @@ public:
     void announced(long light) override { light_ = light, at_s_ = never_lit; }
     void lit(long light) override { light_ = light, at_s_ = std::nullopt; }
     void dark() override { at_s_ = now_(); }
-    [[nodiscard]] std::optional<double> dark_at(long light) override { return light == light_ ? at_s_ : std::nullopt; }
+    [[nodiscard]] std::optional<double> dark_at(long light) override {
+        return light == seen_ ? std::optional(seen_at_s_) : std::nullopt;
+    }
+    /// Only then it writes down what it knows.
     void host_died() {
-        if (!at_s_) at_s_ = now_();
+        seen_ = light_;
+        seen_at_s_ = at_s_.value_or(now_());
     }
 
 private:
     std::function<double()> now_;
-    long light_ = 0;
+    long light_ = 0, seen_ = -1;
     std::optional<double> at_s_;  ///< of that light; nullopt: it is on
+    double seen_at_s_ = 0;
 };
 
 struct ControlBench {
@@ -131,15 +136,18 @@ struct ControlBench {
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
+    host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
     std::unique_ptr<TwinClock> clock;
     std::unique_ptr<MortalProjector> projector;
     std::unique_ptr<host::Control> control;
     std::string first_error;
 
-    explicit ControlBench(twin::Options options = {}, const std::string& name = "tower", int layer_count = 5)
+    explicit ControlBench(twin::Options options = {}, const std::string& name = "tower", int layer_count = 5,
+                          const std::function<void(machine::Printer&)>& change = {})
         : layers(layer_count) {
         printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
+        if (change) change(printer);
         printer.projector.width_px = width;
         printer.projector.height_px = height;
         printer.projector.pixel_um = 158.75;
@@ -200,7 +208,7 @@ struct ControlBench {
             *clock,
             operate::programs_of(printer),
             link_options(printer.controller),
-            {},
+            emergency_line,
             [this](int layer) {
                 if (after_layer) after_layer(layer);
             },

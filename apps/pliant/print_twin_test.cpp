@@ -326,7 +326,7 @@ bool noticed(const std::string& gcode) {
 /// of a spray, what only loosens or settles, and what the next line does as well.
 bool harmless_to_drop(const std::string& line) {
     if (line[0] == ';') return line.rfind(";@expose", 0) != 0;
-    for (const char* start : {"M400", "M107", "M106 P0", "M84", "G4 "}) {
+    for (const char* start : {"M400", "M107", "M106 P0", "M106 P2", "M84", "G4 "}) {
         if (line.rfind(start, 0) == 0) return true;
     }
     return false;

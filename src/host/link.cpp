@@ -192,12 +192,12 @@ Status Link::fence() {
     return failure("the printer answers, but never the echo that ends a move");
 }
 
-Status Link::listen_for(double seconds) {
+Status Link::listen_for(double seconds, bool repair) {
     const double end = clock_.now() + seconds;
     do {
         const auto heard = hear(std::max(0.0, end - clock_.now()));
         if (!heard) return tl::unexpected(heard.error());
-        if (wanted_ && next_number_ > base_ + 1) {
+        if (repair && wanted_ && next_number_ > base_ + 1) {
             if (Status status = resynchronise(); !status) return status;
             if (Status status = transmit(); !status) return status;
         }

@@ -67,8 +67,11 @@ public:
     [[nodiscard]] Result<std::vector<std::string>> ask(std::string_view command);
     /// Returns when everything sent has been executed and all motion is done.
     [[nodiscard]] Status fence();
-    /// Listens for so long, and lets the watch be asked.
-    [[nodiscard]] Status listen_for(double seconds);
+    /// Listens for so long, and lets the watch be asked. Without `repair` what the firmware asks for again is left for
+    /// later: nothing delays the end.
+    [[nodiscard]] Status listen_for(double seconds, bool repair = true);
+    /// Whether every line has had its ok: the next one goes out at once.
+    [[nodiscard]] bool is_quiet() const { return outstanding_.empty() && !wanted_ && next_to_send_ == next_number_; }
 
     /// Past the window and without a number: M112, M410, M108. May be called from any thread if the wire allows it.
     void urgent(std::string_view command);

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "machine/switches.hpp"
+
 namespace pliant::host {
 namespace {
 
@@ -78,6 +80,9 @@ Status Machine::connect(long base) {
 
 Status Machine::note_go(long program, std::size_t step, const Interlock& before) {
     if (Status status = link_.fence(); !status) return status;
+    if (printer_.door.present()) {
+        if (Status status = look_at_switches(); !status) return status;
+    }
     noted_ = true;
     const auto number = journal_->append("go", {{"program", fmt::format("{}", program)},
                                                 {"step", fmt::format("{}", step)},
@@ -85,6 +90,73 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before)
                                                 {"state", write_state(before.state())}});
     return number ? Status{} : tl::unexpected(number.error());
 }
+
+// --- switches ------------------------------------------------------------------------------------------------------
+
+void Machine::hear(std::string_view line) {
+    if (!printer_.door.present()) return;
+    if (const auto reading = machine::parse_switch(line); reading && reading->name == printer_.door.input)
+        door_open_ = reading->pressed;
+}
+
+Status Machine::ask_for_door() {
+    constexpr double every_s = 0.25;
+    if (!printer_.door.present() || !link_.is_quiet() || clock_.now() - door_asked_s_ < every_s) return {};
+    door_asked_s_ = clock_.now();
+    noted_ = false;
+    return link_.send("M119");
+}
+
+/// Answers lose bytes: what is not named is asked for again before it counts as not there.
+Status Machine::look_at_switches() {
+    if (!has_switches()) return {};
+    constexpr int attempts = 3;
+    noted_ = false;
+    Status status;
+    for (int i = 0; i < attempts; ++i) {
+        const auto answers = link_.ask("M119");
+        if (!answers) return tl::unexpected(answers.error());
+        std::vector<machine::SwitchReading> readings;
+        for (const std::string& answer : *answers) {
+            if (auto reading = machine::parse_switch(answer)) readings.push_back(std::move(*reading));
+        }
+        if (const auto open = machine::door_open(printer_, readings)) door_open_ = open;
+        status = machine::check_switches(printer_, at_.lock, readings);
+        if (status) break;
+    }
+    return status;
+}
+
+/// Of every axis that `command` has homed.
+Status Machine::after_homing(std::string_view command) {
+    if (printer_.limit_switches.empty()) return {};
+    const auto parsed = machine::parse_command(command);
+    if (!parsed || !parsed->is('G', 28)) return {};
+    for (const machine::Word& word : parsed->words) {
+        const auto axis = machine::axis_of_letter(printer_, word.letter);
+        if (!axis) continue;
+        if (Status status = leave_switch(*axis); !status) return status;
+    }
+    return {};
+}
+
+/// A switch that is stuck ends homing wherever the axis stands. So it goes a little further than the switch reaches,
+/// where the machine allows that, is looked at, and goes back.
+Status Machine::leave_switch(Axis axis) {
+    const machine::AxisSpec& spec = printer_.axis(axis);
+    const machine::Position home = at_.lock.position();
+    machine::Position off = home;
+    off[axis] += (spec.homes_to_max ? -1 : 1) * (machine::switch_reach_um + 1000);
+    machine::Followed trial = at_;
+    const std::string there = machine::write_move(printer_, home, off, spec.homing_speed_mm_s);
+    const std::string back = machine::write_move(printer_, off, home, spec.homing_speed_mm_s);
+    if (!trial.line(printer_, there) || !trial.line(printer_, back)) return {};
+    Status status = run("G90\n" + there + "\n");
+    if (status) status = look_at_switches();
+    return status ? run(back + "\n") : status;
+}
+
+// --- sending -------------------------------------------------------------------------------------------------------
 
 Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;
@@ -98,7 +170,7 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
     // it stands.
     if (after.lock.in_hooks_stroke() && after.lock.position() != at_.lock.position()) noted_ = false;
     at_ = std::move(after);
-    return {};
+    return after_homing(command);
 }
 
 Status Machine::run(std::string_view program) {
@@ -136,11 +208,11 @@ Status Machine::rest_in_place() {
             found = read;
             said = answer;
         }
-        if (found == Position::agrees) return {};
+        if (found == Position::agrees) break;
         if (found == Position::differs && std::exchange(differed, true))
             return failure("the controller is not where it was sent: it says {}", said);
     }
-    return {};
+    return look_at_switches();
 }
 
 }  // namespace pliant::host

@@ -58,6 +58,18 @@ std::string cancel_program(const Interlock& state, const Printer& printer) {
     return s.text();
 }
 
+Pause hold_program(const Interlock& state, const Printer& printer) {
+    Sequence s = from(state, printer);
+    s.comment("held: everything off, nothing moves");
+    switch_off(s);
+    s.fence();
+    Sequence back = from(state, printer);
+    back.comment("on");
+    if (state.pump_runs()) back.pump(true);
+    back.fence();
+    return {s.text(), back.text()};
+}
+
 Pause pause_program(const Interlock& state, const Printer& printer) {
     Sequence s = from(state, printer);
     s.comment("paused: the platform waits clear of the vat");

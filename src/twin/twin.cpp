@@ -295,6 +295,7 @@ void Twin::finish_running() {
 void Twin::light_on(const job::Image& image) {
     if (shown_) light_off();
     ++log_.exposures;
+    open_door();
     const bool fits =
         image.width_px == printer_.projector.width_px && image.height_px == printer_.projector.height_px &&
         image.pixels.size() == static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
@@ -307,7 +308,6 @@ void Twin::light_on(const job::Image& image) {
     log_.overlit_pixels += picture.overlit_px;
     shown_ = std::move(picture.runs);
     shown_since_s_ = now_s_;
-    open_door();
     shown_vat_ = vat_under_light();
     if (shown_vat_ >= 0) change_vat_part(shown_vat_);
     if (fault_hits(Fault::Kind::dark_projector, log_.exposures)) {
