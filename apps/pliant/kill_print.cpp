@@ -292,7 +292,14 @@ private:
     double print_s_;
 };
 
+void tell(const Count& count) {
+    fmt::print(
+        "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
+        count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
+}
+
 int run(const Wanted& wanted) {
+    constexpr int tell_every = 20;
     std::string pattern = (fs::temp_directory_path() / "pliant_kill_XXXXXX").string();
     const fs::path folder = ::mkdtemp(pattern.data());
     const Job job = make_job(folder);
@@ -311,11 +318,10 @@ int run(const Wanted& wanted) {
         const std::string wrong = round.print(std::min(left, wanted.per_print), resets, count);
         ++count.prints;
         if (!wrong.empty()) ++count.wrong, fmt::print("print {}: {}\n", count.prints, wrong);
+        if (count.prints % tell_every == 0) tell(count);
         std::fflush(stdout);
     }
-    fmt::print(
-        "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
-        count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
+    tell(count);
     fs::remove_all(folder);
     return count.wrong == 0 ? 0 : 1;
 }
