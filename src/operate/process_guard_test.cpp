@@ -9,19 +9,12 @@
 #include <fstream>
 #include <functional>
 
+#include "core/test_folder.hpp"
+
 using namespace pliant;
 using namespace pliant::operate;
 
 namespace {
-
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "pliant_guard_XXXXXX").string();
-        path = ::mkdtemp(name.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-};
 
 /// A host that does so much with light 17 and is killed.
 void die(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& deeds) {
@@ -55,8 +48,8 @@ std::optional<double> heard(const ProcessGuard::Options& options) {
 }  // namespace
 
 TEST_CASE("when the host is killed in the light, the guard makes dark and says when") {
-    const Folder folder;
-    const ProcessGuard::Options options{folder.path / "witness", folder.path / "shown.png", 1};
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     const double before_s = now_s();
     die(options, [](ProcessGuard& guard) { guard.lit(17); });
     const auto at = heard(options);
@@ -67,17 +60,17 @@ TEST_CASE("when the host is killed in the light, the guard makes dark and says w
 }
 
 TEST_CASE("a host that is killed between its note and the light has given none") {
-    const Folder folder;
-    const ProcessGuard::Options options{folder.path / "witness", folder.path / "shown.png", 1};
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     die(options, [](ProcessGuard&) {});
     CHECK(heard(options) == host::Guard::never_lit);
     CHECK(std::filesystem::exists(options.shown));
 }
 
 TEST_CASE("a host that is killed between the end of the light and its note: the guard knows when it ended") {
-    const Folder folder;
-    const ProcessGuard::Options options{folder.path / "witness", folder.path / "shown.png", 1};
-    const auto held = folder.path / "held";
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
+    const auto held = folder.path() / "held";
     // The guard looks at its pipe in its own time; it must have done so before the host dies.
     die(options, [&](ProcessGuard& guard) {
         guard.lit(17);
@@ -96,8 +89,8 @@ TEST_CASE("a host that is killed between the end of the light and its note: the 
 }
 
 TEST_CASE("a host that ends in peace leaves no witness") {
-    const Folder folder;
-    const ProcessGuard::Options options{folder.path / "witness", folder.path / "shown.png", 1};
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     {
         auto guard = ProcessGuard::start(options);
         REQUIRE(guard);
