@@ -4,7 +4,6 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -12,6 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "core/test_folder.hpp"
+#include "halves.hpp"
 #include "host/control.hpp"
 #include "host/journal.hpp"
 #include "operate/programs.hpp"
@@ -124,12 +125,11 @@ private:
 };
 
 struct ControlBench {
-    static constexpr int width = 8, height = 6;
     int layers = 5;
     machine::Printer printer;
     job::Manifest job;
     std::string gcode;
-    std::filesystem::path folder;
+    test::Folder folder{"control"};
     std::unique_ptr<twin::Twin> twin;
     std::unique_ptr<Life> life = std::make_unique<Life>();
     SeeingGuard guard{[this] { return twin->now(); }};
@@ -148,47 +148,19 @@ struct ControlBench {
         : layers(layer_count) {
         printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
         if (change) change(printer);
-        printer.projector.width_px = width;
-        printer.projector.height_px = height;
-        printer.projector.pixel_um = 158.75;
-        std::string pattern = (std::filesystem::temp_directory_path() / "pliant_control_XXXXXX").string();
-        folder = ::mkdtemp(pattern.data());
+        printer.projector.width_px = halves::width_px;
+        printer.projector.height_px = halves::height_px;
+        printer.projector.pixel_um = halves::pixel_um;
         make_job();
         twin = std::make_unique<twin::Twin>(printer, std::move(options));
         new_host();
     }
-    ~ControlBench() {
-        control.reset();
-        std::filesystem::remove_all(folder);
-    }
+    ~ControlBench() { control.reset(); }
     ControlBench(const ControlBench&) = delete;
     ControlBench& operator=(const ControlBench&) = delete;
 
-    /// Left half soft, right half rigid, with a grey column between them that both share.
-    static Result<job::Image> image(int, int material) {
-        job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
-        for (int i = 0; i < width * height; ++i) {
-            const int x = i % width;
-            const int soft = x < 4 ? 255 : (x == 4 ? 100 : 0);
-            image.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(material == 0 ? soft : 255 - soft);
-        }
-        return image;
-    }
-
     void make_job() {
-        job.name = "halves";
-        job.width_px = width;
-        job.height_px = height;
-        job.pixel_um = 158.75;
-        job.bottom_layers = 2;
-        const double pixel_mm2 = 0.15875 * 0.15875;
-        const double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255);
-        const double rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
-        const std::string first = printer.vats.front().resin, last = printer.vats.back().resin;
-        job.materials = {{"soft", first, soft_mm2 * 0.05 * layers, 0, 2.5, 12},
-                         {"rigid", last, rigid_mm2 * 0.05 * layers, 0, 2.5, 12}};
-        for (int i = 0; i < layers; ++i)
-            job.layers.push_back({50 * (i + 1), 50, {{0, "soft.png", soft_mm2}, {1, "rigid.png", rigid_mm2}}});
+        job = halves::job({layers, 2, 12, 0, printer.vats.front().resin, printer.vats.back().resin});
         auto planned = plan::make_plan(job, printer);
         REQUIRE_MESSAGE(planned, (planned ? "" : planned.error().message));
         const plan::Plan& plan = *planned;
@@ -222,11 +194,11 @@ struct ControlBench {
         ready.name = job.name;
         ready.digest = host::job_digest(gcode);
         ready.gcode = gcode;
-        ready.images = image;
+        ready.images = halves::image;
         ready.materials = {"soft", "rigid"};
         ready.layers = layers;
         ready.refills = refills;
-        ready.journal = folder / "halves.zip.journal";
+        ready.journal = folder.path() / "halves.zip.journal";
         ready.sync_journal = sync;
         const Status loaded = control->load(std::move(ready));
         REQUIRE_MESSAGE(loaded, (loaded ? "" : loaded.error().message));
@@ -253,13 +225,13 @@ struct ControlBench {
         }
         return text;
     }
-    [[nodiscard]] twin::Report report() { return twin::inspect(*twin, job, twin::ImageSource(image)).value(); }
+    [[nodiscard]] twin::Report report() { return twin::inspect(*twin, job, twin::ImageSource(halves::image)).value(); }
     void must_be_whole() {
         const twin::Report r = report();
         CHECK_MESSAGE(r.passed, twin::report_text(r));
     }
     [[nodiscard]] int lights() const { return twin->log().exposures; }
-    [[nodiscard]] std::filesystem::path journal() const { return folder / "halves.zip.journal"; }
+    [[nodiscard]] std::filesystem::path journal() const { return folder.path() / "halves.zip.journal"; }
 };
 
 }  // namespace pliant::app

@@ -41,6 +41,16 @@ std::string block_of(twin::Twin& twin) {
     return text;
 }
 
+/// False if a vat hung half-way on its hooks; else the part must be the undisturbed one.
+bool has_gone_on(ControlBench& b, const std::string& whole) {
+    INFO(b.last_error());
+    if (b.last_error().find("half-way on the hooks") != std::string::npos) return false;
+    CHECK(b.snapshot().finished);
+    CHECK(block_of(*b.twin) == whole);
+    b.must_be_whole();
+    return true;
+}
+
 }  // namespace
 
 TEST_CASE("a host that is killed anywhere is followed by one that finishes the same part") {
@@ -93,15 +103,7 @@ TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on i
         const bool begun = b.snapshot().can_resume;
         if (!begun) CHECK(b.twin->log().homings == 0);
         b.start({begun, {}});
-        INFO(b.last_error());
-        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
-            ++refused;
-            continue;
-        }
-        ++resumed;
-        CHECK(b.snapshot().finished);
-        CHECK(block_of(*b.twin) == whole);
-        b.must_be_whole();
+        ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
     CHECK(resumed > deeds / every / 2);
@@ -138,15 +140,7 @@ TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked abo
             CHECK(b.snapshot().state == host::State::offline);  // nothing has been touched
             b.start({true, {lit_s, false}});
         }
-        INFO(b.last_error());
-        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
-            ++refused;
-            continue;
-        }
-        ++resumed;
-        CHECK(b.snapshot().finished);
-        CHECK(block_of(*b.twin) == whole);
-        b.must_be_whole();
+        ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << asked << " asked about, " << refused << " refused");
     CHECK(asked > 10 / every);
@@ -462,7 +456,7 @@ TEST_CASE("with an open door a suspended print stays where it is, a cancelled on
 
 TEST_CASE("a print does not begin with an open door, nor does a test light, and no journal is left") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 1, 200), "tower", 5, with_door);
-    b.twin->light_on(ControlBench::image(0, 0).value());  // opens it
+    b.twin->light_on(halves::image(0, 0).value());  // opens it
     b.twin->light_off();
     b.twin->advance_to(10);
     REQUIRE(b.twin->door_is_open());
@@ -472,7 +466,7 @@ TEST_CASE("a print does not begin with an open door, nor does a test light, and 
     CHECK(b.twin->log().homings == 0);
     REQUIRE(b.control->connect());
     b.control->serve_until_idle();
-    REQUIRE(b.control->expose_test(ControlBench::image(0, 0).value(), 1));
+    REQUIRE(b.control->expose_test(halves::image(0, 0).value(), 1));
     b.control->serve_until_idle();
     CHECK(b.snapshot().message == "the door is open: shut it");
     CHECK(b.lights() == 1);

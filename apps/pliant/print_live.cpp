@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "host/control.hpp"
@@ -27,6 +26,7 @@
 #include "operate/process_guard.hpp"
 #include "operate/programs.hpp"
 #include "plan/plan.hpp"
+#include "shared_light.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
 #include "twin_bench.hpp"
@@ -67,36 +67,6 @@ public:
 private:
     termios before_{};
     bool active_ = false;
-};
-
-/// The projector of the virtual printer in this program: what the host shows, the machine's thread looks at.
-class SharedLight final : public host::Projector {
-public:
-    [[nodiscard]] Status show(const job::Image& image) override {
-        const std::scoped_lock lock(mutex_);
-        image_ = image;
-        return {};
-    }
-    [[nodiscard]] Status black() override {
-        const std::scoped_lock lock(mutex_);
-        image_.reset();
-        return {};
-    }
-    Status look(twin::Twin& twin) {
-        const std::scoped_lock lock(mutex_);
-        if (image_.has_value() == lit_) return {};
-        lit_ = image_.has_value();
-        if (lit_)
-            twin.light_on(*image_);
-        else
-            twin.light_off();
-        return {};
-    }
-
-private:
-    std::mutex mutex_;
-    std::optional<job::Image> image_;
-    bool lit_ = false;
 };
 
 /// The virtual printer on a pseudo-terminal, in a thread of its own.
