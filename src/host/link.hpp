@@ -29,7 +29,7 @@ struct LinkOptions {
     int most_repeats = 10;         ///< of one and the same line, and of silences in a row
     /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
     /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
-    double most_refused = 0.07;
+    double most_refused = 0.2;
 };
 
 /// What M115 says.

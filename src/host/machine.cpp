@@ -78,7 +78,7 @@ Status Machine::connect(long base) {
     return link_.send_if_known("M113 S2");  // `busy` every two seconds, whatever the build says
 }
 
-Status Machine::note_go(long program, std::size_t step, const Interlock& before) {
+Status Machine::note_go(long program, std::size_t step, const Interlock& before, long most) {
     if (Status status = link_.fence(); !status) return status;
     if (printer_.door.present()) {
         if (Status status = look_at_switches(); !status) return status;
@@ -87,6 +87,7 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before)
     const auto number = journal_->append("go", {{"program", fmt::format("{}", program)},
                                                 {"step", fmt::format("{}", step)},
                                                 {"line", fmt::format("{}", link_.next_number())},
+                                                {"most", fmt::format("{}", most)},
                                                 {"state", write_state(before.state())}});
     return number ? Status{} : tl::unexpected(number.error());
 }
@@ -127,11 +128,14 @@ Status Machine::look_at_switches() {
     return status;
 }
 
+bool Machine::homes_to_switch(std::string_view command) const {
+    return !printer_.limit_switches.empty() && command.substr(0, 3) == "G28";
+}
+
 /// Of every axis that `command` has homed.
 Status Machine::after_homing(std::string_view command) {
-    if (printer_.limit_switches.empty()) return {};
     const auto parsed = machine::parse_command(command);
-    if (!parsed || !parsed->is('G', 28)) return {};
+    if (!homes_to_switch(command) || !parsed) return {};
     for (const machine::Word& word : parsed->words) {
         const auto axis = machine::axis_of_letter(printer_, word.letter);
         if (!axis) continue;
@@ -162,8 +166,10 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;
     if (Status status = after.line(printer_, command); !status)
         return failure("{} is not sent: {}", command, status.error().message);
-    if (journal_ != nullptr && (!noted_ || !same_phase(printer_, at_.lock, after.lock))) {
-        if (Status status = note_go(program, step, at_.lock); !status) return status;
+    // What is sent after homing to try the switch is no step of this program: it must not be taken for the next ones.
+    const bool alone = homes_to_switch(command);
+    if (journal_ != nullptr && (!noted_ || alone || !same_phase(printer_, at_.lock, after.lock))) {
+        if (Status status = note_go(program, step, at_.lock, alone ? 1 : 0); !status) return status;
     }
     if (Status status = link_.send(command); !status) return status;
     // When the tower has done its stroke, the journal says so as soon as it can: in the middle of it nobody knows where

@@ -62,9 +62,10 @@ public:
 
 private:
     [[nodiscard]] bool has_switches() const { return !printer_.limit_switches.empty() || printer_.door.present(); }
+    [[nodiscard]] bool homes_to_switch(std::string_view command) const;
     [[nodiscard]] Status after_homing(std::string_view command);
     [[nodiscard]] Status leave_switch(machine::Axis axis);
-    [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before);
+    [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before, long most);
 
     Clock& clock_;
     const machine::Printer& printer_;

@@ -156,10 +156,12 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     }
     fact.open_light = last_record_;
     // The last look before the light: a controller that has restarted since says so, or does not answer any more.
-    if (Status status = run_.machine.rest(); !status) {
+    Status alive = run_.machine.rest();
+    if (alive) alive = run_.machine.link().listen_for(0);
+    if (!alive) {
         run_.machine.light_off();
         (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
-        return status;
+        return alive;
     }
     if (run_.setup.guard != nullptr) run_.setup.guard->lit(fact.open_light);
     const double start_s = clock_.now();

@@ -32,6 +32,8 @@ std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& fac
         if (command == nullptr) break;
         commands.push_back(*command);
     }
+    if (go.most > 0 && static_cast<std::size_t>(go.most) < commands.size())
+        commands.resize(static_cast<std::size_t>(go.most));
     return commands;
 }
 
