@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "core/files.hpp"
-#include "mesh/vtu_writer.hpp"
 #include "core/test_folder.hpp"
+#include "mesh/vtu_writer.hpp"
 #include "report/test_robot.hpp"
 
 using namespace pliant;
