@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "host/control.hpp"
@@ -27,6 +26,7 @@
 #include "operate/process_guard.hpp"
 #include "operate/programs.hpp"
 #include "plan/plan.hpp"
+#include "shared_light.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
 #include "twin_bench.hpp"
@@ -67,36 +67,6 @@ public:
 private:
     termios before_{};
     bool active_ = false;
-};
-
-/// The projector of the virtual printer in this program: what the host shows, the machine's thread looks at.
-class SharedLight final : public host::Projector {
-public:
-    [[nodiscard]] Status show(const job::Image& image) override {
-        const std::scoped_lock lock(mutex_);
-        image_ = image;
-        return {};
-    }
-    [[nodiscard]] Status black() override {
-        const std::scoped_lock lock(mutex_);
-        image_.reset();
-        return {};
-    }
-    Status look(twin::Twin& twin) {
-        const std::scoped_lock lock(mutex_);
-        if (image_.has_value() == lit_) return {};
-        lit_ = image_.has_value();
-        if (lit_)
-            twin.light_on(*image_);
-        else
-            twin.light_off();
-        return {};
-    }
-
-private:
-    std::mutex mutex_;
-    std::optional<job::Image> image_;
-    bool lit_ = false;
 };
 
 /// The virtual printer on a pseudo-terminal, in a thread of its own.
@@ -205,12 +175,20 @@ void attend(host::Control& control, const Output& output) {
     display.clear();
 }
 
+/// What a print is connected to, besides wire and clock. Guard and line may be null.
+struct Devices {
+    host::Projector& projector;
+    host::Guard* guard = nullptr;
+    host::EmergencyLine* emergency_line = nullptr;
+};
+
 host::ControlSetup setup_of(const LiveOptions& options, const operate::ReadyJob& ready, const std::string& device,
-                            host::Projector& projector, host::Clock& clock, host::Guard* guard) {
+                            const Devices& devices, host::Clock& clock) {
     const int baud = ready.printer.controller.baud_rate;
     const double speed = options.speed;
-    host::ControlSetup setup{ready.printer, {}, projector, clock, operate::programs_of(ready.printer), {}, {}, {},
-                             guard};
+    host::ControlSetup setup{
+        ready.printer,          {}, devices.projector, clock, operate::programs_of(ready.printer), {},
+        devices.emergency_line, {}, devices.guard};
     setup.open_wire = [device, baud, speed]() -> Result<std::unique_ptr<host::Wire>> {
         auto wire = host::SerialWire::open(device, baud);
         if (!wire) return tl::unexpected(wire.error());
@@ -270,7 +248,7 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     wanted.mask = std::move(*mask);
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     ready.job.journal.clear();  // this printer is gone when the program ends
-    host::Control control(setup_of(options, ready, machine.device(), machine.light, clock, nullptr));
+    host::Control control(setup_of(options, ready, machine.device(), {machine.light}, clock));
     const Result<int> status = run(control, options, ready);
     if (!status) return status;
     return report_twin(machine.end(), ready, options.output, *status);
@@ -295,6 +273,13 @@ Result<std::unique_ptr<host::Projector>> open_projector(const LiveOptions& optio
     return std::make_unique<operate::PictureProjector>(options.projector);
 }
 
+/// That of the command line, or of the printer file.
+Result<std::unique_ptr<host::EmergencyLine>> emergency_line_of(const LiveOptions& options,
+                                                               const machine::Printer& printer) {
+    if (options.emergency_line.empty()) return host::open_emergency_line(printer.emergency_line);
+    return host::parse_emergency_line(options.emergency_line).and_then(host::open_emergency_line);
+}
+
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
     // The guard first: what this program opens later must not live on in it.
     const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard",
@@ -302,12 +287,14 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, 
                                                        options.speed, options.clock_file.empty() ? nullptr : &clock};
     auto guard = operate::ProcessGuard::start(guard_options);
     if (!guard) return tl::unexpected(guard.error());
+    const auto line = emergency_line_of(options, ready.printer);
+    if (!line) return tl::unexpected(line.error());
     auto projector = open_projector(options, ready.printer);
     if (!projector) return tl::unexpected(projector.error());
     if (Status dark = (*projector)->black(); !dark) return tl::unexpected(dark.error());
     host::ImageAhead ahead(ready.job.images, host::order_of_exposures(ready.job.gcode));
     ready.job.images = [&ahead](int layer, int material) { return ahead.get(layer, material); };
-    host::Control control(setup_of(options, ready, options.port, **projector, clock, &*guard));
+    host::Control control(setup_of(options, ready, options.port, {**projector, &*guard, line->get()}, clock));
     return run(control, options, ready);
 }
 

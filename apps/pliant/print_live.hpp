@@ -15,6 +15,7 @@ struct LiveOptions {
     std::string projector;  ///< folder for the pictures
     std::string journal;    ///< "": beside the job
     std::string after_layer;
+    std::string emergency_line;  ///< "": the printer file's
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;
