@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "host/serial.hpp"
 #include "operate/job_file.hpp"
+#include "operate/programs.hpp"
 #include "plan/plan.hpp"
 #include "print_live.hpp"
 #include "twin/inspect.hpp"
@@ -54,7 +55,7 @@ Result<int> print_on_twin(const Options& options) {
         return operate::image_of(job->archive, layer, material).map(twin::runs_of);
     };
     host::PrintRecord record;
-    const host::LinkOptions link = link_options(job->printer.controller);
+    const host::LinkOptions link = operate::link_options(job->printer.controller);
     if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
     const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs);

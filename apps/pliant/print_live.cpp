@@ -14,18 +14,12 @@
 #include <thread>
 
 #include "host/control.hpp"
-#include "host/image_ahead.hpp"
-#include "host/projector.hpp"
 #include "host/scaled_time.hpp"
-#include "host/serial.hpp"
 #include "host/steady_clock.hpp"
-#include "operate/clock_file.hpp"
 #include "operate/job_file.hpp"
 #include "operate/layer_command.hpp"
-#include "operate/picture_projector.hpp"
+#include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
-#include "operate/process_guard.hpp"
-#include "operate/programs.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
@@ -205,27 +199,12 @@ void attend(host::Control& control, const Output& output) {
     display.clear();
 }
 
-host::ControlSetup setup_of(const LiveOptions& options, const operate::ReadyJob& ready, const std::string& device,
-                            host::Projector& projector, host::Clock& clock, host::Guard* guard) {
-    const int baud = ready.printer.controller.baud_rate;
-    const double speed = options.speed;
-    host::ControlSetup setup{ready.printer, {}, projector, clock, operate::programs_of(ready.printer), {}, {}, {},
-                             guard};
-    setup.open_wire = [device, baud, speed]() -> Result<std::unique_ptr<host::Wire>> {
-        auto wire = host::SerialWire::open(device, baud);
-        if (!wire) return tl::unexpected(wire.error());
-        std::unique_ptr<host::Wire> port = std::make_unique<host::SerialWire>(std::move(*wire));
-        if (speed == 1) return port;
-        return std::make_unique<host::ScaledWire>(std::move(port), speed);
+void add_layer_command(const LiveOptions& options, host::ControlSetup& setup) {
+    if (options.after_layer.empty()) return;
+    setup.after_layer = [command = options.after_layer](int layer) {
+        if (const Status status = operate::run_layer_command(command, layer); !status)
+            fmt::print(stderr, "{}\n", status.error().message);
     };
-    setup.link = link_options(ready.printer.controller);
-    if (!options.after_layer.empty()) {
-        setup.after_layer = [command = options.after_layer](int layer) {
-            if (const Status status = operate::run_layer_command(command, layer); !status)
-                fmt::print(stderr, "{}\n", status.error().message);
-        };
-    }
-    return setup;
 }
 
 Result<int> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
@@ -270,44 +249,22 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     wanted.mask = std::move(*mask);
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     ready.job.journal.clear();  // this printer is gone when the program ends
-    host::Control control(setup_of(options, ready, machine.device(), machine.light, clock, nullptr));
+    host::ControlSetup setup =
+        operate::port_setup(machine.device(), options.speed, ready.printer, machine.light, clock, nullptr);
+    add_layer_command(options, setup);
+    host::Control control(std::move(setup));
     const Result<int> status = run(control, options, ready);
     if (!status) return status;
     return report_twin(machine.end(), ready, options.output, *status);
 }
 
-/// A display or a folder with a process that keeps the time of every light; for a virtual printer with another time a
-/// plain folder.
-Result<std::unique_ptr<host::Projector>> open_projector(const LiveOptions& options, const machine::Printer& printer) {
-    const bool real_time = options.speed == 1 && options.clock_file.empty();
-    if (real_time) {
-        host::ScreenOptions screen;
-        screen.width_px = printer.projector.width_px;
-        screen.height_px = printer.projector.height_px;
-        screen.longest_light_s = printer.limits.exposure_s;
-        auto projector = host::ScreenProjector::open(options.projector, screen);
-        if (!projector) return tl::unexpected(projector.error());
-        return std::make_unique<host::ScreenProjector>(std::move(*projector));
-    }
-    std::error_code error;
-    if (!std::filesystem::is_directory(options.projector, error))
-        return input_error("--projector {}: no such folder", options.projector);
-    return std::make_unique<operate::PictureProjector>(options.projector);
-}
-
-Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
-    // The guard first: what this program opens later must not live on in it.
-    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard",
-                                                       std::filesystem::path(options.projector) / "shown.png",
-                                                       options.speed, options.clock_file.empty() ? nullptr : &clock};
-    auto guard = operate::ProcessGuard::start(guard_options);
-    if (!guard) return tl::unexpected(guard.error());
-    auto projector = open_projector(options, ready.printer);
-    if (!projector) return tl::unexpected(projector.error());
-    if (Status dark = (*projector)->black(); !dark) return tl::unexpected(dark.error());
-    host::ImageAhead ahead(ready.job.images, host::order_of_exposures(ready.job.gcode));
-    ready.job.images = [&ahead](int layer, int material) { return ahead.get(layer, material); };
-    host::Control control(setup_of(options, ready, options.port, **projector, clock, &*guard));
+Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
+    auto station =
+        operate::PortStation::open({options.port, options.projector, options.speed, options.clock_file}, ready);
+    if (!station) return tl::unexpected(station.error());
+    host::ControlSetup setup = (*station)->setup(ready.printer);
+    add_layer_command(options, setup);
+    host::Control control(std::move(setup));
     return run(control, options, ready);
 }
 
@@ -319,14 +276,10 @@ Result<int> print_live(const LiveOptions& options) {
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;
-    if (!options.clock_file.empty()) {
-        auto clock = operate::ClockFile::open(options.clock_file);
-        if (!clock) return tl::unexpected(clock.error());
-        return print_on_port(options, *ready, *clock);
-    }
+    if (!options.port.empty()) return print_on_port(options, *ready);
     host::SteadyClock steady;
     host::ScaledClock clock(steady, options.speed);
-    return options.port.empty() ? print_on_live_twin(options, *ready, clock) : print_on_port(options, *ready, clock);
+    return print_on_live_twin(options, *ready, clock);
 }
 
 }  // namespace pliant::app

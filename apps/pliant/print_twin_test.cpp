@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "operate/programs.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
@@ -141,7 +142,7 @@ TEST_CASE("no more lines are under way than the printer file allows") {
         Progress silent;
         host::PrintRecord record;
         const host::Devices devices{wire, bench.devices().projector, bench.devices().clock};
-        REQUIRE(host::print_job(p.gcode, halves, devices, silent, record, app::link_options(printer.controller)));
+        REQUIRE(host::print_job(p.gcode, halves, devices, silent, record, operate::link_options(printer.controller)));
         CHECK(wire.most() == lines);
     }
 }

@@ -47,6 +47,8 @@ public:
     MakeSession& operator=(const MakeSession&) = delete;
 
     [[nodiscard]] Status open(const std::filesystem::path& file);
+    /// The job at hand as a file of its own, which takes its place. Errors: there is none, the file exists, the disk.
+    [[nodiscard]] Status save(const std::filesystem::path& file);
     /// Begins; the pages hear of its progress and of its end. Errors: it is slicing already.
     [[nodiscard]] Status slice(SliceOrder order);
     void cancel();

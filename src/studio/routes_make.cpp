@@ -1,6 +1,7 @@
 // The job: slicing, its layers, its plan.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,7 @@ Response job(Studio& studio, const Request&) {
     const auto& p = open->printer;
     Json json = {{"revision", open->revision},
                  {"file", open->file.filename().string()},
+                 {"saved", studio.folder().holds(open->file)},
                  {"manifest", Json::parse(job::to_json(manifest))},
                  {"colours", open->colours},
                  {"issues", issues_json(manifest)},
@@ -95,6 +97,30 @@ Response job(Studio& studio, const Request&) {
         json["plan_error"] = plan.error().message;
     }
     return json_response(dumped(json));
+}
+
+/// Every device over the whole print, in rows of begin, end, begin, end, ...; visits in rows of layer, slot, begin, end.
+Response timeline(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    const job::Manifest& manifest = open->archive.manifest();
+    const Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
+    if (!plan) return error_response(plan.error());
+    const plan::JobTimeline all = plan::job_timeline(*plan, manifest, open->printer);
+    const auto rounded = [](double s) { return std::round(s * 1000) / 1000; };
+    Json devices = Json::array(), visits = Json::array();
+    for (const plan::Device device : all.devices) {
+        Json times = Json::array();
+        for (const plan::Stretch& s : all.stretches) {
+            if (s.device != device) continue;
+            times.push_back(rounded(s.begin_s));
+            times.push_back(rounded(s.end_s));
+        }
+        devices.push_back({{"name", plan::device_name(device)}, {"times", std::move(times)}});
+    }
+    for (const plan::Visit& v : all.visits)
+        visits.push_back({v.layer, v.slot, rounded(v.begin_s), rounded(v.end_s)});
+    return json_response(dumped({{"seconds", all.seconds}, {"devices", devices}, {"visits", visits}}));
 }
 
 Response image(Studio& studio, const Request& request) {
@@ -125,20 +151,14 @@ Response download(Studio& studio, const Request&) {
 }
 
 Response save(Studio& studio, const Request& request) {
-    const auto open = studio.make().job();
-    if (!open) return no_job();
     const Json json = Json::parse(request.body, nullptr, false);
     const std::string name =
         json.is_object() && json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : "";
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return error_response(path.error());
     if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
-    std::error_code ignored;
-    if (std::filesystem::exists(*path, ignored)) return error_response(422, "that file exists; choose another name");
-    const Result<std::string> bytes = read_file(open->file);
-    if (!bytes) return error_response(bytes.error());
-    if (Status written = write_file(*path, *bytes); !written) return error_response(written.error());
-    return json_response("{}");
+    const Status saved = studio.make().save(*path);
+    return saved ? json_response("{}") : error_response(saved.error());
 }
 
 /// The same job on every machine that is built in.
@@ -224,6 +244,7 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"POST", "/api/job/cancel", "gives up slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});
     routes.push_back({"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare});
     routes.push_back({"GET", "/api/job/file", "the job file", "application/zip", false, download});
     routes.push_back({"POST", "/api/job/save", "writes the job into the folder: {\"name\"}", json, true, save, json});
