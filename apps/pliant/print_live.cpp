@@ -13,6 +13,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/files.hpp"
 #include "host/control.hpp"
 #include "host/scaled_time.hpp"
 #include "host/steady_clock.hpp"
@@ -21,6 +22,7 @@
 #include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
 #include "plan/plan.hpp"
+#include "report/print_report.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
 #include "twin_bench.hpp"
@@ -207,7 +209,13 @@ void add_layer_command(const LiveOptions& options, host::ControlSetup& setup) {
     };
 }
 
-Result<int> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
+/// How it ended, and what was known then.
+struct Ended {
+    int status = exit_failed;
+    host::Snapshot last;
+};
+
+Result<Ended> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
     if (Status status = control.load(ready.job); !status) return tl::unexpected(status.error());
     control.serve_until_idle();
     host::StartOptions start;
@@ -219,26 +227,41 @@ Result<int> run(host::Control& control, const LiveOptions& options, operate::Rea
     std::signal(SIGTERM, on_interrupt);
     std::thread worker([&] { control.serve(); });
     attend(control, options.output);
-    const host::Snapshot end = control.snapshot();
+    Ended ended{exit_failed, control.snapshot()};
     control.quit();
     worker.join();
-    if (end.can_resume && !options.output.quiet)
+    if (ended.last.can_resume && !options.output.quiet)
         fmt::print(stderr, "go on with: pliant print {} {} --resume\n", options.job,
                    options.port.empty() ? "--twin" : "--port " + options.port);
-    return end.finished ? exit_done : exit_failed;
+    if (ended.last.finished) ended.status = exit_done;
+    return ended;
+}
+
+/// The page about the print, as far as it went.
+Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, const host::Snapshot& last,
+                    const std::string& findings) {
+    if (options.report.empty()) return {};
+    const report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware,
+                                     last.lines_sent, last.resends, findings};
+    const Result<std::string> page = report::print_report(options.job, ready.job.journal, extras);
+    if (!page) return tl::unexpected(page.error());
+    return write_file(options.report, *page);
 }
 
 /// The virtual printer's block against the job.
-Result<int> report_twin(twin::Twin& twin, const operate::ReadyJob& ready, const Output& output, int status) {
+Result<twin::Report> inspect_twin(twin::Twin& twin, const operate::ReadyJob& ready) {
     const auto images = [&](int layer, int material) { return operate::image_of(*ready.archive, layer, material); };
-    const Result<twin::Report> report = twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
-    if (!report) return tl::unexpected(report.error());
-    if (output.json)
-        fmt::print("{}\n", twin::report_json(*report));
-    else if (!output.quiet)
-        fmt::print("{}", twin::report_text(*report));
-    return report->passed ? status : static_cast<int>(exit_failed);
+    return twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
 }
+
+/// A journal for the report alone, gone with it.
+struct ShortJournal {
+    std::filesystem::path file;
+    ~ShortJournal() {
+        std::error_code ignored;
+        if (!file.empty()) std::filesystem::remove(file, ignored);
+    }
+};
 
 Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
     Result<twin::Pty> pty = twin::Pty::open();
@@ -248,14 +271,25 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     if (!mask) return tl::unexpected(mask.error());
     wanted.mask = std::move(*mask);
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
-    ready.job.journal.clear();  // this printer is gone when the program ends
+    // This printer is gone when the program ends: nothing of it can be gone on with.
+    const ShortJournal journal{options.report.empty() ? "" : options.report + ".journal"};
+    ready.job.journal = journal.file;
+    ready.job.sync_journal = false;
     host::ControlSetup setup =
         operate::port_setup(machine.device(), options.speed, ready.printer, machine.light, clock, nullptr);
     add_layer_command(options, setup);
     host::Control control(std::move(setup));
-    const Result<int> status = run(control, options, ready);
-    if (!status) return status;
-    return report_twin(machine.end(), ready, options.output, *status);
+    const Result<Ended> ended = run(control, options, ready);
+    if (!ended) return tl::unexpected(ended.error());
+    const Result<twin::Report> report = inspect_twin(machine.end(), ready);
+    if (!report) return tl::unexpected(report.error());
+    if (Status written = write_report(options, ready, ended->last, twin::report_text(*report)); !written)
+        return tl::unexpected(written.error());
+    if (options.output.json)
+        fmt::print("{}\n", twin::report_json(*report));
+    else if (!options.output.quiet)
+        fmt::print("{}", twin::report_text(*report));
+    return report->passed ? ended->status : static_cast<int>(exit_failed);
 }
 
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
@@ -265,7 +299,11 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
     host::ControlSetup setup = (*station)->setup(ready.printer);
     add_layer_command(options, setup);
     host::Control control(std::move(setup));
-    return run(control, options, ready);
+    const Result<Ended> ended = run(control, options, ready);
+    if (!ended) return tl::unexpected(ended.error());
+    if (Status written = write_report(options, ready, ended->last, ""); !written)
+        return tl::unexpected(written.error());
+    return ended->status;
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, Read
     std::unique_ptr<PortStation> station(new PortStation(std::move(options), std::move(file)));
     const PortOptions& o = station->options_;
     // The guard first: what this program opens later must not live on in it.
-    auto guard = ProcessGuard::start({ready.job.journal.string() + ".guard",
-                                      std::filesystem::path(o.projector) / "shown.png", o.speed,
-                                      station->file_ ? &*station->file_ : nullptr});
+    auto guard =
+        ProcessGuard::start({ready.job.journal.string() + ".guard", std::filesystem::path(o.projector) / "shown.png",
+                             o.speed, station->file_ ? &*station->file_ : nullptr});
     if (!guard) return tl::unexpected(guard.error());
     station->guard_.emplace(std::move(*guard));
     auto projector = open_projector(o, ready.printer);
@@ -73,8 +73,7 @@ host::ControlSetup PortStation::setup(const machine::Printer& printer) {
 host::ControlSetup port_setup(const std::string& device, double speed, const machine::Printer& printer,
                               host::Projector& projector, host::Clock& clock, host::Guard* guard) {
     host::ControlSetup setup{printer, {}, projector, clock, programs_of(printer), {}, {}, {}, guard};
-    setup.open_wire = [device, baud = printer.controller.baud_rate,
-                       speed]() -> Result<std::unique_ptr<host::Wire>> {
+    setup.open_wire = [device, baud = printer.controller.baud_rate, speed]() -> Result<std::unique_ptr<host::Wire>> {
         auto wire = host::SerialWire::open(device, baud);
         if (!wire) return tl::unexpected(wire.error());
         std::unique_ptr<host::Wire> port = std::make_unique<host::SerialWire>(std::move(*wire));

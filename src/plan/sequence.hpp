@@ -69,7 +69,7 @@ private:
     std::string text_;
     std::vector<Stretch>* stretches_ = nullptr;
     std::array<std::size_t, device_count> last_stretch_{};  ///< of each device; SIZE_MAX: none
-    double pump_on_s_ = -1;  ///< since when; below 0: off
+    double pump_on_s_ = -1;                                 ///< since when; below 0: off
     double fans_on_s_ = -1;
 };
 

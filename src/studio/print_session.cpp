@@ -116,8 +116,7 @@ struct PrintSession::Machine {
 };
 
 PrintSession::PrintSession(std::function<void(const std::string&)> tell)
-    : tell_(std::move(tell)),
-      scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
+    : tell_(std::move(tell)), scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
 
 PrintSession::~PrintSession() {
     end(machine());
@@ -134,6 +133,13 @@ PrintSession::Files PrintSession::files() const {
     const auto machine = this->machine();
     if (!machine) return {};
     return {machine->file, machine->ready.job.journal};
+}
+
+report::PrintExtras PrintSession::extras() const {
+    const auto machine = this->machine();
+    if (!machine) return {};
+    const host::Snapshot now = machine->control.snapshot();
+    return {machine->twin ? "virtual printer" : machine->device, now.firmware, now.lines_sent, now.resends, ""};
 }
 
 Status PrintSession::take_twin(const std::filesystem::path& job, double speed) {
@@ -263,7 +269,8 @@ std::string ports_json() {
     const Result<std::vector<host::PanelInfo>> panels = host::list_displays();
     if (panels) {
         for (const host::PanelInfo& p : *panels)
-            displays.push_back({{"number", p.number}, {"name", p.name}, {"width", p.width_px}, {"height", p.height_px}});
+            displays.push_back(
+                {{"number", p.number}, {"name", p.name}, {"width", p.width_px}, {"height", p.height_px}});
     }
     return dumped({{"ports", ports}, {"displays", displays}, {"without", panels ? "" : panels.error().message}});
 }

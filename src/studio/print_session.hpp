@@ -14,6 +14,7 @@
 #include "host/control_api.hpp"
 #include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
+#include "report/print_report.hpp"
 #include "studio/paced_twin.hpp"
 
 namespace pliant::studio {
@@ -30,8 +31,8 @@ public:
     /// cannot be printed.
     [[nodiscard]] Status take_twin(const std::filesystem::path& job, double speed);
     /// Takes the machine at a serial port. The journal stands beside the job, so that an interrupted print is gone on
-    /// with. Whether the port answers shows in the state. Errors: the job cannot be printed, the device is none, no such
-    /// projector.
+    /// with. Whether the port answers shows in the state. Errors: the job cannot be printed, the device is none, no
+    /// such projector.
     [[nodiscard]] Status take_port(const std::filesystem::path& job, const operate::PortOptions& port);
     /// Gives the machine back; a print under way is refused.
     [[nodiscard]] Status give_back();
@@ -48,6 +49,8 @@ public:
         std::filesystem::path job, journal;
     };
     [[nodiscard]] Files files() const;
+    /// What its journal does not hold.
+    [[nodiscard]] report::PrintExtras extras() const;
 
 private:
     struct Machine;

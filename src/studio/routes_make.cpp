@@ -99,7 +99,8 @@ Response job(Studio& studio, const Request&) {
     return json_response(dumped(json));
 }
 
-/// Every device over the whole print, in rows of begin, end, begin, end, ...; visits in rows of layer, slot, begin, end.
+/// Every device over the whole print, in rows of begin, end, begin, end, ...; visits in rows of layer, slot, begin,
+/// end.
 Response timeline(Studio& studio, const Request&) {
     const auto open = studio.make().job();
     if (!open) return no_job();
@@ -118,8 +119,7 @@ Response timeline(Studio& studio, const Request&) {
         }
         devices.push_back({{"name", plan::device_name(device)}, {"times", std::move(times)}});
     }
-    for (const plan::Visit& v : all.visits)
-        visits.push_back({v.layer, v.slot, rounded(v.begin_s), rounded(v.end_s)});
+    for (const plan::Visit& v : all.visits) visits.push_back({v.layer, v.slot, rounded(v.begin_s), rounded(v.end_s)});
     return json_response(dumped({{"seconds", all.seconds}, {"devices", devices}, {"visits", visits}}));
 }
 

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { api, job, mayDrive, post, say } from '../store';
+import { job, mayDrive, post, say } from '../store';
 import { clock } from '../make/plan';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
@@ -414,10 +414,6 @@ function Log() {
 export function Print() {
   useEffect(() => {
     if (!info.value) load().catch((e: Error) => say(e.message));
-  }, []);
-  useEffect(() => {
-    // The pictures of a print come from its job.
-    if (!job.value) api('/api/job').then((r) => r.json()).then((j) => (job.value = j)).catch(() => {});
   }, []);
   const i = info.value;
   if (!i?.machine || !now.value)

@@ -78,6 +78,7 @@ function TakePort() {
   const [device, setDevice] = useState('');
   const [projector, setProjector] = useState('');
   const [speed, setSpeed] = useState(1);
+  const [ownClock, setOwnClock] = useState('');
   const look = () =>
     api('/api/print/ports')
       .then((r) => r.json())
@@ -100,7 +101,7 @@ function TakePort() {
           class="fields"
           onSubmit={(e) => {
             e.preventDefault();
-            void post('/api/print/port', { device, projector, speed });
+            void post('/api/print/port', { device, projector, speed, clock: ownClock });
           }}
         >
           <label>
@@ -150,6 +151,10 @@ function TakePort() {
                 <input type="number" min={0.1} max={10000} step="any" value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="port-speed" />
                 <span class="unit">×</span>
               </span>
+            </label>
+            <label>
+              <span>Its clock</span>
+              <input placeholder="a file in the folder, as for pliant twin --clock" value={ownClock} spellcheck={false} onInput={(e) => setOwnClock(e.currentTarget.value)} data-testid="port-clock" />
             </label>
           </details>
           <button class="primary" disabled={!mayDrive.value || !device || !projector} data-testid="take-port">
