@@ -87,7 +87,7 @@ Status MakeSession::slice(SliceOrder order) {
     if (slicing_.exchange(true)) return failure("a job is being sliced already; cancel it first");
     if (thread_.joinable()) thread_.join();
     cancelled_ = false;
-    order.version = version_;
+    order.order.version = version_;
     thread_ = std::thread([this, order = std::move(order)] {
         work(order);
         slicing_ = false;

@@ -13,18 +13,15 @@
 #include "core/progress.hpp"
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "prepare/slice_job.hpp"
 
 namespace pliant::studio {
 
 struct SliceOrder {
     std::string robot_text;
     std::filesystem::path robot_file;
-    std::string printer_name;  ///< for messages
-    std::string printer_text;  ///< TOML
-    int layer_um = 0;          ///< 0: the printer's
-    int copies = 1;
-    std::vector<double> turn_deg{};  ///< about x, y, z; empty: as drawn
-    std::string version{};
+    prepare::PrinterFile printer;
+    prepare::Order order;  ///< its inputs are the robot's
 };
 
 /// A job with the machine that it was made for.

@@ -167,13 +167,13 @@ Status PrintSession::take_port(const std::filesystem::path& job, const operate::
 }
 
 Status PrintSession::take(std::shared_ptr<Machine> made) {
-    made->worker = std::thread([made = made.get()] { made->control.serve(); });
-    Status status = made->control.load(made->ready.job);
-    if (status) status = made->control.connect();
-    if (!status) {
-        end(made);
-        return status;
+    if (Status loaded = made->control.load(made->ready.job); !loaded) return loaded;
+    made->control.serve_until_idle();
+    // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
+    if (!made->control.snapshot().can_resume) {
+        if (Status status = made->control.connect(); !status) return status;
     }
+    made->worker = std::thread([made = made.get()] { made->control.serve(); });
     {
         const std::lock_guard lock(mutex_);
         machine_ = made;

@@ -33,7 +33,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-async function connect(page) {
+async function connect(page, state) {
   await page.getByTestId('device').fill(realpathSync(join(folder, 'printer')));
   await page.getByTestId('projector').fill('light');
   await page.locator('summary', { hasText: 'virtual printer at the port' }).click();
@@ -41,7 +41,11 @@ async function connect(page) {
   await page.getByTestId('port-clock').fill('clock');
   await page.getByTestId('take-port').click();
   await page.waitForSelector('[data-testid=print-state]');
-  await page.waitForFunction(() => document.querySelector('[data-testid=print-state]').textContent === 'Operational');
+  await shown(page, (s) => document.querySelector('[data-testid=print-state]').textContent === s, state);
+}
+/// Waits for what the page shall show of the print; what it says instead is told where it fails.
+async function shown(page, check, given) {
+  await page.waitForFunction(check, given).catch(async () => assert.fail(await page.locator('.steer').innerText()));
 }
 const layer = (page) => page.getByTestId('print-layer').textContent().then(Number);
 
@@ -62,7 +66,7 @@ test('what is no serial port, and a job that is in no folder, are refused', asyn
 
 test('a print at a port survives the end of the studio and is gone on with from the page', async (t) => {
   const first = await openPage(browser, `${studio.address}#print`, t);
-  await connect(first.page);
+  await connect(first.page, 'Operational');
   assert.match(await first.page.getByTestId('known').textContent(), /answers: Pliant twin/);
   for (const box of await first.page.locator('.checklist input').all()) await box.check();
   await first.page.getByTestId('start').click();
@@ -80,12 +84,12 @@ test('a print at a port survives the end of the studio and is gone on with from 
   await line.click();
   assert.match(await page.getByTestId('journal').textContent(), /session.*light.*layer=/s);
   await page.getByTestId('open-interrupted').click();
-  await connect(page);
+  await connect(page, 'Offline');  // nobody speaks to it before it goes on
   await page.getByTestId('interrupted').waitFor();
   assert.equal(await page.getByTestId('start').count(), 0, 'nothing is begun anew over a print that waits');
   await page.getByTestId('go-on').click();
-  await page.waitForFunction((l) => Number(document.querySelector('[data-testid=print-layer]').textContent) > l, broken);
-  await page.waitForFunction(() => document.querySelector('[data-testid=print-state]').textContent === 'Printed', null, { timeout: 120000 });
+  await shown(page, (l) => Number(document.querySelector('[data-testid=print-layer]').textContent) > l, broken);
+  await shown(page, () => document.querySelector('[data-testid=print-state]').textContent === 'Printed');
   const journal = readFileSync(join(folder, 'finger.zip.journal'), 'utf8');
   const lights = [...journal.matchAll(/ light step=\d+ layer=(\d+)/g)].map((m) => Number(m[1]));
   const layers = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);

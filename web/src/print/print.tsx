@@ -109,9 +109,15 @@ function GoOn() {
             <button onClick={() => setSure(false)}>No</button>
           </>
         ) : (
-          <button disabled={!may || !flags.value.ready} data-testid="put-away" onClick={() => setSure(true)}>
-            Put it away
-          </button>
+          flags.value.ready ? (
+            <button disabled={!may} data-testid="put-away" onClick={() => setSure(true)}>
+              Put it away
+            </button>
+          ) : (
+            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to put it away, or to look first">
+              Connect only
+            </button>
+          )
         )}
       </div>
       <details>
@@ -228,7 +234,7 @@ function Steering() {
               <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
             </button>
           ))}
-        {f.error && (
+        {(f.error || (f.closedOrError && !n.job.canResume && n.state.text === 'Offline')) && (
           <button class="primary" disabled={!mayDrive.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
             Connect again
           </button>
@@ -460,7 +466,7 @@ export function Print() {
             Give the machine back
           </button>
         </section>
-        {!busy.value && <ByHand />}
+        {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />
         <p class="quiet">
           {now.value.machine.firmware} · {now.value.machine.linesSent} lines sent · {now.value.machine.resends} sent again
