@@ -45,7 +45,7 @@ async function connect(page, state) {
 }
 /// Waits for what the page shall show of the print; what it says instead is told where it fails.
 async function shown(page, check, given) {
-  await page.waitForFunction(check, given).catch(async () => assert.fail(await page.locator('.steer').innerText()));
+  await page.waitForFunction(check, given, { timeout: 90000 }).catch(async () => assert.fail(await page.locator('.steer').innerText()));
 }
 const layer = (page) => page.getByTestId('print-layer').textContent().then(Number);
 
