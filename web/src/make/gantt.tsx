@@ -12,7 +12,6 @@ interface Timeline {
 }
 
 const rowHeight = 24;
-const labelWidth = 108;
 const scaleHeight = 24;
 
 /// Round steps of time: at most `most` of them in `span` seconds.
@@ -68,6 +67,8 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
 
   const [from, to] = range;
   const span = to - from;
+  // In line with the rows above and below.
+  const labelWidth = width < 600 ? 106 : 164;
   const inner = Math.max(width - labelWidth, 1);
   const x = (t: number) => labelWidth + ((t - from) / span) * inner;
   const colourOfSlot = (slot: number) => job.colours[plan.vats.find((v) => v.slot === slot)?.materials[0] ?? 0] ?? '#888';

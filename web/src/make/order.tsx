@@ -140,38 +140,29 @@ function Materials({ materials }: { materials: string[] }) {
           <option value={r.name} />
         ))}
       </datalist>
-      <table class="lights">
-        <thead>
-          <tr>
-            <th>material</th>
-            <th>resin</th>
-            <th>light, s</th>
-            <th>first layers, s</th>
-          </tr>
-        </thead>
-        <tbody>
-          {materials.map((m, k) => {
-            const known = p?.resins.find((r) => r.name === (lights.value[m]?.resin || resinOf(m)));
-            return (
-              <tr key={m}>
-                <th>
-                  <span class="swatch" style={{ background: scene.value?.head.materials.find((x) => x.name === m)?.colour }} />
-                  {m}
-                </th>
-                <td>
-                  <input list="resins" aria-label={`Resin of ${m}`} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
-                </td>
-                <td>
-                  <input class="short" inputMode="decimal" aria-label={`Light of ${m}`} data-testid={`light-${k}`} placeholder={known ? `${known.exposure_s}` : ''} value={lights.value[m]?.time ?? ''} onInput={(e) => set(m, { time: e.currentTarget.value })} />
-                </td>
-                <td>
-                  <input class="short" inputMode="decimal" aria-label={`Light of the first layers of ${m}`} disabled={!lights.value[m]?.time} placeholder={known ? `${known.bottom_exposure_s}` : ''} value={lights.value[m]?.bottom ?? ''} onInput={(e) => set(m, { bottom: e.currentTarget.value })} />
-                </td>
-              </tr>
-            );
-          })}
-        </tbody>
-      </table>
+      {materials.map((m, k) => {
+        const known = p?.resins.find((r) => r.name === (lights.value[m]?.resin || resinOf(m)));
+        return (
+          <fieldset class="light-of" key={m}>
+            <legend>
+              <span class="swatch" style={{ background: scene.value?.head.materials.find((x) => x.name === m)?.colour }} />
+              {m}
+            </legend>
+            <label>
+              <span>resin</span>
+              <input list="resins" aria-label={`Resin of ${m}`} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
+            </label>
+            <label>
+              <span>light, s</span>
+              <input inputMode="decimal" aria-label={`Light of ${m}`} data-testid={`light-${k}`} placeholder={known ? `${known.exposure_s}` : ''} value={lights.value[m]?.time ?? ''} onInput={(e) => set(m, { time: e.currentTarget.value })} />
+            </label>
+            <label>
+              <span>first layers, s</span>
+              <input inputMode="decimal" aria-label={`Light of the first layers of ${m}`} disabled={!lights.value[m]?.time} placeholder={known ? `${known.bottom_exposure_s}` : ''} value={lights.value[m]?.bottom ?? ''} onInput={(e) => set(m, { bottom: e.currentTarget.value })} />
+            </label>
+          </fieldset>
+        );
+      })}
       <Problem option="resin" />
       <Problem option="exposure" />
       {p && (

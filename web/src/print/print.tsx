@@ -241,7 +241,7 @@ function Steering() {
         )}
         <span class="grow" />
         <button class="danger" data-testid="emergency" onClick={() => post('/api/print/stop')}>
-          <Icon name="stop" /> Emergency stop
+          Emergency stop
         </button>
       </div>
     </section>
@@ -462,9 +462,11 @@ export function Print() {
           <a class="button small" href="/api/print/report" download data-testid="print-report">
             <Icon name="download" /> Report
           </a>
-          <button class="small" disabled={busy.value || !mayDrive.value} data-testid="leave" onClick={() => post('/api/print/leave')}>
-            Give the machine back
-          </button>
+          {!busy.value && (
+            <button class="small" disabled={!mayDrive.value} data-testid="leave" onClick={() => post('/api/print/leave')}>
+              Give the machine back
+            </button>
+          )}
         </section>
         {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />

@@ -85,7 +85,11 @@ function Canvas() {
     };
     const stops = [
       effect(() => {
-        if (scene.value) made.setScene(scene.value);
+        if (!scene.value) return;
+        made.setScene(scene.value);
+        // Which of the two effects runs first is not said: a frame before its scene would be lost.
+        const shown = look.shownFrame.peek() ?? frame.peek();
+        if (shown) made.setFrame(shown);
       }),
       effect(() => made.setOptions(options())),
       effect(() => {
