@@ -192,24 +192,22 @@ function Bonds({ materials }: { materials: string[] }) {
         <div class="bond" key={k}>
           <div class="row">
             {pick(b.a, (a) => change(k, { a }), 'First material')}
-            <select value={b.kind} aria-label="Kind" onChange={(e) => change(k, { kind: e.currentTarget.value as Bond['kind'] })}>
-              <option value="overlap">lights into</option>
-              <option value="interlock">has teeth with</option>
-            </select>
             {pick(b.b, (second) => change(k, { b: second }), 'Second material')}
             <button type="button" class="bare" aria-label="Take this bond out" onClick={() => (bonds.value = bonds.value.filter((_, i) => i !== k))}>
               <Icon name="close" />
             </button>
           </div>
           <div class="row left">
+            <select value={b.kind} aria-label="Kind" title="overlap: the first lights into the second too; teeth: both reach into each other" onChange={(e) => change(k, { kind: e.currentTarget.value as Bond['kind'] })}>
+              <option value="overlap">overlap</option>
+              <option value="interlock">teeth</option>
+            </select>
             <label class="inline">
-              deep
-              <input type="number" min={0} max={1000} step={1} value={b.pixels} onChange={(e) => change(k, { pixels: Number(e.currentTarget.value) })} />
+              <input type="number" min={0} max={1000} step={1} aria-label="Pixels deep" value={b.pixels} onChange={(e) => change(k, { pixels: Number(e.currentTarget.value) })} />
               px
             </label>
             <label class="inline">
-              {b.kind === 'overlap' ? 'and' : 'changing every'}
-              <input type="number" min={b.kind === 'overlap' ? 0 : 1} max={1000} step={1} value={b.layers} onChange={(e) => change(k, { layers: Number(e.currentTarget.value) })} />
+              <input type="number" min={b.kind === 'overlap' ? 0 : 1} max={1000} step={1} aria-label="Layers" value={b.layers} onChange={(e) => change(k, { layers: Number(e.currentTarget.value) })} />
               layers
             </label>
           </div>
