@@ -1,6 +1,7 @@
 // The live robot: 3D view, actuators, plots, file.
 import { effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
 import {
   building,
@@ -300,6 +301,8 @@ function save(blob: Blob, name: string) {
 
 function Export() {
   const [open, setOpen] = useState(false);
+  const box = useRef<HTMLDivElement>(null);
+  useDismiss(open, () => setOpen(false), box);
   const head = scene.value?.head;
   if (!head) return null;
   const items: [string, string, () => void][] = [
@@ -311,7 +314,7 @@ function Export() {
     ['This state with its fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
   ];
   return (
-    <div class="menu">
+    <div class="menu" ref={box}>
       <button class="chip" aria-expanded={open} onClick={() => setOpen(!open)}>
         <Icon name="download" /> Export
       </button>
