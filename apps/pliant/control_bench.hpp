@@ -179,7 +179,7 @@ struct ControlBench {
             *projector,
             *clock,
             operate::programs_of(printer),
-            link_options(printer.controller),
+            operate::link_options(printer.controller),
             emergency_line,
             [this](int layer) {
                 if (after_layer) after_layer(layer);

@@ -60,7 +60,7 @@ struct Live {
                 light,
                 clock,
                 operate::programs_of(small.printer),
-                link_options(small.printer.controller),
+                operate::link_options(small.printer.controller),
                 {},
                 {},
                 nullptr};

@@ -665,6 +665,42 @@ TEST_CASE("another program that has spoken to the controller in between is notic
     b.must_be_whole();
 }
 
+TEST_CASE("another program whose line numbers are higher proves nothing") {
+    ControlBench b;
+    b.life->dies_at = 400;
+    REQUIRE_FALSE(b.start());
+    b.twin->receive("M110 N90000000\n");
+    b.twin->advance_to(b.twin->now() + 30);
+    b.new_host();
+    b.start({true, {}});
+    CHECK(b.last_error().find("another program has spoken") != std::string::npos);
+}
+
+TEST_CASE("a host that has connected before it goes on is as sure as one that goes on at once") {
+    ControlBench undisturbed;
+    undisturbed.start();
+    const std::string whole = block_of(*undisturbed.twin);
+    const long deeds = undisturbed.life->deeds;
+    int resumed = 0;
+    for (long n = 40; n < deeds; n += 6 * every) {
+        ControlBench b;
+        b.life->dies_at = n;
+        CAPTURE(n);
+        REQUIRE_FALSE(b.start());
+        b.new_host();
+        if (!b.snapshot().can_resume) continue;
+        ++resumed;
+        REQUIRE(b.control->connect());
+        b.control->serve_until_idle();
+        REQUIRE(b.snapshot().state == host::State::idle);
+        b.start({true, {}});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        CHECK((block_of(*b.twin) == whole));
+    }
+    CHECK(resumed > 5);
+}
+
 TEST_CASE("every fault of the wire is survived under control too") {
     using twin::Fault;
     for (const auto kind : {Fault::Kind::corrupt_byte, Fault::Kind::lose_line, Fault::Kind::lose_ok,

@@ -11,8 +11,10 @@
 #include "core/files.hpp"
 #include "host/serial.hpp"
 #include "operate/job_file.hpp"
+#include "operate/programs.hpp"
 #include "plan/plan.hpp"
 #include "print_live.hpp"
+#include "report/print_report.hpp"
 #include "twin/inspect.hpp"
 #include "twin_bench.hpp"
 
@@ -26,6 +28,42 @@ struct Options {
     bool list_ports = false;
     bool given_speed = false;
 };
+
+/// What a journal of this print would hold.
+std::vector<host::JournalRecord> journal_of(const host::PrintRecord& record, const job::Manifest& manifest,
+                                            const std::string& printer) {
+    std::vector<host::JournalRecord> records;
+    const auto add = [&](const char* kind, host::JournalValues values) {
+        records.push_back({static_cast<long>(records.size()) + 1, kind, std::move(values)});
+    };
+    const auto number = [](double value) { return fmt::format("{:.6f}", value); };
+    add("begin", {{"job", manifest.name}, {"printer", printer}});
+    for (const host::Exposure& e : record.exposures) {
+        const job::Layer& layer = manifest.layers.at(static_cast<std::size_t>(e.layer));
+        double planned_s = 0;
+        for (std::size_t k = 0; k < layer.images.size(); ++k) {
+            if (layer.images[k].material == e.material)
+                planned_s = job::exposure_s(manifest, static_cast<std::size_t>(e.layer), k);
+        }
+        add("light", {{"layer", fmt::format("{}", e.layer)},
+                      {"material", fmt::format("{}", e.material)},
+                      {"planned", number(planned_s)},
+                      {"at", number(e.start_s)}});
+        add("dark",
+            {{"light", fmt::format("{}", records.size())}, {"on", number(e.on_s)}, {"done", "1"}, {"by", "host"}});
+    }
+    add("end", {});
+    return records;
+}
+
+/// The page about a print whose journal is there, whoever printed it.
+Result<int> report_on_journal(const LiveOptions& live) {
+    const std::string journal = live.journal.empty() ? live.job + ".journal" : live.journal;
+    const Result<std::string> page = report::print_report(live.job, journal, {});
+    if (!page) return tl::unexpected(page.error());
+    if (Status written = write_file(live.report, *page); !written) return tl::unexpected(written.error());
+    return exit_done;
+}
 
 Result<int> print_on_twin(const Options& options) {
     const auto progress = terminal_progress(options.live.output);
@@ -54,7 +92,7 @@ Result<int> print_on_twin(const Options& options) {
         return operate::image_of(job->archive, layer, material).map(twin::runs_of);
     };
     host::PrintRecord record;
-    const host::LinkOptions link = link_options(job->printer.controller);
+    const host::LinkOptions link = operate::link_options(job->printer.controller);
     if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
     const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs);
@@ -64,6 +102,14 @@ Result<int> print_on_twin(const Options& options) {
     if (!options.report_file.empty()) {
         if (Status written = write_file(options.report_file, json + "\n"); !written)
             return tl::unexpected(written.error());
+    }
+    if (!options.live.report.empty()) {
+        const report::PrintExtras extras{"virtual printer", "", record.lines_sent, record.resends,
+                                         twin::report_text(*report)};
+        const Result<std::string> page =
+            report::print_report(job->archive, job->printer, journal_of(record, manifest, job->printer.name), extras);
+        if (!page) return tl::unexpected(page.error());
+        if (Status written = write_file(options.live.report, *page); !written) return tl::unexpected(written.error());
     }
     if (options.live.output.json)
         fmt::print("{}\n", json);
@@ -81,6 +127,8 @@ int list_ports() {
 Result<int> print(const Options& options) {
     if (options.list_ports) return list_ports();
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
+    if (!options.twin && options.live.port.empty() && !options.live.report.empty())
+        return report_on_journal(options.live);
     if (options.twin == !options.live.port.empty())
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
     if (options.twin && !options.live.clock_file.empty()) return input_error("--clock goes with --port");
@@ -113,6 +161,9 @@ void add_print(CLI::App& app, int& status) {
                         "what an emergency stop pulls, instead of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
                         "stops), file-low:FILE (0 stops), none");
     command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
+    command->add_option(
+        "--report", live.report,
+        "file for a page about the print (.html); without --port and --twin: of what the journal tells");
     CLI::Option* speed = command->add_option(
         "--speed", live.speed, "seconds of the machine in one of the wall, for virtual printers; 1 is real time");
     command->add_option("--clock", live.clock_file, "clock of the virtual printer (twin --clock FILE)");

@@ -12,20 +12,16 @@
 #include <memory>
 #include <thread>
 
+#include "core/files.hpp"
 #include "host/control.hpp"
-#include "host/image_ahead.hpp"
-#include "host/projector.hpp"
 #include "host/scaled_time.hpp"
-#include "host/serial.hpp"
 #include "host/steady_clock.hpp"
-#include "operate/clock_file.hpp"
 #include "operate/job_file.hpp"
 #include "operate/layer_command.hpp"
-#include "operate/picture_projector.hpp"
+#include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
-#include "operate/process_guard.hpp"
-#include "operate/programs.hpp"
 #include "plan/plan.hpp"
+#include "report/print_report.hpp"
 #include "shared_light.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
@@ -175,38 +171,21 @@ void attend(host::Control& control, const Output& output) {
     display.clear();
 }
 
-/// What a print is connected to, besides wire and clock. Guard and line may be null.
-struct Devices {
-    host::Projector& projector;
-    host::Guard* guard = nullptr;
-    host::EmergencyLine* emergency_line = nullptr;
-};
-
-host::ControlSetup setup_of(const LiveOptions& options, const operate::ReadyJob& ready, const std::string& device,
-                            const Devices& devices, host::Clock& clock) {
-    const int baud = ready.printer.controller.baud_rate;
-    const double speed = options.speed;
-    host::ControlSetup setup{
-        ready.printer,          {}, devices.projector, clock, operate::programs_of(ready.printer), {},
-        devices.emergency_line, {}, devices.guard};
-    setup.open_wire = [device, baud, speed]() -> Result<std::unique_ptr<host::Wire>> {
-        auto wire = host::SerialWire::open(device, baud);
-        if (!wire) return tl::unexpected(wire.error());
-        std::unique_ptr<host::Wire> port = std::make_unique<host::SerialWire>(std::move(*wire));
-        if (speed == 1) return port;
-        return std::make_unique<host::ScaledWire>(std::move(port), speed);
+void add_layer_command(const LiveOptions& options, host::ControlSetup& setup) {
+    if (options.after_layer.empty()) return;
+    setup.after_layer = [command = options.after_layer](int layer) {
+        if (const Status status = operate::run_layer_command(command, layer); !status)
+            fmt::print(stderr, "{}\n", status.error().message);
     };
-    setup.link = link_options(ready.printer.controller);
-    if (!options.after_layer.empty()) {
-        setup.after_layer = [command = options.after_layer](int layer) {
-            if (const Status status = operate::run_layer_command(command, layer); !status)
-                fmt::print(stderr, "{}\n", status.error().message);
-        };
-    }
-    return setup;
 }
 
-Result<int> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
+/// How it ended, and what was known then.
+struct Ended {
+    int status = exit_failed;
+    host::Snapshot last;
+};
+
+Result<Ended> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
     if (Status status = control.load(ready.job); !status) return tl::unexpected(status.error());
     control.serve_until_idle();
     host::StartOptions start;
@@ -218,26 +197,41 @@ Result<int> run(host::Control& control, const LiveOptions& options, operate::Rea
     std::signal(SIGTERM, on_interrupt);
     std::thread worker([&] { control.serve(); });
     attend(control, options.output);
-    const host::Snapshot end = control.snapshot();
+    Ended ended{exit_failed, control.snapshot()};
     control.quit();
     worker.join();
-    if (end.can_resume && !options.output.quiet)
+    if (ended.last.can_resume && !options.output.quiet)
         fmt::print(stderr, "go on with: pliant print {} {} --resume\n", options.job,
                    options.port.empty() ? "--twin" : "--port " + options.port);
-    return end.finished ? exit_done : exit_failed;
+    if (ended.last.finished) ended.status = exit_done;
+    return ended;
+}
+
+/// The page about the print, as far as it went.
+Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, const host::Snapshot& last,
+                    const std::string& findings) {
+    if (options.report.empty()) return {};
+    const report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware,
+                                     last.lines_sent, last.resends, findings};
+    const Result<std::string> page = report::print_report(options.job, ready.job.journal, extras);
+    if (!page) return tl::unexpected(page.error());
+    return write_file(options.report, *page);
 }
 
 /// The virtual printer's block against the job.
-Result<int> report_twin(twin::Twin& twin, const operate::ReadyJob& ready, const Output& output, int status) {
+Result<twin::Report> inspect_twin(twin::Twin& twin, const operate::ReadyJob& ready) {
     const auto images = [&](int layer, int material) { return operate::image_of(*ready.archive, layer, material); };
-    const Result<twin::Report> report = twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
-    if (!report) return tl::unexpected(report.error());
-    if (output.json)
-        fmt::print("{}\n", twin::report_json(*report));
-    else if (!output.quiet)
-        fmt::print("{}", twin::report_text(*report));
-    return report->passed ? status : static_cast<int>(exit_failed);
+    return twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
 }
+
+/// A journal for the report alone, gone with it.
+struct ShortJournal {
+    std::filesystem::path file;
+    ~ShortJournal() {
+        std::error_code ignored;
+        if (!file.empty()) std::filesystem::remove(file, ignored);
+    }
+};
 
 Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
     Result<twin::Pty> pty = twin::Pty::open();
@@ -247,55 +241,39 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     if (!mask) return tl::unexpected(mask.error());
     wanted.mask = std::move(*mask);
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
-    ready.job.journal.clear();  // this printer is gone when the program ends
-    host::Control control(setup_of(options, ready, machine.device(), {machine.light}, clock));
-    const Result<int> status = run(control, options, ready);
-    if (!status) return status;
-    return report_twin(machine.end(), ready, options.output, *status);
+    // This printer is gone when the program ends: nothing of it can be gone on with.
+    const ShortJournal journal{options.report.empty() ? "" : options.report + ".journal"};
+    ready.job.journal = journal.file;
+    ready.job.sync_journal = false;
+    host::ControlSetup setup =
+        operate::port_setup(machine.device(), options.speed, ready.printer, machine.light, clock, nullptr);
+    add_layer_command(options, setup);
+    host::Control control(std::move(setup));
+    const Result<Ended> ended = run(control, options, ready);
+    if (!ended) return tl::unexpected(ended.error());
+    const Result<twin::Report> report = inspect_twin(machine.end(), ready);
+    if (!report) return tl::unexpected(report.error());
+    if (Status written = write_report(options, ready, ended->last, twin::report_text(*report)); !written)
+        return tl::unexpected(written.error());
+    if (options.output.json)
+        fmt::print("{}\n", twin::report_json(*report));
+    else if (!options.output.quiet)
+        fmt::print("{}", twin::report_text(*report));
+    return report->passed ? ended->status : static_cast<int>(exit_failed);
 }
 
-/// A display or a folder with a process that keeps the time of every light; for a virtual printer with another time a
-/// plain folder.
-Result<std::unique_ptr<host::Projector>> open_projector(const LiveOptions& options, const machine::Printer& printer) {
-    const bool real_time = options.speed == 1 && options.clock_file.empty();
-    if (real_time) {
-        host::ScreenOptions screen;
-        screen.width_px = printer.projector.width_px;
-        screen.height_px = printer.projector.height_px;
-        screen.longest_light_s = printer.limits.exposure_s;
-        auto projector = host::ScreenProjector::open(options.projector, screen);
-        if (!projector) return tl::unexpected(projector.error());
-        return std::make_unique<host::ScreenProjector>(std::move(*projector));
-    }
-    std::error_code error;
-    if (!std::filesystem::is_directory(options.projector, error))
-        return input_error("--projector {}: no such folder", options.projector);
-    return std::make_unique<operate::PictureProjector>(options.projector);
-}
-
-/// That of the command line, or of the printer file.
-Result<std::unique_ptr<host::EmergencyLine>> emergency_line_of(const LiveOptions& options,
-                                                               const machine::Printer& printer) {
-    if (options.emergency_line.empty()) return host::open_emergency_line(printer.emergency_line);
-    return host::parse_emergency_line(options.emergency_line).and_then(host::open_emergency_line);
-}
-
-Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
-    // The guard first: what this program opens later must not live on in it.
-    const operate::ProcessGuard::Options guard_options{ready.job.journal.string() + ".guard",
-                                                       std::filesystem::path(options.projector) / "shown.png",
-                                                       options.speed, options.clock_file.empty() ? nullptr : &clock};
-    auto guard = operate::ProcessGuard::start(guard_options);
-    if (!guard) return tl::unexpected(guard.error());
-    const auto line = emergency_line_of(options, ready.printer);
-    if (!line) return tl::unexpected(line.error());
-    auto projector = open_projector(options, ready.printer);
-    if (!projector) return tl::unexpected(projector.error());
-    if (Status dark = (*projector)->black(); !dark) return tl::unexpected(dark.error());
-    host::ImageAhead ahead(ready.job.images, host::order_of_exposures(ready.job.gcode));
-    ready.job.images = [&ahead](int layer, int material) { return ahead.get(layer, material); };
-    host::Control control(setup_of(options, ready, options.port, {**projector, &*guard, line->get()}, clock));
-    return run(control, options, ready);
+Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
+    auto station = operate::PortStation::open(
+        {options.port, options.projector, options.speed, options.clock_file, options.emergency_line}, ready);
+    if (!station) return tl::unexpected(station.error());
+    host::ControlSetup setup = (*station)->setup(ready.printer);
+    add_layer_command(options, setup);
+    host::Control control(std::move(setup));
+    const Result<Ended> ended = run(control, options, ready);
+    if (!ended) return tl::unexpected(ended.error());
+    if (Status written = write_report(options, ready, ended->last, ""); !written)
+        return tl::unexpected(written.error());
+    return ended->status;
 }
 
 }  // namespace
@@ -306,14 +284,10 @@ Result<int> print_live(const LiveOptions& options) {
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;
-    if (!options.clock_file.empty()) {
-        auto clock = operate::ClockFile::open(options.clock_file);
-        if (!clock) return tl::unexpected(clock.error());
-        return print_on_port(options, *ready, *clock);
-    }
+    if (!options.port.empty()) return print_on_port(options, *ready);
     host::SteadyClock steady;
     host::ScaledClock clock(steady, options.speed);
-    return options.port.empty() ? print_on_live_twin(options, *ready, clock) : print_on_port(options, *ready, clock);
+    return print_on_live_twin(options, *ready, clock);
 }
 
 }  // namespace pliant::app

@@ -16,6 +16,7 @@ struct LiveOptions {
     std::string journal;    ///< "": beside the job
     std::string after_layer;
     std::string emergency_line;  ///< "": the printer file's
+    std::string report;          ///< file for the report of the print (HTML); "": none
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;

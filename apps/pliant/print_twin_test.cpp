@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "halves.hpp"
+#include "operate/programs.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
@@ -113,7 +114,7 @@ TEST_CASE("no more lines are under way than the printer file allows") {
         Progress silent;
         host::PrintRecord record;
         const host::Devices devices{wire, bench.devices().projector, bench.devices().clock};
-        REQUIRE(host::print_job(p.gcode, image, devices, silent, record, app::link_options(printer.controller)));
+        REQUIRE(host::print_job(p.gcode, image, devices, silent, record, operate::link_options(printer.controller)));
         CHECK(wire.most() == lines);
     }
 }

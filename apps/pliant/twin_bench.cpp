@@ -31,13 +31,6 @@ Status TwinProjector::black() {
     return {};
 }
 
-host::LinkOptions link_options(const machine::Controller& controller) {
-    host::LinkOptions options;
-    options.window_lines = controller.window_lines;
-    options.window_bytes = controller.window_bytes;
-    return options;
-}
-
 TwinBench::TwinBench(const machine::Printer& printer, twin::Options options)
     : twin_(printer, std::move(options)), wire_(twin_), projector_(twin_), clock_(twin_) {}
 

@@ -43,9 +43,6 @@ private:
     twin::Twin& twin_;
 };
 
-/// What the host may have under way, as the printer file says.
-[[nodiscard]] host::LinkOptions link_options(const machine::Controller& controller);
-
 /// A twin with all its devices. The vats hold what `printer` says: give it plan::filled_printer.
 class TwinBench {
 public:

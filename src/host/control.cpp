@@ -93,6 +93,9 @@ struct Control::State_ {
     std::unique_ptr<Machine> machine;
     bool touched = false;  ///< the controller has been spoken to since the last start
     long last_line = 0;    ///< of the controller when the wire was opened
+    /// The same, as long as nothing but numbers and questions has been sent since: what is connected and then resumed
+    /// is as proven as what is resumed at once.
+    std::optional<long> untouched_line;
     long last_base = 0;    ///< of our own last session
     std::optional<PrintJob> job;
     Script script;
@@ -299,6 +302,7 @@ Status Control::State_::by_hand(std::function<Result<std::string>(const machine:
         },
         [this, program = std::move(program)] {
             const auto text = program(machine->state());
+            untouched_line.reset();
             Status status = text ? machine->run(*text) : tl::unexpected(text.error());
             show_machine();
             if (status || (!machine->link().was_reset() && !machine->link().wire_failed() && !desk.stopped())) {
@@ -495,12 +499,14 @@ Status Control::State_::open() {
     });
     const auto last = machine->link().last_line();
     if (!last) return tl::unexpected(last.error());
-    last_line = machine->link().has_started() ? 0 : *last;
+    last_line = machine->link().has_started() ? 0 : untouched_line.value_or(*last);
+    untouched_line = last_line;
     return {};
 }
 
 void Control::State_::close() {
     machine.reset();
+    untouched_line.reset();
     {
         const std::scoped_lock lock(mutex);
         wire.reset();
@@ -587,6 +593,7 @@ Status Control::State_::new_session(Journal* journal, const JournalFacts& facts,
     if (Status status = machine->connect(base); !status) return status;
     note_firmware();
     machine->keep(journal);
+    untouched_line.reset();
     return {};
 }
 

@@ -11,11 +11,15 @@ namespace {
 using machine::Interlock;
 
 constexpr long most_introduction_lines = 100;  // that a session sends before it moves anything
+constexpr long most_questions = 100;           // fences and such, among the commands up to a light
 
-/// Whether the controller is as that host left it.
-bool is_proven(const JournalFacts& facts, long last_line) {
+/// Whether the controller is as that host left it, which had `commands` to send at most.
+bool is_proven(const JournalFacts& facts, long last_line, std::size_t commands) {
     if (facts.stopped_short || last_line <= 0) return false;
-    if (facts.go->program >= 0) return last_line >= facts.go->line - 1;
+    if (facts.go->program >= 0) {
+        const long most = facts.go->line + static_cast<long>(commands) + most_questions;
+        return last_line >= facts.go->line - 1 && last_line <= most;
+    }
     if (last_line == facts.before_base) return true;
     return last_line >= facts.base && last_line < facts.base + most_introduction_lines;
 }
@@ -66,7 +70,8 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
     if (!facts.go) return Standing{Interlock(printer), false};
     const auto restored = Interlock::restored(printer, facts.go->state);
     if (!restored) return tl::unexpected(restored.error());
-    const bool proven = is_proven(facts, last_line);
+    const std::vector<std::string> commands = commands_from(*facts.go, facts, script);
+    const bool proven = is_proven(facts, last_line, commands.size());
     if (!proven && last_line > 0 && !facts.stopped_short && !assume.vats_untouched) {
         return failure(
             "another program has spoken to the controller since this print was interrupted; if every vat is "
@@ -74,7 +79,6 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
     }
     machine::Followed at{*restored};
     bool on_hooks = false;
-    const std::vector<std::string> commands = commands_from(*facts.go, facts, script);
     const long carried_out = proven ? last_line - facts.go->line + 1 : static_cast<long>(commands.size());
     for (std::size_t i = 0; i < commands.size() && static_cast<long>(i) < carried_out; ++i) {
         machine::Followed after = at;

@@ -64,7 +64,13 @@ void host_died(const ProcessGuard::Options& options, const std::string& boot, co
     ::close(file);
 }
 
-/// The guard's life.
+/// What else this program has open (sockets, the journal, other guards' pipes) must not stay open in the guard.
+void close_all_but(int kept) {
+    if (kept > 3) ::close_range(3, static_cast<unsigned>(kept) - 1, 0);
+    ::close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
+}
+
+/// The guard's life. Nothing here waits for another thread: of those the guard has none, whatever they held.
 [[noreturn]] void stand_guard(int pipe, const ProcessGuard::Options& options, const std::string& boot) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
     ::setsid();
@@ -94,7 +100,7 @@ Result<ProcessGuard> ProcessGuard::start(const Options& options) {
     const pid_t process = ::fork();
     if (process < 0) return failure("no guard: {}", std::strerror(errno));
     if (process == 0) {
-        ::close(ends[1]);
+        close_all_but(ends[0]);
         stand_guard(ends[0], options, boot);
     }
     ::close(ends[0]);

@@ -22,7 +22,7 @@ public:
         double clock_speed = 1;              ///< seconds of the devices' clock in one of CLOCK_MONOTONIC
         const host::Clock* clock = nullptr;  ///< or that clock itself; must outlive the guard
     };
-    /// Starts the process. Call it before the program has other threads, and before it opens ports and journals.
+    /// Starts the process; nothing that the program has open stays open in it.
     [[nodiscard]] static Result<ProcessGuard> start(const Options& options);
     ProcessGuard(ProcessGuard&& other) noexcept;
     ProcessGuard& operator=(ProcessGuard&&) = delete;

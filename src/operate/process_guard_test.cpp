@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <ctime>
 #include <fstream>
@@ -99,4 +100,16 @@ TEST_CASE("a host that ends in peace leaves no witness") {
         guard->dark();
     }
     CHECK_FALSE(std::filesystem::exists(options.witness));
+}
+
+TEST_CASE("the guard keeps nothing open that the program had open") {
+    const Folder folder;
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    auto guard = ProcessGuard::start({folder.path / "witness", folder.path / "shown.png", 1});
+    REQUIRE(guard);
+    ::close(ends[1]);
+    char byte = 0;
+    CHECK(::read(ends[0], &byte, 1) == 0);  // would wait for good if the guard held the other end
+    ::close(ends[0]);
 }

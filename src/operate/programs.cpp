@@ -33,4 +33,11 @@ host::Programs programs_of(const machine::Printer& printer) {
     return programs;
 }
 
+host::LinkOptions link_options(const machine::Controller& controller) {
+    host::LinkOptions options;
+    options.window_lines = controller.window_lines;
+    options.window_bytes = controller.window_bytes;
+    return options;
+}
+
 }  // namespace pliant::operate

@@ -83,6 +83,7 @@ struct Writing {
     Sequence& s;
     const Plan& plan;
     const job::Manifest& job;
+    JobTimeline* timeline = nullptr;
 
     void load(int slot) const {
         s.comment(fmt::format("load slot {}", slot));
@@ -95,13 +96,16 @@ struct Writing {
     }
     void print(int index, int vat) const {
         const job::Layer& layer = job.layers[static_cast<std::size_t>(index)];
-        s.comment(fmt::format("layer {} slot {}", index, s.printer().vats[static_cast<std::size_t>(vat)].slot));
+        const int slot = s.printer().vats[static_cast<std::size_t>(vat)].slot;
+        const double begin_s = s.seconds().total;
+        s.comment(fmt::format("layer {} slot {}", index, slot));
         approach(s, layer.z_um);
         for (std::size_t k = 0; k < layer.images.size(); ++k) {
             const double seconds = light_s(plan, job, index, k, vat);
             if (seconds > 0) s.expose({index, layer.images[k].material, seconds, layer.images[k].file});
         }
         loosen(s, layer.z_um);
+        if (timeline != nullptr) timeline->visits.push_back({index, slot, begin_s, s.seconds().total});
     }
     void layer_done() const {}
     void store(int slot, int part_um) const {
@@ -210,14 +214,19 @@ private:
 
 }  // namespace
 
-Sequence print_sequence(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+Sequence print_sequence(const Plan& plan, const job::Manifest& job, const Printer& printer, JobTimeline* timeline) {
     Sequence s(printer);
+    if (timeline != nullptr) {
+        s.mute();
+        s.record(&timeline->stretches);
+    }
     begin(s, plan);
-    Writing writing{s, plan, job};
+    Writing writing{s, plan, job, timeline};
     walk(plan, job, printer, writing);
     s.comment("the end: platform up, everything off");
     s.move(Axis::platform, printer.axis(Axis::platform).home_um());
     s.fence();
+    s.record(nullptr);
     return s;
 }
 

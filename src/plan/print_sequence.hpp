@@ -9,8 +9,10 @@
 
 namespace pliant::plan {
 
-/// Needs `order`, `vats` and `vat_of_image` of the plan. The printer must outlive the result.
-[[nodiscard]] Sequence print_sequence(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
+/// Needs `order`, `vats` and `vat_of_image` of the plan. The printer must outlive the result. With `timeline`, no text
+/// is written, and its stretches and visits are filled in.
+[[nodiscard]] Sequence print_sequence(const Plan& plan, const job::Manifest& job, const machine::Printer& printer,
+                                      JobTimeline* timeline = nullptr);
 
 struct PrintTimes {
     Seconds all;                  ///< with homing and the way up at the end

@@ -41,15 +41,20 @@ void Sequence::spend(double seconds) {
     }
 }
 
+void Sequence::record(std::vector<Stretch>* stretches) {
+    stretches_ = stretches;
+    last_stretch_.fill(SIZE_MAX);
+}
+
 /// Moves that follow each other at once are one stretch.
 void Sequence::note(Device device, double begin_s) {
     if (stretches_ == nullptr) return;
-    for (auto last = stretches_->rbegin(); last != stretches_->rend(); ++last) {
-        if (last->device != device) continue;
-        if (last->end_s != begin_s) break;
-        last->end_s = seconds_.total;
+    std::size_t& last = last_stretch_[static_cast<std::size_t>(device)];
+    if (last < stretches_->size() && (*stretches_)[last].end_s == begin_s) {
+        (*stretches_)[last].end_s = seconds_.total;
         return;
     }
+    last = stretches_->size();
     stretches_->push_back({device, begin_s, seconds_.total});
 }
 

@@ -2,6 +2,8 @@
 // what. The planner's times and its G-code come from the same calls and cannot disagree.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +36,7 @@ public:
 
     /// From here on every stretch of work of a device is appended to `stretches`, which must outlive the recording;
     /// nullptr: no more.
-    void record(std::vector<Stretch>* stretches) { stretches_ = stretches; }
+    void record(std::vector<Stretch>* stretches);
 
     void activity(Activity activity) { activity_ = activity; }
     void comment(std::string_view text);
@@ -68,7 +70,8 @@ private:
     Seconds seconds_;
     std::string text_;
     std::vector<Stretch>* stretches_ = nullptr;
-    double pump_on_s_ = -1;  ///< since when; below 0: off
+    std::array<std::size_t, device_count> last_stretch_{};  ///< of each device; SIZE_MAX: none
+    double pump_on_s_ = -1;                                 ///< since when; below 0: off
     double fans_on_s_ = -1;
 };
 

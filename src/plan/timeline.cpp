@@ -5,6 +5,7 @@
 #include <map>
 
 #include "plan/plan.hpp"
+#include "plan/print_sequence.hpp"
 #include "plan/swap.hpp"
 
 namespace pliant::plan {
@@ -68,6 +69,15 @@ SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int t
     s.record(&timeline.stretches);
     swap_vat(s, from_slot, to_slot);
     timeline.seconds = s.seconds().total;
+    return timeline;
+}
+
+JobTimeline job_timeline(const Plan& plan, const job::Manifest& job, const machine::Printer& printer) {
+    JobTimeline timeline;
+    timeline.devices = devices_of(printer);
+    timeline.devices.push_back(Device::light);
+    const machine::Printer filled = filled_printer(plan, job, printer);
+    timeline.seconds = print_sequence(plan, job, filled, &timeline).seconds().total;
     return timeline;
 }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "job/job.hpp"
 #include "machine/printer.hpp"
 
 namespace pliant::plan {
@@ -31,6 +32,25 @@ struct SwapTimeline {
     std::vector<Device> devices;     ///< that this machine has, but for the light
     std::vector<Stretch> stretches;  ///< in the order of their ends; moves without a pause between them are one
 };
+
+/// A vat under the platform for one layer: down, light, up.
+struct Visit {
+    int layer = 0;
+    int slot = 0;
+    double begin_s = 0;
+    double end_s = 0;
+};
+
+/// The whole print.
+struct JobTimeline {
+    double seconds = 0;
+    std::vector<Device> devices;     ///< that this machine has, with the light
+    std::vector<Stretch> stretches;  ///< as in SwapTimeline
+    std::vector<Visit> visits;       ///< in order; what lies between two is a change of vats
+};
+
+/// The whole print, device by device. `job` and `printer` must be those of make_plan(). Cost: that of write_gcode().
+[[nodiscard]] JobTimeline job_timeline(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
 
 /// The first of the changes of vats that take longest; without any swap `stretches` is empty.
 /// `printer` must be that of make_plan().

@@ -57,3 +57,34 @@ TEST_CASE("the swap with the tower's longest way is chosen; a job without swaps 
     CHECK(far.to_slot == 1);
     CHECK(timeline_of({{0}, {0}}, {"semi-flex"}).stretches.empty());
 }
+
+TEST_CASE("the timeline of a job ends when the job does, and every light stands in the visit of its layer") {
+    const machine::Printer printer = test::tower();
+    const job::Manifest job = test::make_job({{0, 1}, {0, 1}, {1}}, {"semi-flex", "rigid-flex"});
+    const Plan plan = make_plan(job, printer).value();
+    const JobTimeline all = job_timeline(plan, job, printer);
+    CHECK(all.seconds == doctest::Approx(plan.seconds.total));
+    REQUIRE(all.visits.size() == 5);
+    int swaps = 0;
+    for (std::size_t v = 1; v < all.visits.size(); ++v) {
+        CHECK(all.visits[v].begin_s >= all.visits[v - 1].end_s);
+        if (all.visits[v].slot == all.visits[v - 1].slot) continue;
+        ++swaps;
+        CHECK(all.visits[v].begin_s - all.visits[v - 1].end_s > longest_swap(plan, printer).seconds / 2);
+    }
+    CHECK(swaps == plan.swaps);
+    double lit_s = 0;
+    std::size_t lights = 0;
+    for (const Stretch& s : all.stretches) {
+        CHECK(s.end_s >= s.begin_s);
+        CHECK(s.end_s <= all.seconds + 1e-9);
+        if (s.device != Device::light) continue;
+        REQUIRE(lights < all.visits.size());
+        CHECK(s.begin_s >= all.visits[lights].begin_s);
+        CHECK(s.end_s <= all.visits[lights].end_s);
+        lit_s += s.end_s - s.begin_s;
+        ++lights;
+    }
+    CHECK(lights == all.visits.size());
+    CHECK(lit_s == doctest::Approx(plan.seconds.expose));
+}

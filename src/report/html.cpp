@@ -30,21 +30,6 @@ std::string seconds(double s) {
     return s < 120 ? fmt::format("{:.3g} s", s) : fmt::format("{:.1f} min", s / 60);
 }
 
-/// Escaped, with its line breaks.
-std::string escaped_lines(std::string_view text) {
-    std::string out;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        out += html_escaped(text.substr(0, end)) + "\n";
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return out;
-}
-
-std::string tile(std::string_view value, std::string_view what) {
-    return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", html_escaped(value), html_escaped(what));
-}
-
 /// A table from a header and rows of plain text; `kind` is a class of report.css.
 std::string table(std::string_view kind, const std::vector<std::string>& header,
                   const std::vector<std::vector<std::string>>& rows) {
@@ -81,21 +66,21 @@ std::string tiles(const Simulation& s) {
     std::string out = "<section class=\"tiles\">\n";
     for (std::size_t i = 0; i < std::min(shown, last.cables.size()); ++i) {
         const auto& c = last.cables[i];
-        out += tile(fmt::format("{:.4g} N", c.tension_N),
-                    fmt::format("{} at {:.1f} % length", c.name, 100 * c.length_ratio));
+        out += html_tile(fmt::format("{:.4g} N", c.tension_N),
+                         fmt::format("{} at {:.1f} % length", c.name, 100 * c.length_ratio));
     }
     for (std::size_t i = 0; i < std::min(shown, last.chambers.size()); ++i) {
         const auto& c = last.chambers[i];
-        out += tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
-                    fmt::format("{} at {:.1f} % volume", c.name, 100 * c.volume_ratio));
+        out += html_tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
+                         fmt::format("{} at {:.1f} % volume", c.name, 100 * c.volume_ratio));
     }
     for (std::size_t i = 0; i < std::min(shown, last.contacts.size()); ++i) {
         const auto& c = last.contacts[i];
-        out += tile(fmt::format("{:.4g} N", norm(c.force_N)), fmt::format("force of {}", c.name));
+        out += html_tile(fmt::format("{:.4g} N", norm(c.force_N)), fmt::format("force of {}", c.name));
     }
     for (std::size_t i = 0; i < std::min(shown, last.markers.size()); ++i) {
         const double way = norm(last.markers[i].position_m - rest.markers[i].position_m);
-        out += tile(fmt::format("{:.4g} mm", 1e3 * way), fmt::format("{} moved", last.markers[i].name));
+        out += html_tile(fmt::format("{:.4g} mm", 1e3 * way), fmt::format("{} moved", last.markers[i].name));
     }
     double least = 1;
     int iterations = 0;
@@ -103,11 +88,11 @@ std::string tiles(const Simulation& s) {
         least = std::min(least, step.min_J);
         iterations += step.iterations;
     }
-    out += tile(fmt::format("{:.3f}", least), "smallest det F");
+    out += html_tile(fmt::format("{:.3f}", least), "smallest det F");
     const auto steps = static_cast<double>(s.result.steps.size()) - 1;
-    if (s.result.solve_s > 0) out += tile(fmt::format("{:.3g} /s", steps / s.result.solve_s), "steps solved");
-    out += tile(grouped(static_cast<std::size_t>(std::max(0, iterations))), "iterations in all");
-    out += tile(fmt::format("{:.0f} MB", s.peak_memory_MB), "peak memory");
+    if (s.result.solve_s > 0) out += html_tile(fmt::format("{:.3g} /s", steps / s.result.solve_s), "steps solved");
+    out += html_tile(grouped(static_cast<std::size_t>(std::max(0, iterations))), "iterations in all");
+    out += html_tile(fmt::format("{:.0f} MB", s.peak_memory_MB), "peak memory");
     return out + "</section>\n";
 }
 
@@ -256,6 +241,20 @@ std::string html_escaped(std::string_view text) {
         }
     }
     return out;
+}
+
+std::string escaped_lines(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        out += html_escaped(text.substr(0, end)) + "\n";
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return out;
+}
+
+std::string html_tile(std::string_view value, std::string_view what) {
+    return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", html_escaped(value), html_escaped(what));
 }
 
 std::string script_safe_json(std::string_view json) {

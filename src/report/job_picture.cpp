@@ -16,6 +16,7 @@ constexpr Colour paper{1, 1, 1};
 constexpr Colour dark{0.11, 0.12, 0.15};
 constexpr Colour ink{0.16, 0.18, 0.22};
 constexpr int shown_layers = 4;
+constexpr int sheet_columns = 6, sheet_rows = 4;
 
 /// Pixels that any layer lights.
 struct Extent {
@@ -61,12 +62,11 @@ std::vector<std::int64_t> column_light(const slice::RunImage& image) {
     return light;
 }
 
-Result<Views> look(const job::Archive& archive) {
+Result<Views> look(const job::Archive& archive, int most_shown) {
     const job::Manifest& m = archive.manifest();
     Views views;
-    const int count = static_cast<int>(m.layers.size());
-    for (int i = 0; i < std::min(shown_layers, count); ++i)
-        views.numbers.push_back(static_cast<int>((i + 0.5) * count / std::min(shown_layers, count)));
+    const int count = static_cast<int>(m.layers.size()), shown_count = std::min(most_shown, count);
+    for (int i = 0; i < shown_count; ++i) views.numbers.push_back(static_cast<int>((i + 0.5) * count / shown_count));
     for (int k = 0; k < count; ++k) {
         auto& columns = views.columns.emplace_back(m.materials.size());
         const bool shown = std::find(views.numbers.begin(), views.numbers.end(), k) != views.numbers.end();
@@ -159,8 +159,42 @@ void draw_layers(Canvas& canvas, const Views& views, const job::Manifest& m) {
 
 }  // namespace
 
+namespace {
+
+/// In rows from the top left, each with its number and height.
+void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
+    const Extent& e = views.extent;
+    const int cell_w = width_px / sheet_columns, cell_h = height_px / sheet_rows;
+    const double scale = std::min((cell_w - 24.0) / e.width(), (cell_h - 48.0) / e.height());
+    const int w = std::max(1, static_cast<int>(e.width() * scale)),
+              h = std::max(1, static_cast<int>(e.height() * scale));
+    for (std::size_t i = 0; i < views.layers.size(); ++i) {
+        const int x = static_cast<int>(i) % sheet_columns * cell_w + 12,
+                  y = static_cast<int>(i) / sheet_columns * cell_h + 34;
+        canvas.image(paint(w, h,
+                           [&](int px, int py) {
+                               return colour_of_layer(views.layers[i], e.top + static_cast<int>((py + 0.5) / scale),
+                                                      e.left + static_cast<int>((px + 0.5) / scale));
+                           }),
+                     x, y);
+        const int z_um = m.layers[static_cast<std::size_t>(views.numbers[i])].z_um;
+        canvas.text({static_cast<double>(x), y - 9.0},
+                    fmt::format("layer {}, {:.2f} mm", views.numbers[i], z_um / 1000.0), {.size = 19, .colour = ink});
+    }
+}
+
+}  // namespace
+
+Result<std::string> layers_picture(const job::Archive& archive) {
+    const auto views = look(archive, sheet_columns * sheet_rows);
+    if (!views) return tl::unexpected(views.error());
+    Canvas canvas(width_px, height_px, paper);
+    draw_sheet(canvas, *views, archive.manifest());
+    return canvas.png();
+}
+
 Result<std::string> job_picture(const job::Archive& archive) {
-    const auto views = look(archive);
+    const auto views = look(archive, shown_layers);
     if (!views) return tl::unexpected(views.error());
     const job::Manifest& m = archive.manifest();
     Canvas canvas(width_px, height_px, paper);

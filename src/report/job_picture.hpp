@@ -12,4 +12,7 @@ namespace pliant::report {
 /// every image is decoded.
 [[nodiscard]] Result<std::string> job_picture(const job::Archive& archive);
 
+/// 24 of its layers from above, evenly from the platform up, in the same colours; the same size and cost.
+[[nodiscard]] Result<std::string> layers_picture(const job::Archive& archive);
+
 }  // namespace pliant::report

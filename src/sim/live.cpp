@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/curvature.hpp"
+#include "sim/describe.hpp"
 #include "sim/elements.hpp"
 #include "sim/solver_chain.hpp"
 
@@ -123,23 +124,7 @@ public:
         step.iterations = iterations_;
         step.wall_s = wall_s_;
         step.solver = solver_;
-        step.residual = evaluation_.residual;
-        step.min_J = evaluation_.min_J;
-        step.energy_J = system_.potential_energy(state_, controls_);
-        describe_actuators(step);
-        const auto x = view(state_.x);
-        for (const Support& support : model_.description().supports) {
-            Vec3 force;
-            for (const int node : support.nodes) {
-                const auto f = evaluation_.out_of_balance.segment<3>(3 * node);
-                force += Vec3{f[0], f[1], f[2]};
-            }
-            step.supports.push_back({support.name, force});
-        }
-        if (model_.contact() != nullptr) describe_contact(step);
-        for (const Marker& marker : model_.description().markers)
-            step.markers.push_back({marker.name, position(marker.point, x)});
-        for (std::size_t n = 0; n + 2 < x.size(); n += 3) step.positions.push_back({x[n], x[n + 1], x[n + 2]});
+        sim::describe(model_, system_, state_, controls_, evaluation_, step);
         return step;
     }
 
@@ -404,29 +389,6 @@ private:
         if (spring_settled(pull)) return place_.force_N;
         const Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity() + spring_N_m_ * compliance_;
         return place_.force_N + matrix.inverse() * spring_gap(*pull);
-    }
-
-    void describe_actuators(Step& step) const {
-        const auto& d = model_.description();
-        for (std::size_t a = 0; a < steered(); ++a) {
-            const Actuator& actuator = system_.actuators()[a];
-            const double measure = actuator.measure(view(state_.x));
-            const double ratio = measure / actuator.rest_measure();
-            const double multiplier = state_.multiplier[static_cast<Eigen::Index>(a)];
-            if (a < d.cables.size())
-                step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
-            else
-                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, 0 - multiplier});
-        }
-    }
-
-    void describe_contact(Step& step) const {
-        const contact::Forces forces = system_.contact_forces(state_, controls_);
-        const auto& obstacles = model_.description().contact->obstacles;
-        for (std::size_t k = 0; k < obstacles.size(); ++k)
-            step.contacts.push_back({obstacles[k].body.name, forces.on_robot_N[k]});
-        step.self_contact_N = forces.self_N;
-        step.smallest_distance_m = forces.smallest_distance_m;
     }
 
     struct Known {

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "sim/curvature.hpp"
+#include "sim/describe.hpp"
 #include "sim/elements.hpp"
 #include "sim/pressure_limit.hpp"
 #include "sim/solver_chain.hpp"
@@ -105,26 +106,8 @@ public:
     }
 
     void describe(Step& step) const {
-        step.residual = evaluation_.residual;
-        step.min_J = evaluation_.min_J;
-        step.energy_J = system_.potential_energy(state_, controls_);
+        sim::describe(model_, system_, state_, controls_, evaluation_, step);
         if (program_.dynamics) step.kinetic_energy_J = kinetic_energy();
-        const auto& d = model_.description();
-        const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
-            const Actuator& actuator = system_.actuators()[a];
-            const double measure = actuator.measure(x);
-            const double ratio = measure / actuator.rest_measure();
-            const double multiplier = state_.multiplier[static_cast<Eigen::Index>(a)];
-            if (a < d.cables.size())
-                step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
-            else  // 0 - 0 is 0, where -0 would be a minus zero in every report
-                step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, 0 - multiplier});
-        }
-        if (model_.contact() != nullptr) describe_contact(step);
-        for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support)});
-        for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
-        for (int n = 0; n < model_.node_count(); ++n) step.positions.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
     }
 
     [[nodiscard]] double kinetic_energy() const {
@@ -132,15 +115,6 @@ public:
         model_.elements().apply_mass({history_.v.data(), static_cast<std::size_t>(history_.v.size())},
                                      {momentum.data(), static_cast<std::size_t>(momentum.size())});
         return 0.5 * history_.v.dot(momentum);
-    }
-
-    void describe_contact(Step& step) const {
-        const contact::Forces forces = system_.contact_forces(state_, controls_);
-        const auto& obstacles = model_.description().contact->obstacles;
-        for (std::size_t k = 0; k < obstacles.size(); ++k)
-            step.contacts.push_back({obstacles[k].body.name, forces.on_robot_N[k]});
-        step.self_contact_N = forces.self_N;
-        step.smallest_distance_m = forces.smallest_distance_m;
     }
 
     /// A gap that has closed between two guide points: from here on the flanks would touch.
@@ -362,15 +336,6 @@ private:
         const Eigen::VectorXd motion = next.x - from.x;
         if (motion.squaredNorm() > 0) system_.add_free(laplacian_.follow(system_, motion), 1, next.x);
         return next;
-    }
-
-    [[nodiscard]] Vec3 reaction(const Support& support) const {
-        Vec3 sum;
-        for (const int node : support.nodes) {
-            const auto force = evaluation_.out_of_balance.segment<3>(3 * node);
-            sum += Vec3{force[0], force[1], force[2]};
-        }
-        return sum;
     }
 
     const Model& model_;

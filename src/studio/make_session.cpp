@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "core/files.hpp"
 #include "operate/job_file.hpp"
 #include "report/colour.hpp"
 #include "studio/access.hpp"
@@ -53,6 +54,18 @@ Status MakeSession::open(const std::filesystem::path& file) {
     return adopt(file, {});
 }
 
+Status MakeSession::save(const std::filesystem::path& file) {
+    const auto job = this->job();
+    if (!job) return failure("there is no job yet: slice the robot, or open a job file");
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored))
+        return input_error("{} exists; choose another name", file.filename().string());
+    const Result<std::string> bytes = read_file(job->file);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (Status written = write_file(file, *bytes); !written) return written;
+    return adopt(file, job->colours);
+}
+
 Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
@@ -74,7 +87,7 @@ Status MakeSession::slice(SliceOrder order) {
     if (slicing_.exchange(true)) return failure("a job is being sliced already; cancel it first");
     if (thread_.joinable()) thread_.join();
     cancelled_ = false;
-    order.version = version_;
+    order.order.version = version_;
     thread_ = std::thread([this, order = std::move(order)] {
         work(order);
         slicing_ = false;

@@ -13,18 +13,15 @@
 #include "core/progress.hpp"
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "prepare/slice_job.hpp"
 
 namespace pliant::studio {
 
 struct SliceOrder {
     std::string robot_text;
     std::filesystem::path robot_file;
-    std::string printer_name;  ///< for messages
-    std::string printer_text;  ///< TOML
-    int layer_um = 0;          ///< 0: the printer's
-    int copies = 1;
-    std::vector<double> turn_deg{};  ///< about x, y, z; empty: as drawn
-    std::string version{};
+    prepare::PrinterFile printer;
+    prepare::Order order;  ///< its inputs are the robot's
 };
 
 /// A job with the machine that it was made for.
@@ -47,6 +44,8 @@ public:
     MakeSession& operator=(const MakeSession&) = delete;
 
     [[nodiscard]] Status open(const std::filesystem::path& file);
+    /// The job at hand as a file of its own, which takes its place. Errors: there is none, the file exists, the disk.
+    [[nodiscard]] Status save(const std::filesystem::path& file);
     /// Begins; the pages hear of its progress and of its end. Errors: it is slicing already.
     [[nodiscard]] Status slice(SliceOrder order);
     void cancel();

@@ -1,9 +1,14 @@
 #include "studio/print_session.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "host/projector.hpp"
+#include "host/serial.hpp"
 #include "operate/programs.hpp"
+#include "studio/access.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -32,11 +37,14 @@ bool under_way(host::State state) {
            state == State::cancelling || state == State::working;
 }
 
-host::LinkOptions link_options(const machine::Controller& controller) {
-    host::LinkOptions options;
-    options.window_lines = controller.window_lines;
-    options.window_bytes = controller.window_bytes;
-    return options;
+/// A page may name no file but a terminal's: what is opened is written to.
+Status check_device(const std::string& device) {
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(device, error);
+    const bool terminal =
+        !error && real.string().starts_with("/dev/") && std::filesystem::is_character_file(real, error);
+    return terminal ? Status{}
+                    : input_error("device: \"{}\" is no serial port; one such as /dev/ttyACM0 is needed", device);
 }
 
 /// What the page draws the machine from.
@@ -69,33 +77,51 @@ Json printer_json(const machine::Printer& p) {
 
 }  // namespace
 
+/// Either a twin or a port.
 struct PrintSession::Machine {
-    Machine(operate::ReadyJob ready_, double speed)
-        : ready(std::move(ready_)), twin(ready.printer, speed), control(setup()) {}
+    Machine(std::filesystem::path file_, operate::ReadyJob ready_, double speed)
+        : file(std::move(file_)),
+          ready(std::move(ready_)),
+          twin(std::make_unique<PacedTwin>(ready.printer, speed)),
+          control(setup()) {}
+    Machine(std::filesystem::path file_, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_,
+            std::string device_)
+        : file(std::move(file_)),
+          ready(std::move(ready_)),
+          port(std::move(port_)),
+          device(std::move(device_)),
+          control(setup()) {}
 
     host::ControlSetup setup() {
+        if (port) return port->setup(ready.printer);
         return {ready.printer,
-                [this]() -> Result<std::unique_ptr<host::Wire>> { return twin.wire(); },
-                twin.projector(),
-                twin.clock(),
+                [this]() -> Result<std::unique_ptr<host::Wire>> { return twin->wire(); },
+                twin->projector(),
+                twin->clock(),
                 operate::programs_of(ready.printer),
-                link_options(ready.printer.controller),
+                operate::link_options(ready.printer.controller),
                 {},
                 {},
                 nullptr};
     }
 
+    std::filesystem::path file;
     operate::ReadyJob ready;
-    PacedTwin twin;
+    std::unique_ptr<PacedTwin> twin;
+    std::unique_ptr<operate::PortStation> port;
+    std::string device;
     host::Control control;
     std::atomic<bool> ending = false;
     std::thread worker, watcher;
 };
 
-PrintSession::PrintSession(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
+PrintSession::PrintSession(std::function<void(const std::string&)> tell)
+    : tell_(std::move(tell)), scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
 
 PrintSession::~PrintSession() {
     end(machine());
+    std::error_code ignored;
+    std::filesystem::remove_all(scratch_, ignored);
 }
 
 std::shared_ptr<PrintSession::Machine> PrintSession::machine() const {
@@ -103,22 +129,51 @@ std::shared_ptr<PrintSession::Machine> PrintSession::machine() const {
     return machine_;
 }
 
+PrintSession::Files PrintSession::files() const {
+    const auto machine = this->machine();
+    if (!machine) return {};
+    return {machine->file, machine->ready.job.journal};
+}
+
+report::PrintExtras PrintSession::extras() const {
+    const auto machine = this->machine();
+    if (!machine) return {};
+    const host::Snapshot now = machine->control.snapshot();
+    return {machine->twin ? "virtual printer" : machine->device, now.firmware, now.lines_sent, now.resends, ""};
+}
+
 Status PrintSession::take_twin(const std::filesystem::path& job, double speed) {
     if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
     if (Status status = give_back(); !status) return status;
     Result<operate::ReadyJob> ready = operate::load_job(job);
     if (!ready) return tl::unexpected(ready.error());
+    std::error_code error;
+    std::filesystem::create_directories(scratch_, error);
+    std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     // A new virtual machine stands at its beginning: what another one had begun cannot be gone on with here.
-    ready->job.journal.clear();
-    host::PrintJob print = ready->job;
-    auto made = std::make_shared<Machine>(std::move(*ready), speed);
-    made->worker = std::thread([made = made.get()] { made->control.serve(); });
-    Status status = made->control.load(std::move(print));
-    if (status) status = made->control.connect();
-    if (!status) {
-        end(made);
-        return status;
+    ready->job.journal = scratch_ / fmt::format("twin_{}.journal", ++twins_);
+    ready->job.sync_journal = false;
+    return take(std::make_shared<Machine>(job, std::move(*ready), speed));
+}
+
+Status PrintSession::take_port(const std::filesystem::path& job, const operate::PortOptions& port) {
+    if (Status status = check_device(port.device); !status) return status;
+    if (Status status = give_back(); !status) return status;
+    Result<operate::ReadyJob> ready = operate::load_job(job);
+    if (!ready) return tl::unexpected(ready.error());
+    auto station = operate::PortStation::open(port, *ready);
+    if (!station) return tl::unexpected(station.error());
+    return take(std::make_shared<Machine>(job, std::move(*ready), std::move(*station), port.device));
+}
+
+Status PrintSession::take(std::shared_ptr<Machine> made) {
+    if (Status loaded = made->control.load(made->ready.job); !loaded) return loaded;
+    made->control.serve_until_idle();
+    // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
+    if (!made->control.snapshot().can_resume) {
+        if (Status status = made->control.connect(); !status) return status;
     }
+    made->worker = std::thread([made = made.get()] { made->control.serve(); });
     {
         const std::lock_guard lock(mutex_);
         machine_ = made;
@@ -146,7 +201,7 @@ void PrintSession::end(std::shared_ptr<Machine> machine) {
     if (!machine) return;
     machine->ending = true;
     if (machine->watcher.joinable()) machine->watcher.join();
-    machine->twin.pace().let_go();
+    if (machine->twin) machine->twin->pace().let_go();
     machine->control.quit();
     if (machine->worker.joinable()) machine->worker.join();
 }
@@ -167,9 +222,9 @@ Status PrintSession::give_back() {
 
 Status PrintSession::set_speed(double speed) {
     const auto machine = this->machine();
-    if (!machine) return failure("there is no virtual printer");
+    if (!machine || !machine->twin) return failure("there is no virtual printer");
     if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
-    machine->twin.pace().set_speed(speed);
+    machine->twin->pace().set_speed(speed);
     return {};
 }
 
@@ -190,8 +245,11 @@ std::string PrintSession::describe() const {
     long last = 0;
     const Json history = Json::parse(host::history_message(machine->control, last));
     return dumped({{"machine", printer_json(machine->ready.printer)},
-                   {"twin", true},
-                   {"speed", machine->twin.pace().speed()},
+                   {"twin", machine->twin != nullptr},
+                   {"device", machine->device},
+                   {"speed", machine->twin ? machine->twin->pace().speed() : 1},
+                   {"file", machine->file.filename().string()},
+                   {"materials", machine->ready.job.materials},
                    {"job", machine->ready.job.name},
                    {"seconds", machine->ready.plan.seconds.total},
                    {"vats", vats},
@@ -202,6 +260,19 @@ std::string PrintSession::describe() const {
 std::vector<std::string> PrintSession::news() const {
     if (!machine()) return {};
     return {R"({"type":"machine"})"};
+}
+
+std::string ports_json() {
+    Json ports = Json::array(), displays = Json::array();
+    for (const host::SerialPort& port : host::serial_ports())
+        ports.push_back({{"device", port.device}, {"name", port.name}});
+    const Result<std::vector<host::PanelInfo>> panels = host::list_displays();
+    if (panels) {
+        for (const host::PanelInfo& p : *panels)
+            displays.push_back(
+                {{"number", p.number}, {"name", p.name}, {"width", p.width_px}, {"height", p.height_px}});
+    }
+    return dumped({{"ports", ports}, {"displays", displays}, {"without", panels ? "" : panels.error().message}});
 }
 
 }  // namespace pliant::studio

@@ -12,7 +12,9 @@
 
 #include "host/control.hpp"
 #include "host/control_api.hpp"
+#include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
+#include "report/print_report.hpp"
 #include "studio/paced_twin.hpp"
 
 namespace pliant::studio {
@@ -28,8 +30,13 @@ public:
     /// Takes the machine that the job was made for, as a twin. Refused while a print is under way. Errors: the job
     /// cannot be printed.
     [[nodiscard]] Status take_twin(const std::filesystem::path& job, double speed);
+    /// Takes the machine at a serial port. The journal stands beside the job, so that an interrupted print is gone on
+    /// with. Whether the port answers shows in the state. Errors: the job cannot be printed, the device is none, no
+    /// such projector.
+    [[nodiscard]] Status take_port(const std::filesystem::path& job, const operate::PortOptions& port);
     /// Gives the machine back; a print under way is refused.
     [[nodiscard]] Status give_back();
+    /// Of the virtual printer.
     [[nodiscard]] Status set_speed(double speed);
 
     /// One request of docs/reference/host-api.md; 404 while there is no machine.
@@ -37,16 +44,29 @@ public:
     /// The machine and the job for the page: JSON.
     [[nodiscard]] std::string describe() const;
     [[nodiscard]] std::vector<std::string> news() const;
+    /// Job and journal of the machine at hand; both empty while there is none.
+    struct Files {
+        std::filesystem::path job, journal;
+    };
+    [[nodiscard]] Files files() const;
+    /// What its journal does not hold.
+    [[nodiscard]] report::PrintExtras extras() const;
 
 private:
     struct Machine;
+    [[nodiscard]] Status take(std::shared_ptr<Machine> machine);
     void watch(const std::shared_ptr<Machine>& machine);
     [[nodiscard]] std::shared_ptr<Machine> machine() const;
     void end(std::shared_ptr<Machine> machine);
 
     std::function<void(const std::string& json)> tell_;
+    std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; gone with the session
+    int twins_ = 0;                  ///< taken so far
     mutable std::mutex mutex_;
     std::shared_ptr<Machine> machine_;
 };
+
+/// The ports that have something behind them and the displays that a projector may be: JSON.
+[[nodiscard]] std::string ports_json();
 
 }  // namespace pliant::studio

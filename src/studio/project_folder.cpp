@@ -13,19 +13,24 @@ namespace fs = std::filesystem;
 constexpr std::size_t longest_path = 400, longest_name = 255, most_files = 500;
 constexpr int deepest = 2;
 
-bool is_listed(const fs::path& path) {
+bool is_robot_or_job(const fs::path& path) {
     const std::string extension = path.extension().string();
     return extension == ".toml" || extension == ".zip";
 }
 
-void list(const fs::path& folder, const fs::path& root, int depth, std::vector<std::string>& files) {
+bool is_journal(const fs::path& path) {
+    return path.extension() == ".journal";
+}
+
+void list(const fs::path& folder, const fs::path& root, int depth, bool (*is_listed)(const fs::path&),
+          std::vector<std::string>& files) {
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
         if (files.size() >= most_files) return;
         const fs::path& path = it->path();
         if (path.filename().string().starts_with('.') || it->is_symlink(error)) continue;
         if (it->is_directory(error)) {
-            if (depth < deepest) list(path, root, depth + 1, files);
+            if (depth < deepest) list(path, root, depth + 1, is_listed, files);
         } else if (it->is_regular_file(error) && is_listed(path)) {
             files.push_back(path.lexically_relative(root).generic_string());
         }
@@ -80,7 +85,14 @@ bool ProjectFolder::holds(const fs::path& path) const {
 
 std::vector<std::string> ProjectFolder::files() const {
     std::vector<std::string> files;
-    list(root_, root_, 0, files);
+    list(root_, root_, 0, is_robot_or_job, files);
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::string> ProjectFolder::journals() const {
+    std::vector<std::string> files;
+    list(root_, root_, 0, is_journal, files);
     std::sort(files.begin(), files.end());
     return files;
 }

@@ -23,6 +23,8 @@ public:
     [[nodiscard]] bool holds(const std::filesystem::path& path) const;
     /// Robot files and jobs (.toml, .zip), relative, sorted; two levels deep, at most 500, hidden ones left out.
     [[nodiscard]] std::vector<std::string> files() const;
+    /// Journals of prints (.journal), listed likewise.
+    [[nodiscard]] std::vector<std::string> journals() const;
     /// The text values of a TOML document that, taken as paths beside `file`, lead outside: found before anything is
     /// read that the document names. A document with mistakes has none.
     [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,

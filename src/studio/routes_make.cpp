@@ -1,14 +1,17 @@
 // The job: slicing, its layers, its plan.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
 #include "job/manifest.hpp"
+#include "operate/job_file.hpp"
 #include "plan/plan.hpp"
 #include "plan/timeline.hpp"
 #include "studio/examples.hpp"
+#include "studio/slice_order.hpp"
 #include "studio/studio.hpp"
 
 namespace pliant::studio {
@@ -83,6 +86,7 @@ Response job(Studio& studio, const Request&) {
     const auto& p = open->printer;
     Json json = {{"revision", open->revision},
                  {"file", open->file.filename().string()},
+                 {"saved", studio.folder().holds(open->file)},
                  {"manifest", Json::parse(job::to_json(manifest))},
                  {"colours", open->colours},
                  {"issues", issues_json(manifest)},
@@ -95,6 +99,30 @@ Response job(Studio& studio, const Request&) {
         json["plan_error"] = plan.error().message;
     }
     return json_response(dumped(json));
+}
+
+/// Every device over the whole print, in rows of begin, end, begin, end, ...; visits in rows of layer, slot, begin,
+/// end.
+Response timeline(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    const job::Manifest& manifest = open->archive.manifest();
+    const Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
+    if (!plan) return error_response(plan.error());
+    const plan::JobTimeline all = plan::job_timeline(*plan, manifest, open->printer);
+    const auto rounded = [](double s) { return std::round(s * 1000) / 1000; };
+    Json devices = Json::array(), visits = Json::array();
+    for (const plan::Device device : all.devices) {
+        Json times = Json::array();
+        for (const plan::Stretch& s : all.stretches) {
+            if (s.device != device) continue;
+            times.push_back(rounded(s.begin_s));
+            times.push_back(rounded(s.end_s));
+        }
+        devices.push_back({{"name", plan::device_name(device)}, {"times", std::move(times)}});
+    }
+    for (const plan::Visit& v : all.visits) visits.push_back({v.layer, v.slot, rounded(v.begin_s), rounded(v.end_s)});
+    return json_response(dumped({{"seconds", all.seconds}, {"devices", devices}, {"visits", visits}}));
 }
 
 Response image(Studio& studio, const Request& request) {
@@ -125,20 +153,14 @@ Response download(Studio& studio, const Request&) {
 }
 
 Response save(Studio& studio, const Request& request) {
-    const auto open = studio.make().job();
-    if (!open) return no_job();
     const Json json = Json::parse(request.body, nullptr, false);
     const std::string name =
         json.is_object() && json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : "";
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return error_response(path.error());
     if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
-    std::error_code ignored;
-    if (std::filesystem::exists(*path, ignored)) return error_response(422, "that file exists; choose another name");
-    const Result<std::string> bytes = read_file(open->file);
-    if (!bytes) return error_response(bytes.error());
-    if (Status written = write_file(*path, *bytes); !written) return error_response(written.error());
-    return json_response("{}");
+    const Status saved = studio.make().save(*path);
+    return saved ? json_response("{}") : error_response(saved.error());
 }
 
 /// The same job on every machine that is built in.
@@ -165,42 +187,41 @@ Response compare(Studio& studio, const Request&) {
     return json_response(dumped(rows));
 }
 
-Result<SliceOrder> read_order(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
-    if (!json.is_object()) return input_error("a JSON object is needed");
-    const Studio::Document d = studio.document();
-    SliceOrder order{d.text, d.file, "", "", 0, 1};
-    const std::string name = json.value("printer", Json("tower")).is_string() ? json.value("printer", "tower") : "";
-    const BuiltInFile* file = find_file(example_printers(), name);
-    order.printer_name = name + (file != nullptr ? ".toml" : "");
-    if (file != nullptr) {
-        order.printer_text = file->text;
+/// Of the built-in ones or of the folder; with its mask, which must lie in the folder too.
+Result<prepare::PrinterFile> read_printer(Studio& studio, const std::string& name) {
+    prepare::PrinterFile file;
+    std::filesystem::path path = name + ".toml";
+    if (const BuiltInFile* known = find_file(example_printers(), name)) {
+        file.text = known->text;
     } else {
-        const Result<std::filesystem::path> path = studio.folder().resolve(name);
-        if (!path) return tl::unexpected(path.error());
-        Result<std::string> text = read_file(*path, std::uintmax_t{4} << 20);
+        const Result<std::filesystem::path> found = studio.folder().resolve(name);
+        if (!found) return tl::unexpected(found.error());
+        path = *found;
+        Result<std::string> text = read_file(path, std::uintmax_t{4} << 20);
         if (!text) return tl::unexpected(text.error());
-        order.printer_text = std::move(*text);
+        file.text = std::move(*text);
+        if (!studio.folder().texts_leading_outside(file.text, path).empty())
+            return input_error("{}: names a file outside of the project folder", name);
     }
-    const auto whole = [&](const char* key, int fallback, int least, int most) -> Result<int> {
-        if (!json.contains(key)) return fallback;
-        if (!json[key].is_number_integer() || json[key] < least || json[key] > most)
-            return input_error("{}: a whole number from {} to {} is needed", key, least, most);
-        return json[key].get<int>();
-    };
-    const Result<int> layer = whole("layer_um", 0, 0, 1000), copies = whole("copies", 1, 1, 1000);
-    if (!layer) return tl::unexpected(layer.error());
-    if (!copies) return tl::unexpected(copies.error());
-    order.layer_um = *layer;
-    order.copies = *copies;
-    if (json.contains("turn")) {
-        const Json& turn = json["turn"];
-        const auto number = [](const Json& v) { return v.is_number(); };
-        if (!turn.is_array() || turn.size() != 3 || !std::all_of(turn.begin(), turn.end(), number))
-            return input_error("turn: three angles in degrees are needed");
-        order.turn_deg = turn.get<std::vector<double>>();
-    }
-    return order;
+    Result<machine::Printer> printer = machine::parse_printer(file.text, path.filename());
+    if (!printer) return tl::unexpected(printer.error());
+    file.printer = std::move(*printer);
+    Result<std::optional<job::Image>> mask = operate::load_mask(file.printer.projector, path);
+    if (!mask) return tl::unexpected(mask.error());
+    file.mask = std::move(*mask);
+    return file;
+}
+
+Result<SliceOrder> read_order(Studio& studio, const Request& request) {
+    const Result<std::string> name = printer_name_of(request.body);
+    if (!name) return tl::unexpected(name.error());
+    Result<prepare::Order> order = read_slice_order(request.body);
+    if (!order) return tl::unexpected(order.error());
+    Result<prepare::PrinterFile> printer = read_printer(studio, *name);
+    if (!printer) return tl::unexpected(printer.error());
+    const Studio::Document d = studio.document();
+    order->inputs = {d.file.filename().string()};
+    return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order)};
 }
 
 Response slice(Studio& studio, const Request& request) {
@@ -208,6 +229,26 @@ Response slice(Studio& studio, const Request& request) {
     if (!order) return error_response(order.error());
     const Status status = studio.make().slice(std::move(*order));
     return status ? json_response("{}") : error_response(status.error());
+}
+
+/// What a form about slicing for it wants to know.
+Response printer(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    const Result<prepare::PrinterFile> file =
+        read_printer(studio, name == request.query.end() ? "tower" : name->second);
+    if (!file) return error_response(file.error());
+    const machine::Printer& p = file->printer;
+    Json resins = Json::array(), vats = Json::array();
+    for (const machine::Resin& resin : p.resins)
+        resins.push_back(
+            {{"name", resin.name}, {"exposure_s", resin.exposure_s}, {"bottom_exposure_s", resin.bottom_exposure_s}});
+    for (const machine::Vat& vat : p.vats) vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}});
+    return json_response(dumped({{"name", p.name},
+                                 {"layer_um", p.layer_um},
+                                 {"pixel_um", p.projector.pixel_um},
+                                 {"mask", p.projector.mask},
+                                 {"resins", resins},
+                                 {"vats", vats}}));
 }
 
 Response cancel(Studio& studio, const Request&) {
@@ -219,11 +260,13 @@ Response cancel(Studio& studio, const Request&) {
 
 void add_make_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
-    routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\", \"layer_um\", \"copies\", \"turn\"}",
-                      json, true, slice, json});
+    routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\"} and the options of pliant slice", json,
+                      true, slice, json});
+    routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
     routes.push_back({"POST", "/api/job/cancel", "gives up slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});
     routes.push_back({"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare});
     routes.push_back({"GET", "/api/job/file", "the job file", "application/zip", false, download});
     routes.push_back({"POST", "/api/job/save", "writes the job into the folder: {\"name\"}", json, true, save, json});

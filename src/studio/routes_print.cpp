@@ -1,6 +1,8 @@
 // The print: which machine, and what the host's control may be asked for, docs/reference/host-api.md.
 #include <nlohmann/json.hpp>
 
+#include "report/print_report.hpp"
+#include "studio/journal_view.hpp"
 #include "studio/studio.hpp"
 
 namespace pliant::studio {
@@ -23,6 +25,73 @@ Response take_twin(Studio& studio, const Request& request) {
     return done(studio.print().take_twin(job->file, speed_of(request)));
 }
 
+/// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
+Response take_port(Studio& studio, const Request& request) {
+    const auto job = studio.make().job();
+    if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    if (!studio.folder().holds(job->file))
+        return error_response(409, "save the job into the folder first: the journal of a print stands beside its job");
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto text = [&](const char* key) {
+        return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+    };
+    operate::PortOptions port{text("device"), text("projector"), speed_of(request), {}};
+    const bool display = !port.projector.empty() && port.projector.find_first_not_of("0123456789") == std::string::npos;
+    if (!display) {
+        const Result<std::filesystem::path> folder = studio.folder().resolve(port.projector);
+        if (!folder) return error_response(422, "projector: " + folder.error().message);
+        std::error_code error;
+        std::filesystem::create_directories(*folder, error);
+        port.projector = folder->string();
+    }
+    if (const std::string clock = text("clock"); !clock.empty()) {
+        const Result<std::filesystem::path> file = studio.folder().resolve(clock);
+        if (!file) return error_response(422, "clock: " + file.error().message);
+        port.clock_file = *file;
+    }
+    return done(studio.print().take_port(job->file, port));
+}
+
+Response journals(Studio& studio, const Request&) {
+    std::string list;
+    for (const std::string& name : studio.folder().journals()) {
+        const Result<std::filesystem::path> path = studio.folder().resolve(name);
+        if (path) list += (list.empty() ? "" : ",") + journal_line_json(*path, name);
+    }
+    return json_response("[" + list + "]");
+}
+
+Response journal(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    if (name == request.query.end()) return error_response(422, "?name= is needed");
+    const Result<std::filesystem::path> path = studio.folder().resolve(name->second);
+    if (!path) return error_response(path.error());
+    if (path->extension() != ".journal") return error_response(422, "a journal ends with .journal");
+    Result<std::string> json = journal_json(*path, name->second);
+    return json ? json_response(std::move(*json)) : error_response(json.error());
+}
+
+/// Of the machine at hand, or of a journal of the folder and the job beside it.
+Response report_page(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    PrintSession::Files files = studio.print().files();
+    report::PrintExtras extras = studio.print().extras();
+    if (name != request.query.end()) {
+        const Result<std::filesystem::path> journal = studio.folder().resolve(name->second);
+        if (!journal) return error_response(journal.error());
+        if (journal->extension() != ".journal") return error_response(422, "a journal ends with .journal");
+        files = {std::filesystem::path(*journal).replace_extension(), *journal};
+        extras = {};
+    } else if (files.job.empty()) {
+        return error_response(404, "no machine has been taken");
+    }
+    std::error_code error;
+    if (!std::filesystem::exists(files.journal, error)) return error_response(409, "nothing has been printed yet");
+    Result<std::string> page = report::print_report(files.job, files.journal, extras);
+    if (!page) return error_response(page.error());
+    return {200, "text/html; charset=utf-8", std::move(*page), "print_report.html"};
+}
+
 /// "/api/print/host/printer/axes" is the host's "/api/printer/axes".
 Response forward(Studio& studio, const Request& request) {
     std::string path = "/api/" + request.parts.at("what");
@@ -41,6 +110,16 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back({"POST", "/api/print/twin",
                       "takes a virtual printer for the job: {\"speed\"} times as fast as the wall's clock", json, true,
                       take_twin, json});
+    routes.push_back({"GET", "/api/print/ports", "serial ports and displays of this computer", json, false,
+                      [](Studio&, const Request&) { return json_response(ports_json()); }});
+    routes.push_back({"POST", "/api/print/port",
+                      "takes the machine at a port for the job: {\"device\", \"projector\", \"speed\", \"clock\"}",
+                      json, true, take_port, json});
+    routes.push_back({"GET", "/api/print/journals", "the journals of the folder", json, false, journals});
+    routes.push_back({"GET", "/api/print/journal", "one of them: ?name=", json, false, journal});
+    routes.push_back({"GET", "/api/print/report",
+                      "a page about the print at hand, or of a journal of the folder: ?name=", "text/html", false,
+                      report_page});
     routes.push_back({"POST", "/api/print/speed", "another {\"speed\"} of the virtual printer", json, true,
                       [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
     routes.push_back({"POST", "/api/print/leave", "gives the machine back", json, true,

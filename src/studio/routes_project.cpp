@@ -1,6 +1,7 @@
 // Files: the robot file as text, saving, undo, what else lies in the folder.
 #include <nlohmann/json.hpp>
 
+#include "core/files.hpp"
 #include "studio/examples.hpp"
 #include "studio/studio.hpp"
 
@@ -20,11 +21,22 @@ std::string body_text(const Request& request, const char* key) {
     return json[key].get<std::string>();
 }
 
+/// Printer files of the folder: other TOML files have no projector.
+void add_own_printers(const ProjectFolder& folder, Json& printers) {
+    constexpr std::uintmax_t largest = 1 << 20;
+    for (const std::string& name : folder.files()) {
+        if (!name.ends_with(".toml")) continue;
+        const Result<std::string> text = read_file(folder.path() / name, largest);
+        if (text && text->find("[projector]") != std::string::npos) printers.push_back(name);
+    }
+}
+
 Response project(Studio& studio, const Request&) {
     const Studio::Document d = studio.document();
     Json examples = Json::array(), printers = Json::array();
     for (const BuiltInFile& file : example_robots()) examples.push_back(file.name);
     for (const BuiltInFile& file : example_printers()) printers.push_back(file.name);
+    add_own_printers(studio.folder(), printers);
     const Json json = {
         {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},
         {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers}};

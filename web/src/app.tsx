@@ -1,5 +1,6 @@
 // The frame around the three sections.
-import { useState } from 'preact/hooks';
+import { useRef, useState } from 'preact/hooks';
+import { useDismiss } from './dismiss';
 import { Icon } from './icons';
 import { Make } from './make/make';
 import { Print } from './print/print';
@@ -17,8 +18,10 @@ function Open() {
   const [project, setProject] = useState<Project | null>(null);
   const toggle = async () => setProject(project ? null : ((await (await api('/api/project')).json()) as Project));
   const d = documentState.value;
+  const box = useRef<HTMLDivElement>(null);
+  useDismiss(project !== null, () => setProject(null), box);
   return (
-    <div class="menu">
+    <div class="menu" ref={box}>
       <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
         <span class="title">{scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot')}</span>
         <span class="quiet">

@@ -18,6 +18,7 @@ const paths: Record<string, string> = {
   open: 'M3.5 15.5v-11h5l1.5 2h6.5v9z',
   left: 'M12 5l-5 5l5 5',
   right: 'M8 5l5 5l-5 5',
+  close: 'M5.5 5.5l9 9M14.5 5.5l-9 9',
   pin: 'M7 3.5h6l-1 5l2 2.5H6l2-2.5zM10 11v5.5',
 };
 

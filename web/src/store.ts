@@ -86,7 +86,8 @@ export async function api(path: string, options: RequestInit = {}): Promise<Resp
   return response;
 }
 
-export async function post(path: string, body?: unknown): Promise<boolean> {
+/// `tell` hears why it was refused; without it a notice says so.
+export async function post(path: string, body?: unknown, tell: (why: string) => void = say): Promise<boolean> {
   try {
     await api(path, {
       method: 'POST',
@@ -95,7 +96,7 @@ export async function post(path: string, body?: unknown): Promise<boolean> {
     });
     return true;
   } catch (error) {
-    say((error as Error).message);
+    tell((error as Error).message);
     return false;
   }
 }

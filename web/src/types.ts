@@ -92,6 +92,7 @@ export interface Plan {
 export interface Job {
   revision: number;
   file: string;
+  saved: boolean;
   printer: string;
   colours: string[];
   issues: { text: string; layer: number; row?: number; column?: number }[];

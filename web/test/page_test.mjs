@@ -5,7 +5,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, settled, startBrowser, startStudio } from './studio.mjs';
+import { openPage, program, settled, startBrowser, startStudio, unzipped } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 let folder;
@@ -170,6 +170,43 @@ test('the robot is sliced, and its layers and plan are seen', async (t) => {
   const plan = await page.getByTestId('plan').textContent();
   const swaps = await page.evaluate(() => window.pliant.job.value.plan.swaps);
   assert.match(plan, new RegExp(`${swaps}swaps, never fewer than`));
+  assert.deepEqual(wrong, []);
+});
+
+test('an option that cannot be is said at its field, and supports, bonds and light reach the job', async (t) => {
+  const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
+  await page.waitForFunction(() => window.pliant.scene.value !== null);
+  await page.getByTestId('option-layer').fill('500');
+  await page.getByTestId('group-support').locator('summary').click();
+  await page.getByTestId('option-support').selectOption({ index: 1 });
+  await page.getByTestId('option-support-tip').fill('9 apples');
+  await page.getByTestId('slice').click();
+  await page.getByTestId('wrong-support-tip').waitFor();
+  assert.match(await page.getByTestId('wrong-support-tip').textContent(), /apples/);
+  await page.getByTestId('option-support-tip').fill('0.6');
+  await page.getByTestId('option-lift').fill('3');
+  await page.getByTestId('group-exposure').locator('summary').click();
+  await page.getByTestId('light-0').fill('3.25');
+  await page.getByTestId('group-overlap').locator('summary').click();
+  await page.getByTestId('add-bond').click();
+  const before = await page.evaluate(() => window.pliant.job.value.revision);
+  await page.getByTestId('slice').click();
+  await page.waitForFunction((r) => window.pliant.job.value.revision > r, before);
+  const file = Buffer.from(await page.evaluate(async () => Array.from(new Uint8Array(await (await fetch('/api/job/file')).arrayBuffer()))));
+  const settings = JSON.parse(unzipped(file, 'settings.json'));
+  assert.equal(settings.supports.support_tip, '0.6 mm');
+  assert.equal(settings.supports.lift, '3 mm');
+  assert.equal(settings.overlap.length, 1);
+  assert.equal(await page.evaluate(() => window.pliant.job.value.manifest.materials[0].exposure_s), 3.25);
+  await page.getByTestId('make-plan').click();
+  const gantt = page.getByTestId('gantt');
+  const span = async () => {
+    const [from, to] = (await gantt.locator('.quiet').textContent()).split(' to ').map((x) => x.split(':').reduce((s, v) => 60 * s + Number(v), 0));
+    return to - from;
+  };
+  const all = await span();
+  await page.getByTestId('gantt-nearer').click();
+  assert.ok(Math.abs((await span()) - 0.4 * all) < 2, 'the Gantt of the whole job comes nearer');
   assert.deepEqual(wrong, []);
 });
 

@@ -4,6 +4,7 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createRequire } from 'node:module';
+import { inflateRawSync } from 'node:zlib';
 
 const require = createRequire(join(process.env.PLIANT_WEB ?? new URL('..', import.meta.url).pathname, 'package.json'));
 const { chromium } = require('playwright-core');
@@ -65,8 +66,27 @@ export async function openPage(browser, address, t, options = {}) {
 /// Closes a page as a person does: the helm is free at once.
 async function leave({ page, context }) {
   await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' })).catch(() => {});
-  await page.waitForTimeout(100);
-  await context.close();
+  await page.waitForTimeout(100).catch(() => {});
+  await context.close().catch(() => {});
+}
+
+/// One file of a zip archive, as text.
+export function unzipped(bytes, name) {
+  for (let at = bytes.length - 22; at >= 0; --at) {
+    if (bytes.readUInt32LE(at) !== 0x06054b50) continue;
+    let entry = bytes.readUInt32LE(at + 16);
+    for (let k = bytes.readUInt16LE(at + 10); k > 0; --k) {
+      const [length, extra, comment] = [28, 30, 32].map((o) => bytes.readUInt16LE(entry + o));
+      if (bytes.toString('utf8', entry + 46, entry + 46 + length) === name) {
+        const local = bytes.readUInt32LE(entry + 42);
+        const from = local + 30 + bytes.readUInt16LE(local + 26) + bytes.readUInt16LE(local + 28);
+        const packed = bytes.subarray(from, from + bytes.readUInt32LE(entry + 20));
+        return (bytes.readUInt16LE(entry + 10) === 8 ? inflateRawSync(packed) : packed).toString();
+      }
+      entry += 46 + length + extra + comment;
+    }
+  }
+  throw new Error(`${name} is not in the archive`);
 }
 
 /// The robot is there and at equilibrium.

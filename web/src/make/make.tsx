@@ -1,84 +1,14 @@
 // From robot to job: slicing, layers, plan.
 import { signal } from '@preact/signals';
-import { useEffect, useState } from 'preact/hooks';
+import { useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { api, documentState, job, mayDrive, post, say, scene, sliceError, slicing } from '../store';
+import { job, mayDrive, post, say } from '../store';
 import { goal, Layers, layer } from './layers';
+import { SliceForm } from './order';
 import { PlanView } from './plan';
 import { Stack } from './stack';
 
 const tab = signal<'layers' | 'stack' | 'plan'>('layers');
-const printer = signal('tower');
-const layerHeight = signal(100);
-const copies = signal(1);
-
-function SliceForm() {
-  const [printers, setPrinters] = useState<string[]>([]);
-  useEffect(() => {
-    api('/api/project')
-      .then((r) => r.json())
-      .then((p: { printers: string[]; files: string[] }) =>
-        setPrinters([...p.printers, ...p.files.filter((f) => /printer/.test(f) && f.endsWith('.toml'))]),
-      )
-      .catch((e: Error) => say(e.message));
-  }, []);
-  const busy = slicing.value;
-  return (
-    <form
-      class="slice-form"
-      onSubmit={(e) => {
-        e.preventDefault();
-        sliceError.value = '';
-        void post('/api/job/slice', { printer: printer.value, layer_um: layerHeight.value, copies: copies.value });
-      }}
-    >
-      <label>
-        Printer
-        <select value={printer.value} onChange={(e) => (printer.value = e.currentTarget.value)} data-testid="printer">
-          {printers.map((p) => (
-            <option value={p}>{p.replace(/_/g, ' ')}</option>
-          ))}
-        </select>
-      </label>
-      <label>
-        Layer
-        <span class="number">
-          <input type="number" min={10} max={1000} step={5} value={layerHeight.value} onChange={(e) => (layerHeight.value = Number(e.currentTarget.value))} />
-          <span class="unit">µm</span>
-        </span>
-      </label>
-      <label>
-        Copies
-        <span class="number">
-          <input type="number" min={1} max={100} step={1} value={copies.value} onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
-          <span class="unit" />
-        </span>
-      </label>
-      {busy ? (
-        <button type="button" onClick={() => post('/api/job/cancel')} data-testid="cancel-slice">
-          Cancel
-        </button>
-      ) : (
-        <button class="primary" disabled={!mayDrive.value || !scene.value} data-testid="slice">
-          Slice {scene.value?.head.robot ?? 'the robot'}
-        </button>
-      )}
-      {busy && (
-        <div class="progress" role="progressbar" aria-valuenow={Math.round(100 * busy.fraction)} aria-valuemin={0} aria-valuemax={100}>
-          <div style={{ width: `${100 * busy.fraction}%` }} />
-          <span>{busy.stage}</span>
-        </div>
-      )}
-      {sliceError.value && (
-        <p class="problems" role="alert">
-          {sliceError.value}
-        </p>
-      )}
-      {documentState.value.unsaved && <p class="quiet">The robot is sliced as it stands in the editor.</p>}
-    </form>
-  );
-}
-
 function Issues() {
   const j = job.value!;
   return (

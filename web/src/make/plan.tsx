@@ -2,6 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import { api, say } from '../store';
 import type { Job, Plan } from '../types';
+import { Gantt } from './gantt';
 
 export function clock(seconds: number): string {
   const s = Math.round(seconds);
@@ -234,6 +235,7 @@ export function PlanView({ job }: { job: Job }) {
       <Figures plan={job.plan} />
       <LayerTimes plan={job.plan} />
       <VatRows job={job} plan={job.plan} />
+      <Gantt job={job} plan={job.plan} />
       <Swap job={job} />
       <Compare job={job} plan={job.plan} />
       {job.plan.warnings.map((w) => (

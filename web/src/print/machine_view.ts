@@ -52,7 +52,7 @@ export class MachineView {
     this.spray = this.makeSpray(width, depth);
     this.cleaning.add(this.spray);
     const floor = new THREE.Mesh(new THREE.CircleGeometry(4 * w, 64), new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.08 }));
-    floor.position.z = -h - 40;
+    floor.position.z = -h - 40 - this.depth();
     this.world.add(floor);
     this.look(w);
     this.resize = new ResizeObserver(() => {
@@ -70,9 +70,17 @@ export class MachineView {
   private look(w: number) {
     const reach = this.machine.store === 'tower' ? this.machine.carriage.tower - this.machine.carriage.print : 0;
     const size = Math.abs(reach) + 1.6 * w;
-    this.controls.target.set(0.3 * reach, 0, -0.05 * size);
-    this.camera.position.set(0.3 * reach - 0.4 * size, -2.1 * size, 1.0 * size);
+    // All of the tower is in sight: its vats hang below the one at hand.
+    const deep = this.depth();
+    const far = Math.max(2.1 * size, 1.15 * size + 1.5 * deep);
+    this.controls.target.set(0.3 * reach, 0, 0.1 * size - 0.42 * deep);
+    this.camera.position.set(0.3 * reach - 0.4 * size, -far, 0.1 * size - 0.42 * deep + 0.5 * far);
     this.controls.update();
+  }
+
+  /// How far the tower reaches below the vat at hand, mm.
+  private depth() {
+    return this.machine.store === 'tower' ? Math.max(...this.machine.vats.map((v) => v.slot)) * this.machine.tower.pitch : 0;
   }
 
   private box(w: number, d: number, h: number, colour: number, z: number) {

@@ -2,52 +2,46 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { api, job, mayDrive, post, say, section } from '../store';
+import { job, mayDrive, post, say } from '../store';
 import { clock } from '../make/plan';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
 import { busy, events, flags, host, info, load, now } from './state';
+import { TakeMachine } from './take';
 
 const speeds = [1, 10, 60, 300];
 const ticks = signal<Record<string, boolean>>({});
 
-function TakeMachine() {
-  const [speed, setSpeed] = useState(60);
-  const j = job.value;
+/// What the studio has looked at itself.
+function Known() {
+  const n = now.value!;
+  const i = info.value!;
+  const connected = flags.value.operational;
   return (
-    <div class="take">
-      <h2>Print</h2>
-      {j ? (
-        <>
-          <p>
-            <b>{j.manifest.name}</b>, {j.manifest.layers.length} layers, for the {j.printer}
-            {j.plan && `: ${clock(j.plan.seconds.total)}, ${j.plan.swaps} swaps`}.
-          </p>
-          <p class="quiet">
-            The virtual printer obeys the same G-code as the real one and is dark, wet and slow like it. A machine at a port is
-            driven by <code>pliant print JOB.zip --port DEVICE</code>.
-          </p>
-          <div class="row left">
-            <button class="primary" disabled={!mayDrive.value} data-testid="take-twin" onClick={() => post('/api/print/twin', { speed })}>
-              Take the virtual printer
-            </button>
-            <label class="inline">
-              at
-              <select value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="take-speed">
-                {[...speeds, 3000].map((s) => (
-                  <option value={s}>{s}×</option>
-                ))}
-              </select>
-              speed
-            </label>
-          </div>
-        </>
-      ) : (
-        <p>
-          There is no job yet. <a href="#make" onClick={() => (section.value = 'make')}>Slice the robot</a>, or open a job file.
-        </p>
+    <ul class="checklist known" data-testid="known">
+      <li class={connected ? 'good' : 'bad'}>
+        <Icon name={connected ? 'check' : 'warn'} />
+        <span>{connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'a firmware without a name'}` : 'the machine does not answer'}</span>
+      </li>
+      <li class={flags.value.error ? 'bad' : 'good'}>
+        <Icon name={flags.value.error ? 'warn' : 'check'} />
+        <span>{flags.value.error ? 'stopped: connect again' : 'the projector is open and dark'}</span>
+      </li>
+      <li class="good">
+        <Icon name="check" />
+        <span>
+          the job is for this machine: {n.job.layers} layers, {clock(i.seconds)}
+        </span>
+      </li>
+      {i.refills.length > 0 && (
+        <li>
+          <Icon name="warn" />
+          <span>
+            it will wait for you {i.refills.length === 1 ? 'once' : `${i.refills.length} times`}: {i.refills.map((r) => `layer ${r.layer + 1}, ${r.text}`).join('; ')}
+          </span>
+        </li>
       )}
-    </div>
+    </ul>
   );
 }
 
@@ -63,6 +57,7 @@ function Checklist() {
   return (
     <section class="block">
       <h3>Before it starts</h3>
+      <Known />
       <ul class="checklist">
         {items.map(([key, text]) => (
           <li key={key}>
@@ -77,6 +72,118 @@ function Checklist() {
         {open > 0 ? `${open} to check` : 'Start the print'}
       </button>
     </section>
+  );
+}
+
+/// A print of this job that was broken off: the journal knows how far it was.
+function GoOn() {
+  const [lit, setLit] = useState('');
+  const [untouched, setUntouched] = useState(false);
+  const [sure, setSure] = useState(false);
+  const may = mayDrive.value && !flags.value.working;
+  return (
+    <section class="block interrupted" data-testid="interrupted">
+      <h3>A print of this job was interrupted</h3>
+      <p>Its journal knows which light has been given. The platform rises, the axes are homed, and the print goes on where it stood.</p>
+      <div class="row left wrap">
+        <button
+          class="primary"
+          data-testid="go-on"
+          disabled={!may}
+          onClick={() =>
+            host('job', {
+              command: 'start',
+              resume: true,
+              ...(lit === '' ? {} : { assumeLit: Number(lit) }),
+              ...(untouched ? { assumeVatsUntouched: true } : {}),
+            })
+          }
+        >
+          <Icon name="play" /> Go on with it
+        </button>
+        {sure ? (
+          <>
+            <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void host('job', { command: 'cancel' })}>
+              Put it away for good
+            </button>
+            <button onClick={() => setSure(false)}>No</button>
+          </>
+        ) : (
+          flags.value.ready ? (
+            <button disabled={!may} data-testid="put-away" onClick={() => setSure(true)}>
+              Put it away
+            </button>
+          ) : (
+            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to put it away, or to look first">
+              Connect only
+            </button>
+          )
+        )}
+      </div>
+      <details>
+        <summary>If the journal cannot prove it all</summary>
+        <label class="field-row">
+          <span>The light that broke off was on for</span>
+          <span class="number">
+            <input type="number" min={0} step="any" value={lit} onInput={(e) => setLit(e.currentTarget.value)} />
+            <span class="unit">s</span>
+          </span>
+        </label>
+        <label class="tick">
+          <input type="checkbox" checked={untouched} onChange={(e) => setUntouched(e.currentTarget.checked)} />
+          <span>another program has used the controller since, but has moved no vat</span>
+        </label>
+      </details>
+    </section>
+  );
+}
+
+/// Light of each material from the next layer on, and layers to be left out.
+function Light() {
+  const n = now.value!;
+  const j = job.value;
+  const i = info.value!;
+  const [skip, setSkip] = useState('');
+  if (!flags.value.printing && !flags.value.paused) return null;
+  return (
+    <details class="block fold" data-testid="light">
+      <summary>Change the light</summary>
+      {i.materials.map((name, m) => (
+        <label class="field-row" key={name}>
+          <span>
+            {j && <span class="swatch" style={{ background: j.colours[m] }} />}
+            {name}
+            {n.progress.exposures[m] > 0 && <span class="quiet"> changed</span>}
+          </span>
+          <span class="number">
+            <input
+              type="number"
+              min={0}
+              step="any"
+              disabled={!mayDrive.value}
+              value={n.progress.exposures[m] || j?.manifest.materials[m]?.exposure_s || ''}
+              onChange={(e) => host('job/exposure', { material: m, seconds: Number(e.currentTarget.value) })}
+            />
+            <span class="unit">s</span>
+          </span>
+        </label>
+      ))}
+      <form
+        class="field-row"
+        onSubmit={(e) => {
+          e.preventDefault();
+          void host('job/skip', { layer: Number(skip) - 1 }).then((done) => done && setSkip(''));
+        }}
+      >
+        <span>Leave out layer</span>
+        <span class="number">
+          <input type="number" min={(n.progress.layer ?? 0) + 2} max={n.job.layers} step={1} value={skip} onInput={(e) => setSkip(e.currentTarget.value)} />
+          <button class="small" disabled={!skip || !mayDrive.value}>
+            Leave out
+          </button>
+        </span>
+      </form>
+    </details>
   );
 }
 
@@ -127,7 +234,7 @@ function Steering() {
               <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
             </button>
           ))}
-        {f.error && (
+        {(f.error || (f.closedOrError && !n.job.canResume && n.state.text === 'Offline')) && (
           <button class="primary" disabled={!mayDrive.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
             Connect again
           </button>
@@ -314,10 +421,6 @@ export function Print() {
   useEffect(() => {
     if (!info.value) load().catch((e: Error) => say(e.message));
   }, []);
-  useEffect(() => {
-    // The pictures of a print come from its job.
-    if (!job.value) api('/api/job').then((r) => r.json()).then((j) => (job.value = j)).catch(() => {});
-  }, []);
   const i = info.value;
   if (!i?.machine || !now.value)
     return (
@@ -334,13 +437,14 @@ export function Print() {
       <div class="steer">
         <div class="row machine-name">
           <b>{i.machine.name}</b>
-          <span class="quiet">{i.twin ? 'virtual printer' : 'at a port'}</span>
+          <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>
         <Progress />
         <Steering />
-        {!busy.value && <Checklist />}
-        {i.twin && (
-          <section class="block row">
+        {!busy.value && (now.value.job.canResume ? <GoOn /> : <Checklist />)}
+        <Light />
+        <section class="block row wrap">
+          {i.twin && (
             <span class="segments" role="group" aria-label="Speed of the virtual printer">
               {speeds.map((s) => (
                 <button
@@ -354,12 +458,17 @@ export function Print() {
                 </button>
               ))}
             </span>
-            <button class="small" disabled={busy.value || !mayDrive.value} onClick={() => post('/api/print/leave')}>
+          )}
+          <a class="button small" href="/api/print/report" download data-testid="print-report">
+            <Icon name="download" /> Report
+          </a>
+          {!busy.value && (
+            <button class="small" disabled={!mayDrive.value} data-testid="leave" onClick={() => post('/api/print/leave')}>
               Give the machine back
             </button>
-          </section>
-        )}
-        {!busy.value && <ByHand />}
+          )}
+        </section>
+        {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />
         <p class="quiet">
           {now.value.machine.firmware} · {now.value.machine.linesSent} lines sent · {now.value.machine.resends} sent again

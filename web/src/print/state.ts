@@ -15,6 +15,7 @@ export interface Now {
     lit: boolean;
     litTime: number;
     exposureTime: number;
+    exposures: number[];
     prompt: string | null;
     finished: boolean;
     failed: boolean;
@@ -44,7 +45,10 @@ export interface MachineInfo {
 export interface PrintInfo {
   machine: MachineInfo | null;
   twin: boolean;
+  device: string;
   speed: number;
+  file: string;
+  materials: string[];
   job: string;
   seconds: number;
   vats: { slot: number; resin: string; ml: number; materials: number[] }[];

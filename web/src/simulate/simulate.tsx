@@ -1,6 +1,7 @@
 // The live robot: 3D view, actuators, plots, file.
 import { effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
 import {
   building,
@@ -85,7 +86,11 @@ function Canvas() {
     };
     const stops = [
       effect(() => {
-        if (scene.value) made.setScene(scene.value);
+        if (!scene.value) return;
+        made.setScene(scene.value);
+        // Which of the two effects runs first is not said: a frame before its scene would be lost.
+        const shown = look.shownFrame.peek() ?? frame.peek();
+        if (shown) made.setFrame(shown);
       }),
       effect(() => made.setOptions(options())),
       effect(() => {
@@ -296,6 +301,8 @@ function save(blob: Blob, name: string) {
 
 function Export() {
   const [open, setOpen] = useState(false);
+  const box = useRef<HTMLDivElement>(null);
+  useDismiss(open, () => setOpen(false), box);
   const head = scene.value?.head;
   if (!head) return null;
   const items: [string, string, () => void][] = [
@@ -307,7 +314,7 @@ function Export() {
     ['This state with its fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
   ];
   return (
-    <div class="menu">
+    <div class="menu" ref={box}>
       <button class="chip" aria-expanded={open} onClick={() => setOpen(!open)}>
         <Icon name="download" /> Export
       </button>

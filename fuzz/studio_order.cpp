@@ -1,0 +1,10 @@
+// What a page asks of the slicer.
+#include "input.hpp"
+#include "studio/slice_order.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text = as_text(data, size);
+    (void)pliant::studio::read_slice_order(text);
+    (void)pliant::studio::printer_name_of(text);
+    return 0;
+}

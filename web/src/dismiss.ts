@@ -1,0 +1,23 @@
+// A menu goes when Escape is pressed, or something else is.
+import type { RefObject } from 'preact';
+import { useEffect } from 'preact/hooks';
+
+export function useDismiss(open: boolean, close: () => void, box: RefObject<HTMLElement>) {
+  useEffect(() => {
+    if (!open) return;
+    const key = (e: KeyboardEvent) => {
+      if (e.key !== 'Escape') return;
+      close();
+      box.current?.querySelector('button')?.focus();
+    };
+    const press = (e: PointerEvent) => {
+      if (!box.current?.contains(e.target as Node)) close();
+    };
+    document.addEventListener('keydown', key);
+    document.addEventListener('pointerdown', press);
+    return () => {
+      document.removeEventListener('keydown', key);
+      document.removeEventListener('pointerdown', press);
+    };
+  }, [open]);
+}

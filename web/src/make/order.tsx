@@ -1,0 +1,390 @@
+// What is asked of the slicer: the options of `pliant slice` in groups. What is wrong stands at its field.
+import { computed, signal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
+import { useEffect, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
+
+interface PrinterInfo {
+  name: string;
+  layer_um: number;
+  pixel_um: number;
+  mask: string;
+  resins: { name: string; exposure_s: number; bottom_exposure_s: number }[];
+  vats: { slot: number; resin: string }[];
+}
+
+interface Bond {
+  kind: 'overlap' | 'interlock';
+  a: string;
+  b: string;
+  pixels: number;
+  layers: number;
+}
+
+interface Light {
+  resin: string;
+  time: string;
+  bottom: string;
+}
+
+const printer = signal('tower');
+const printerInfo = signal<PrinterInfo | null>(null);
+const copies = signal(1);
+/// Texts of the fields, by option; "" is not given.
+const fields = signal<Record<string, string>>({ layer: '100' });
+const turn = signal<[number, number, number]>([0, 0, 0]);
+const plainPixels = signal(false);
+const bonds = signal<Bond[]>([]);
+const lights = signal<Record<string, Light>>({});
+const support = signal('');
+
+/// The option that the last error speaks of, and what it says of it.
+const wrong = computed(() => {
+  const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(sliceError.value);
+  return match ? { option: match[1], value: match[2] ?? '', text: match[3] } : null;
+});
+
+const unitOf: Record<string, string> = { layer: 'um', 'least-layer': 'um', 'support-angle': '' };
+
+/// A number with its field's unit; whoever writes a unit is taken at their word.
+function quantity(option: string, text: string): string {
+  const unit = unitOf[option] ?? 'mm';
+  return unit && /^[\d.eE+-]+$/.test(text.trim()) ? `${text.trim()} ${unit}` : text.trim();
+}
+
+const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
+
+function orderJson(materials: string[]) {
+  const order: Record<string, unknown> = { printer: printer.value, copies: copies.value };
+  const needSupport = ['support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
+  for (const [option, text] of Object.entries(fields.value)) {
+    if (!text.trim() || (needSupport.includes(option) && !support.value) || (option === 'drain' && !fields.value.hollow)) continue;
+    order[option] = option === 'threshold' ? Number(text) : quantity(option, text);
+  }
+  if (support.value) order.support = support.value;
+  if (turn.value.some((t) => t !== 0)) order.turn = turn.value;
+  if (plainPixels.value) order['no-anti-alias'] = true;
+  else delete order.threshold;
+  const used = Object.entries(lights.value).filter(([m]) => materials.includes(m));
+  order.resin = used.filter(([, l]) => l.resin).map(([m, l]) => `${m}=${l.resin}`);
+  order.exposure = used.filter(([, l]) => l.time).map(([m, l]) => `${m}=${seconds(l.time)}${l.bottom ? `,${seconds(l.bottom)}` : ''}`);
+  for (const kind of ['overlap', 'interlock'] as const)
+    order[kind] = bonds.value.filter((b) => b.kind === kind).map((b) => `${b.a}+${b.b}=${b.pixels},${b.layers}`);
+  return order;
+}
+
+function Problem({ option }: { option: string }) {
+  if (wrong.value?.option !== option) return null;
+  return (
+    <p class="problems at-field" role="alert" data-testid={`wrong-${option}`}>
+      {wrong.value.text}
+    </p>
+  );
+}
+
+function Field({ option, label, hint, title }: { option: string; label: string; hint?: string; title?: string }) {
+  const bad = wrong.value?.option === option;
+  const unit = { um: 'µm', mm: 'mm', '': '' }[unitOf[option] ?? 'mm'];
+  return (
+    <>
+      <label title={title}>
+        {label}
+        <span class="number">
+          <input
+            inputMode="decimal"
+            class="short"
+            placeholder={hint}
+            value={fields.value[option] ?? ''}
+            aria-invalid={bad}
+            data-testid={`option-${option}`}
+            onInput={(e) => {
+              fields.value = { ...fields.value, [option]: e.currentTarget.value };
+              if (bad) sliceError.value = '';
+            }}
+          />
+          <span class="unit">{option === 'support-angle' ? '°' : unit}</span>
+        </span>
+      </label>
+      <Problem option={option} />
+    </>
+  );
+}
+
+/// A group is open where something in it is wrong.
+function Group({ name, options, given, children }: { name: string; options: string[]; given: boolean; children: ComponentChildren }) {
+  const has = wrong.value !== null && options.includes(wrong.value.option);
+  const [open, setOpen] = useState(false);
+  return (
+    <details class="group" open={open || has} onToggle={(e) => setOpen(e.currentTarget.open)} data-testid={`group-${options[0]}`}>
+      <summary>
+        {name}
+        {given && <span class="dot-given" title="changed" />}
+      </summary>
+      {children}
+    </details>
+  );
+}
+
+function Materials({ materials }: { materials: string[] }) {
+  const p = printerInfo.value;
+  const resinOf = (m: string) => scene.value?.head.materials.find((x) => x.name === m)?.resin || m;
+  const set = (m: string, change: Partial<Light>) => {
+    lights.value = { ...lights.value, [m]: { ...(lights.value[m] ?? { resin: '', time: '', bottom: '' }), ...change } };
+    sliceError.value = '';
+  };
+  return (
+    <Group name="Resins and light" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
+      <datalist id="resins">
+        {p?.resins.map((r) => (
+          <option value={r.name} />
+        ))}
+      </datalist>
+      {materials.map((m, k) => {
+        const known = p?.resins.find((r) => r.name === (lights.value[m]?.resin || resinOf(m)));
+        return (
+          <fieldset class="light-of" key={m}>
+            <legend>
+              <span class="swatch" style={{ background: scene.value?.head.materials.find((x) => x.name === m)?.colour }} />
+              {m}
+            </legend>
+            <label>
+              <span>resin</span>
+              <input list="resins" aria-label={`Resin of ${m}`} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
+            </label>
+            <label>
+              <span>light, s</span>
+              <input inputMode="decimal" aria-label={`Light of ${m}`} data-testid={`light-${k}`} placeholder={known ? `${known.exposure_s}` : ''} value={lights.value[m]?.time ?? ''} onInput={(e) => set(m, { time: e.currentTarget.value })} />
+            </label>
+            <label>
+              <span>first layers, s</span>
+              <input inputMode="decimal" aria-label={`Light of the first layers of ${m}`} disabled={!lights.value[m]?.time} placeholder={known ? `${known.bottom_exposure_s}` : ''} value={lights.value[m]?.bottom ?? ''} onInput={(e) => set(m, { bottom: e.currentTarget.value })} />
+            </label>
+          </fieldset>
+        );
+      })}
+      <Problem option="resin" />
+      <Problem option="exposure" />
+      {p && (
+        <p class="quiet small-print" data-testid="mask">
+          {p.mask ? `The mask of its projector, ${p.mask}, is laid over every image.` : 'Its projector has no mask: the light is taken as even.'}
+        </p>
+      )}
+    </Group>
+  );
+}
+
+function Bonds({ materials }: { materials: string[] }) {
+  const change = (k: number, by: Partial<Bond>) => {
+    bonds.value = bonds.value.map((b, i) => (i === k ? { ...b, ...by } : b));
+    sliceError.value = '';
+  };
+  const pick = (value: string, set: (v: string) => void, label: string) => (
+    <select value={value} aria-label={label} onChange={(e) => set(e.currentTarget.value)}>
+      {materials.map((m) => (
+        <option value={m}>{m}</option>
+      ))}
+    </select>
+  );
+  return (
+    <Group name="Bonds between materials" options={['overlap', 'interlock']} given={bonds.value.length > 0}>
+      {bonds.value.map((b, k) => (
+        <div class="bond" key={k}>
+          <div class="row">
+            {pick(b.a, (a) => change(k, { a }), 'First material')}
+            {pick(b.b, (second) => change(k, { b: second }), 'Second material')}
+            <button type="button" class="bare" aria-label="Take this bond out" onClick={() => (bonds.value = bonds.value.filter((_, i) => i !== k))}>
+              <Icon name="close" />
+            </button>
+          </div>
+          <div class="row left">
+            <select value={b.kind} aria-label="Kind" title="overlap: the first lights into the second too; teeth: both reach into each other" onChange={(e) => change(k, { kind: e.currentTarget.value as Bond['kind'] })}>
+              <option value="overlap">overlap</option>
+              <option value="interlock">teeth</option>
+            </select>
+            <label class="inline">
+              <input type="number" min={0} max={1000} step={1} aria-label="Pixels deep" value={b.pixels} onChange={(e) => change(k, { pixels: Number(e.currentTarget.value) })} />
+              px
+            </label>
+            <label class="inline">
+              <input type="number" min={b.kind === 'overlap' ? 0 : 1} max={1000} step={1} aria-label="Layers" value={b.layers} onChange={(e) => change(k, { layers: Number(e.currentTarget.value) })} />
+              layers
+            </label>
+          </div>
+        </div>
+      ))}
+      <Problem option="overlap" />
+      <Problem option="interlock" />
+      {materials.length > 1 ? (
+        <button
+          type="button"
+          class="small"
+          data-testid="add-bond"
+          onClick={() => (bonds.value = [...bonds.value, { kind: 'overlap', a: materials[0], b: materials[1], pixels: 3, layers: 1 }])}
+        >
+          Add a bond
+        </button>
+      ) : (
+        <p class="quiet small-print">This robot has one material.</p>
+      )}
+    </Group>
+  );
+}
+
+function Supports({ materials }: { materials: string[] }) {
+  return (
+    <Group name="Supports" options={['support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft']} given={support.value !== ''}>
+      <label>
+        Material
+        <select value={support.value} data-testid="option-support" onChange={(e) => (support.value = e.currentTarget.value)}>
+          <option value="">no supports</option>
+          {materials.map((m) => (
+            <option value={m}>{m}</option>
+          ))}
+        </select>
+      </label>
+      <Problem option="support" />
+      {support.value && (
+        <>
+          <Field option="support-angle" label="Undersides flatter than" hint="45" title="0: islands only" />
+          <Field option="support-spacing" label="Between tips, at most" hint="3" />
+          <Field option="support-tip" label="Tip" hint="0.4" />
+          <Field option="support-pillar" label="Pillar" hint="1" />
+          <Field option="lift" label="Part above the platform" hint="0" />
+          <Field option="raft" label="Raft" hint="none" />
+        </>
+      )}
+    </Group>
+  );
+}
+
+function Placement() {
+  return (
+    <Group name="Placement and copies" options={['turn', 'copies', 'spacing']} given={copies.value !== 1 || turn.value.some((t) => t !== 0)}>
+      <label>
+        Copies
+        <input type="number" min={1} max={1000} step={1} value={copies.value} data-testid="option-copies" onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
+      </label>
+      <Problem option="copies" />
+      <Field option="spacing" label="Between copies" hint="2" />
+      <label>
+        Turned about x, y, z
+        <span class="number three">
+          {[0, 1, 2].map((k) => (
+            <input
+              type="number"
+              step={15}
+              aria-label={`Turned about ${'xyz'[k]}`}
+              value={turn.value[k]}
+              onChange={(e) => (turn.value = turn.value.map((t, i) => (i === k ? Number(e.currentTarget.value) : t)) as [number, number, number])}
+            />
+          ))}
+          <span class="unit">°</span>
+        </span>
+      </label>
+      <Problem option="turn" />
+    </Group>
+  );
+}
+
+function Fine() {
+  return (
+    <Group name="Layers and pixels" options={['least-layer', 'least-feature', 'threshold']} given={Boolean(fields.value['least-layer'] || fields.value['least-feature']) || plainPixels.value}>
+      <Field option="least-layer" label="Follow the slope, down to" hint="off" title="Layers as thin as this where the part is flat" />
+      <Field option="least-feature" label="Warn of walls below" hint="off" />
+      <label class="tick">
+        <input type="checkbox" checked={plainPixels.value} onChange={(e) => (plainPixels.value = e.currentTarget.checked)} />
+        <span>pixels are full or dark, without grey</span>
+      </label>
+      {plainPixels.value && (
+        <label>
+          Full from a coverage of
+          <input type="number" min={0.01} max={1} step={0.05} value={fields.value.threshold ?? '0.5'} onChange={(e) => (fields.value = { ...fields.value, threshold: e.currentTarget.value })} />
+        </label>
+      )}
+      <Problem option="threshold" />
+    </Group>
+  );
+}
+
+function Hollow() {
+  return (
+    <Group name="Hollow" options={['hollow', 'drain']} given={Boolean(fields.value.hollow)}>
+      <Field option="hollow" label="Walls" hint="solid" />
+      <Field option="drain" label="Holes to drain it" hint="none" />
+    </Group>
+  );
+}
+
+export function SliceForm() {
+  const [printers, setPrinters] = useState<string[]>([]);
+  useEffect(() => {
+    api('/api/project')
+      .then((r) => r.json())
+      .then((p: { printers: string[] }) => setPrinters(p.printers))
+      .catch((e: Error) => say(e.message));
+  }, []);
+  useEffect(() => {
+    api(`/api/printer?name=${encodeURIComponent(printer.value)}`)
+      .then((r) => r.json())
+      .then((p: PrinterInfo) => (printerInfo.value = p))
+      .catch((e: Error) => {
+        printerInfo.value = null;
+        say(e.message);
+      });
+  }, [printer.value]);
+  const busy = slicing.value;
+  const materials = scene.value?.head.materials.map((m) => m.name) ?? [];
+  const placed = ['layer', 'least-layer', 'least-feature', 'threshold', 'turn', 'copies', 'spacing', 'hollow', 'drain', 'overlap', 'interlock', 'resin', 'exposure', 'support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
+  const elsewhere = sliceError.value && !(wrong.value && placed.includes(wrong.value.option));
+  return (
+    <form
+      class="slice-form"
+      onSubmit={(e) => {
+        e.preventDefault();
+        sliceError.value = '';
+        // A refusal of the order itself has its field too.
+        void post('/api/job/slice', orderJson(materials), (text) => (sliceError.value = text));
+      }}
+    >
+      <label>
+        Printer
+        <select value={printer.value} onChange={(e) => (printer.value = e.currentTarget.value)} data-testid="printer">
+          {printers.map((p) => (
+            <option value={p}>{p.replace(/_/g, ' ').replace(/\.toml$/, '')}</option>
+          ))}
+        </select>
+      </label>
+      <Field option="layer" label="Layer" hint={printerInfo.value ? String(printerInfo.value.layer_um) : ''} />
+      <div class="groups">
+        <Placement />
+        <Materials materials={materials} />
+        <Bonds materials={materials} />
+        <Supports materials={materials} />
+        <Hollow />
+        <Fine />
+      </div>
+      {busy ? (
+        <button type="button" onClick={() => post('/api/job/cancel')} data-testid="cancel-slice">
+          Cancel
+        </button>
+      ) : (
+        <button class="primary" disabled={!mayDrive.value || !scene.value} data-testid="slice">
+          Slice {scene.value?.head.robot ?? 'the robot'}
+        </button>
+      )}
+      {busy && (
+        <div class="progress" role="progressbar" aria-valuenow={Math.round(100 * busy.fraction)} aria-valuemin={0} aria-valuemax={100}>
+          <div style={{ width: `${100 * busy.fraction}%` }} />
+          <span>{busy.stage}</span>
+        </div>
+      )}
+      {elsewhere && (
+        <p class="problems" role="alert">
+          {sliceError.value}
+        </p>
+      )}
+      {documentState.value.unsaved && <p class="quiet">The robot is sliced as it stands in the editor.</p>}
+    </form>
+  );
+}

@@ -1,0 +1,268 @@
+// Before a print: which machine, and what the journals of the folder tell.
+import { useEffect, useState } from 'preact/hooks';
+import { Icon } from '../icons';
+import { api, job, mayDrive, post, say, section } from '../store';
+import { clock } from '../make/plan';
+
+const speeds = [1, 10, 60, 300, 3000];
+
+interface Ports {
+  ports: { device: string; name: string }[];
+  displays: { number: number; name: string; width: number; height: number }[];
+  without: string;
+}
+
+interface JournalLine {
+  name: string;
+  state: 'complete' | 'cancelled' | 'interrupted' | 'not begun' | 'damaged';
+  error?: string;
+  job?: string;
+  printer?: string;
+  lights?: number;
+  layer?: number;
+}
+
+interface Journal extends JournalLine {
+  records: { number: number; kind: string; text: string }[];
+  open_light: boolean;
+}
+
+function TakeTwin() {
+  const [speed, setSpeed] = useState(60);
+  return (
+    <section class="card">
+      <h3>The virtual printer</h3>
+      <p class="quiet">It obeys the same G-code as the real one, and is dark, wet and slow like it. Nothing can break.</p>
+      <div class="row left wrap">
+        <button class="primary" disabled={!mayDrive.value} data-testid="take-twin" onClick={() => post('/api/print/twin', { speed })}>
+          Take the virtual printer
+        </button>
+        <label class="inline">
+          at
+          <select value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="take-speed">
+            {speeds.map((s) => (
+              <option value={s}>{s}×</option>
+            ))}
+          </select>
+          speed
+        </label>
+      </div>
+    </section>
+  );
+}
+
+/// A job that was only sliced lies in no folder yet.
+function SaveFirst() {
+  const j = job.value!;
+  const [name, setName] = useState(`${j.manifest.name.replace(/[^\w-]+/g, '_')}.zip`);
+  return (
+    <form
+      class="row left wrap"
+      onSubmit={(e) => {
+        e.preventDefault();
+        void post('/api/job/save', { name });
+      }}
+    >
+      <span class="quiet">The journal of a print stands beside its job. Save the job first:</span>
+      <input aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} data-testid="save-job-name" />
+      <button disabled={!name || !mayDrive.value} data-testid="save-job">
+        Save the job
+      </button>
+    </form>
+  );
+}
+
+function TakePort() {
+  const j = job.value!;
+  const [known, setKnown] = useState<Ports | null>(null);
+  const [device, setDevice] = useState('');
+  const [projector, setProjector] = useState('');
+  const [speed, setSpeed] = useState(1);
+  const [ownClock, setOwnClock] = useState('');
+  const look = () =>
+    api('/api/print/ports')
+      .then((r) => r.json())
+      .then((p: Ports) => {
+        setKnown(p);
+        setDevice((d) => d || p.ports[0]?.device || '');
+        setProjector((o) => o || (p.displays.length > 1 ? String(p.displays[p.displays.length - 1].number) : 'light'));
+      })
+      .catch((e: Error) => say(e.message));
+  useEffect(() => void look(), []);
+  const display = known?.displays.find((d) => String(d.number) === projector);
+  const wrong = display && (display.width !== j.manifest.width_px || display.height !== j.manifest.height_px);
+  return (
+    <section class="card">
+      <h3>The machine at a port</h3>
+      {!j.saved ? (
+        <SaveFirst />
+      ) : (
+        <form
+          class="fields"
+          onSubmit={(e) => {
+            e.preventDefault();
+            void post('/api/print/port', { device, projector, speed, clock: ownClock });
+          }}
+        >
+          <label>
+            <span>Port</span>
+            <span class="with-button">
+              <input list="ports" value={device} placeholder="/dev/ttyACM0" spellcheck={false} onInput={(e) => setDevice(e.currentTarget.value)} data-testid="device" />
+              <button type="button" class="small" onClick={() => void look()}>
+                Look again
+              </button>
+            </span>
+            <datalist id="ports">
+              {known?.ports.map((p) => (
+                <option value={p.device}>{p.name}</option>
+              ))}
+            </datalist>
+          </label>
+          <p class="quiet under">
+            {known === null
+              ? 'looking…'
+              : known.ports.length === 0
+                ? 'No serial port has anything behind it. Plug the machine in, and look again.'
+                : known.ports.map((p) => `${p.device} ${p.name}`).join(' · ')}
+          </p>
+          <label>
+            <span>Light</span>
+            <input list="displays" value={projector} spellcheck={false} onInput={(e) => setProjector(e.currentTarget.value)} data-testid="projector" />
+            <datalist id="displays">
+              {known?.displays.map((d) => (
+                <option value={String(d.number)}>{`${d.name}, ${d.width} × ${d.height}`}</option>
+              ))}
+            </datalist>
+          </label>
+          <p class={wrong ? 'problems' : 'quiet under'}>
+            {wrong
+              ? `${display.name} has ${display.width} × ${display.height} pixels, the job ${j.manifest.width_px} × ${j.manifest.height_px}.`
+              : display
+                ? `Display ${display.number}: ${display.name}, ${display.width} × ${display.height}. It is black but for the light.`
+                : /^\d+$/.test(projector)
+                  ? 'This computer has no such display.'
+                  : `Pictures go into the folder “${projector}”, for a machine that takes them from there. For a projector give the number of its display${known?.displays.length ? `: ${known.displays.map((d) => `${d.number} ${d.name}`).join(', ')}` : ''}.`}
+          </p>
+          <details>
+            <summary>A virtual printer at the port (pliant twin)</summary>
+            <label>
+              <span>Its speed</span>
+              <span class="number">
+                <input type="number" min={0.1} max={10000} step="any" value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="port-speed" />
+                <span class="unit">×</span>
+              </span>
+            </label>
+            <label>
+              <span>Its clock</span>
+              <input placeholder="a file in the folder, as for pliant twin --clock" value={ownClock} spellcheck={false} onInput={(e) => setOwnClock(e.currentTarget.value)} data-testid="port-clock" />
+            </label>
+          </details>
+          <button class="primary" disabled={!mayDrive.value || !device || !projector} data-testid="take-port">
+            Connect
+          </button>
+        </form>
+      )}
+    </section>
+  );
+}
+
+function JournalView({ name, close }: { name: string; close: () => void }) {
+  const [journal, setJournal] = useState<Journal | null>(null);
+  useEffect(() => {
+    api(`/api/print/journal?name=${encodeURIComponent(name)}`)
+      .then((r) => r.json())
+      .then(setJournal)
+      .catch((e: Error) => say(e.message));
+  }, [name]);
+  if (!journal) return null;
+  const file = name.replace(/\.journal$/, '');
+  return (
+    <div class="journal" data-testid="journal">
+      <div class="row">
+        <b>{name}</b>
+        <button class="bare" aria-label="Close the journal" onClick={close}>
+          <Icon name="close" />
+        </button>
+      </div>
+      <p class="quiet">
+        {journal.job} on {journal.printer}: {journal.lights} lights, {journal.state}
+        {journal.open_light && ', broken off in the light'}.
+      </p>
+      <ol class="log records">
+        {journal.records.map((r) => (
+          <li key={r.number}>
+            <time>{r.number}</time>
+            <b>{r.kind}</b>
+            <span>{r.text}</span>
+          </li>
+        ))}
+      </ol>
+      <div class="row left wrap">
+        {journal.state === 'interrupted' && (
+          <button class="primary" disabled={!mayDrive.value} data-testid="open-interrupted" onClick={() => post('/api/open', { name: file })}>
+            Open its job to go on
+          </button>
+        )}
+        <a class="button" href={`/api/print/report?name=${encodeURIComponent(name)}`} download>
+          <Icon name="download" /> Report
+        </a>
+      </div>
+    </div>
+  );
+}
+
+function Journals() {
+  const [lines, setLines] = useState<JournalLine[]>([]);
+  const [open, setOpen] = useState('');
+  useEffect(() => {
+    api('/api/print/journals')
+      .then((r) => r.json())
+      .then(setLines)
+      .catch((e: Error) => say(e.message));
+  }, []);
+  if (lines.length === 0) return null;
+  const colour = { complete: 'good', interrupted: 'busy', cancelled: '', 'not begun': '', damaged: 'bad' };
+  return (
+    <section class="card wide-card">
+      <h3>Prints before</h3>
+      <ul class="journals" data-testid="journals">
+        {lines.map((l) => (
+          <li key={l.name}>
+            <button class="item" aria-expanded={open === l.name} onClick={() => setOpen(open === l.name ? '' : l.name)}>
+              <span class={`lamp ${colour[l.state]}`} />
+              <span>{l.name.replace(/\.zip\.journal$/, '')}</span>
+              <span class="quiet">{l.error ?? `${l.state}${l.layer !== undefined && l.layer >= 0 ? `, last layer ${l.layer + 1}` : ''}`}</span>
+            </button>
+          </li>
+        ))}
+      </ul>
+      {open && <JournalView key={open} name={open} close={() => setOpen('')} />}
+    </section>
+  );
+}
+
+export function TakeMachine() {
+  const j = job.value;
+  return (
+    <div class="take">
+      <h2>Print</h2>
+      {j ? (
+        <>
+          <p>
+            <b>{j.manifest.name}</b>, {j.manifest.layers.length} layers, for the {j.printer}
+            {j.plan && `: ${clock(j.plan.seconds.total)}, ${j.plan.swaps} swaps`}.
+          </p>
+          <div class="cards">
+            <TakeTwin />
+            <TakePort key={j.revision} />
+          </div>
+        </>
+      ) : (
+        <p>
+          There is no job yet. <a href="#make" onClick={() => (section.value = 'make')}>Slice the robot</a>, or open a job file.
+        </p>
+      )}
+      <Journals />
+    </div>
+  );
+}
