@@ -105,23 +105,24 @@ private:
 class SeeingGuard final : public host::Guard {
 public:
     explicit SeeingGuard(std::function<double()> now) : now_(std::move(now)) {}
-    void announced(long light) override { light_ = light, at_s_ = never_lit; }
-    void lit(long light) override { light_ = light, at_s_ = std::nullopt; }
-    void dark() override { at_s_ = now_(); }
-    [[nodiscard]] std::optional<double> dark_at(long light) override {
-        return light == seen_ ? std::optional(seen_at_s_) : std::nullopt;
+    void announced(long light) override { light_ = light, on_s_ = 0; }
+    void lit(double now_s) override { lit_at_s_ = now_s, on_s_ = std::nullopt; }
+    void dark(double now_s) override { on_s_ = now_s - lit_at_s_; }
+    [[nodiscard]] std::optional<double> lit_s(long light) override {
+        return light == seen_ ? std::optional(seen_on_s_) : std::nullopt;
     }
     /// Only then it writes down what it knows.
     void host_died() {
         seen_ = light_;
-        seen_at_s_ = at_s_.value_or(now_());
+        seen_on_s_ = on_s_.value_or(now_() - lit_at_s_);
     }
 
 private:
     std::function<double()> now_;
     long light_ = 0, seen_ = -1;
-    std::optional<double> at_s_;  ///< of that light; nullopt: it is on
-    double seen_at_s_ = 0;
+    double lit_at_s_ = 0;
+    std::optional<double> on_s_;  ///< of that light; nullopt: it is on
+    double seen_on_s_ = 0;
 };
 
 struct ControlBench {

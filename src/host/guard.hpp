@@ -11,15 +11,13 @@ public:
     virtual ~Guard() = default;
     /// Light number `light` (of the journal) is about to be noted; it is not on yet.
     virtual void announced(long light) = 0;
-    /// It is about to go on.
-    virtual void lit(long light) = 0;
+    /// It goes on now, on the devices' clock.
+    virtual void lit(double now_s) = 0;
     /// It is off.
-    virtual void dark() = 0;
-    /// What the guard of an earlier host has seen of light number `light` when that host died: when, on the devices'
-    /// clock, it went dark, by the guard's doing or before; `never_lit`: it had not gone on. nullopt: nobody saw.
-    [[nodiscard]] virtual std::optional<double> dark_at(long light) = 0;
-
-    static constexpr double never_lit = -1;
+    virtual void dark(double now_s) = 0;
+    /// For how long light number `light` was on when the host died that had announced it, as the guard of that host saw
+    /// it; 0: it had not gone on. nullopt: nobody saw.
+    [[nodiscard]] virtual std::optional<double> lit_s(long light) = 0;
 };
 
 }  // namespace pliant::host

@@ -163,8 +163,8 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
         (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
         return alive;
     }
-    if (run_.setup.guard != nullptr) run_.setup.guard->lit(fact.open_light);
     const double start_s = clock_.now();
+    if (run_.setup.guard != nullptr) run_.setup.guard->lit(start_s);
     Status status = projector_.show_for(image, left_s);
     run_.desk.event("light", fmt::format("layer {}, material {}, {:.3f} s", fact.layer, fact.material, left_s));
     run_.desk.update([&](Snapshot& s) {
@@ -185,7 +185,7 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     }
     if (!dark) (void)projector_.black();
     run_.machine.light_off();
-    if (run_.setup.guard != nullptr) run_.setup.guard->dark();
+    if (run_.setup.guard != nullptr) run_.setup.guard->dark(clock_.now());
     run_.desk.update([](Snapshot& s) { s.lit = false; });
     fact.lit_s += on_s;
     fact.complete = whole || is_enough(fact.lit_s, fact.planned_s);

@@ -106,11 +106,9 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
     for (auto& [step, fact] : facts.lights) {
         if (fact.open_light == 0) continue;
         OpenLight open{fact.open_light, 0, false, false};
-        const auto dark_at = guard != nullptr ? guard->dark_at(fact.open_light) : std::nullopt;
-        if (dark_at && *dark_at == Guard::never_lit) {
-            open.on_s = 0;
-        } else if (dark_at && *dark_at >= fact.open_since_s) {
-            open.on_s = *dark_at - fact.open_since_s;
+        const auto seen_s = guard != nullptr ? guard->lit_s(fact.open_light) : std::nullopt;
+        if (seen_s) {
+            open.on_s = std::max(0.0, *seen_s);
         } else if (assume.lit_s) {
             open.on_s = *assume.lit_s;
             open.assumed = true;

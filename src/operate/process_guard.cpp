@@ -22,13 +22,15 @@ namespace {
 struct Message {
     GuardWord word = GuardWord::farewell;
     long light = 0;
+    double at_s = 0;
 };
 
 /// The last light that the guard has heard of.
 struct LastLight {
     long number = 0;  ///< 0: none yet
     GuardWord word = GuardWord::dark;
-    double dark_at_s = 0;
+    double lit_at_s = 0;
+    double on_s = 0;
 };
 
 std::string boot_name() {
@@ -50,14 +52,14 @@ double now_of(const ProcessGuard::Options& options) {
 
 /// What the guard does when the host has died. The picture goes first.
 void host_died(const ProcessGuard::Options& options, const std::string& boot, const LastLight& last) {
-    double dark_at_s = last.word == GuardWord::dark ? last.dark_at_s : host::Guard::never_lit;
+    double on_s = last.on_s;
     if (last.word == GuardWord::lit) {
         if (!options.shown.empty()) ::unlink(options.shown.c_str());
-        dark_at_s = now_of(options);
+        on_s = now_of(options) - last.lit_at_s;
     }
     if (last.number == 0) return;
     std::array<char, 160> line{};
-    const int length = std::snprintf(line.data(), line.size(), "%s %ld %.6f\n", boot.c_str(), last.number, dark_at_s);
+    const int length = std::snprintf(line.data(), line.size(), "%s %ld on %.6f\n", boot.c_str(), last.number, on_s);
     const int file = ::open(options.witness.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) return;
     if (::write(file, line.data(), static_cast<std::size_t>(length)) == length) ::fsync(file);
@@ -82,10 +84,9 @@ void close_all_but(int kept) {
         if (got != sizeof message) break;
         if (message.word == GuardWord::farewell) ::_exit(0);
         last.word = message.word;
-        if (message.word == GuardWord::dark)
-            last.dark_at_s = now_of(options);
-        else
-            last.number = message.light;
+        if (message.word == GuardWord::announced) last.number = message.light, last.on_s = 0;
+        if (message.word == GuardWord::lit) last.lit_at_s = message.at_s;
+        if (message.word == GuardWord::dark) last.on_s = message.at_s - last.lit_at_s;
     }
     host_died(options, boot, last);
     ::_exit(0);
@@ -120,8 +121,8 @@ ProcessGuard::~ProcessGuard() {
 }
 
 /// Short enough to arrive whole or not at all.
-void ProcessGuard::tell(GuardWord word, long light) const {
-    const Message message{word, light};
+void ProcessGuard::tell(GuardWord word, long light, double at_s) const {
+    const Message message{word, light, at_s};
     ssize_t put = 0;
     do {
         put = ::write(pipe_, &message, sizeof message);
@@ -132,24 +133,25 @@ void ProcessGuard::announced(long light) {
     tell(GuardWord::announced, light);
 }
 
-void ProcessGuard::lit(long light) {
-    tell(GuardWord::lit, light);
+void ProcessGuard::lit(double now_s) {
+    tell(GuardWord::lit, 0, now_s);
 }
 
-void ProcessGuard::dark() {
-    tell(GuardWord::dark);
+void ProcessGuard::dark(double now_s) {
+    tell(GuardWord::dark, 0, now_s);
 }
 
-std::optional<double> ProcessGuard::dark_at(long light) {
+std::optional<double> ProcessGuard::lit_s(long light) {
     const std::string boot = boot_name();
     std::ifstream file(options_.witness);
     std::optional<double> found;
     for (std::string line; std::getline(file, line);) {
         std::istringstream words(line);
-        std::string when_booted;
+        std::string when_booted, word;
         long seen = 0;
-        double at_s = 0;
-        if (words >> when_booted >> seen >> at_s && when_booted == boot && seen == light) found = at_s;
+        double on_s = 0;
+        const bool whole = words >> when_booted >> seen >> word >> on_s && word == "on";
+        if (whole && when_booted == boot && seen == light) found = on_s;
     }
     return found;
 }

@@ -1,5 +1,5 @@
 // The guard as a process: it waits at the end of a pipe whose other end is the host's, and when that falls silent it
-// takes away the projector's picture and writes down until when the last light was on.
+// takes away the projector's picture and writes down for how long the last light was on.
 #pragma once
 
 #include <filesystem>
@@ -29,14 +29,14 @@ public:
     ~ProcessGuard() override;  ///< the process ends in peace
 
     void announced(long light) override;
-    void lit(long light) override;
-    void dark() override;
-    [[nodiscard]] std::optional<double> dark_at(long light) override;
+    void lit(double now_s) override;
+    void dark(double now_s) override;
+    [[nodiscard]] std::optional<double> lit_s(long light) override;
 
 private:
     ProcessGuard(int pipe, int process, Options options)
         : pipe_(pipe), process_(process), options_(std::move(options)) {}
-    void tell(GuardWord word, long light = 0) const;
+    void tell(GuardWord word, long light = 0, double at_s = 0) const;
 
     int pipe_ = -1;
     int process_ = -1;
