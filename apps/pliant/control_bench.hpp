@@ -4,7 +4,6 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -12,6 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "core/test_folder.hpp"
+#include "halves.hpp"
 #include "host/control.hpp"
 #include "host/journal.hpp"
 #include "operate/programs.hpp"
@@ -103,85 +104,63 @@ private:
 /// A guard that sees everything, as the process of its own does.
 class SeeingGuard final : public host::Guard {
 public:
-    void lit(long light) override { light_ = light; }
-    void dark() override { light_ = 0; }
+    explicit SeeingGuard(std::function<double()> now) : now_(std::move(now)) {}
+    void announced(long light) override { light_ = light, at_s_ = never_lit; }
+    void lit(long light) override { light_ = light, at_s_ = std::nullopt; }
+    void dark() override { at_s_ = now_(); }
     [[nodiscard]] std::optional<double> dark_at(long light) override {
-        return light == seen_ ? std::optional(at_s_) : std::nullopt;
+        return light == seen_ ? std::optional(seen_at_s_) : std::nullopt;
     }
-    void host_died(double now_s) {
-        if (light_ != 0) seen_ = light_, at_s_ = now_s;
-        light_ = 0;
+    /// Only then it writes down what it knows.
+    void host_died() {
+        seen_ = light_;
+        seen_at_s_ = at_s_.value_or(now_());
     }
 
 private:
-    long light_ = 0;
-    long seen_ = -1;
-    double at_s_ = 0;
+    std::function<double()> now_;
+    long light_ = 0, seen_ = -1;
+    std::optional<double> at_s_;  ///< of that light; nullopt: it is on
+    double seen_at_s_ = 0;
 };
 
 struct ControlBench {
-    static constexpr int width = 8, height = 6;
     int layers = 5;
     machine::Printer printer;
     job::Manifest job;
     std::string gcode;
-    std::filesystem::path folder;
+    test::Folder folder{"control"};
     std::unique_ptr<twin::Twin> twin;
     std::unique_ptr<Life> life = std::make_unique<Life>();
-    SeeingGuard guard;
+    SeeingGuard guard{[this] { return twin->now(); }};
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
+    host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
     std::unique_ptr<TwinClock> clock;
     std::unique_ptr<MortalProjector> projector;
     std::unique_ptr<host::Control> control;
     std::string first_error;
 
-    explicit ControlBench(twin::Options options = {}, const std::string& name = "tower", int layer_count = 5)
+    explicit ControlBench(twin::Options options = {}, const std::string& name = "tower", int layer_count = 5,
+                          const std::function<void(machine::Printer&)>& change = {})
         : layers(layer_count) {
         printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
-        printer.projector.width_px = width;
-        printer.projector.height_px = height;
-        printer.projector.pixel_um = 158.75;
-        std::string pattern = (std::filesystem::temp_directory_path() / "pliant_control_XXXXXX").string();
-        folder = ::mkdtemp(pattern.data());
+        if (change) change(printer);
+        printer.projector.width_px = halves::width_px;
+        printer.projector.height_px = halves::height_px;
+        printer.projector.pixel_um = halves::pixel_um;
         make_job();
         twin = std::make_unique<twin::Twin>(printer, std::move(options));
         new_host();
     }
-    ~ControlBench() {
-        control.reset();
-        std::filesystem::remove_all(folder);
-    }
+    ~ControlBench() { control.reset(); }
     ControlBench(const ControlBench&) = delete;
     ControlBench& operator=(const ControlBench&) = delete;
 
-    /// Left half soft, right half rigid, with a grey column between them that both share.
-    static Result<job::Image> image(int, int material) {
-        job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
-        for (int i = 0; i < width * height; ++i) {
-            const int x = i % width;
-            const int soft = x < 4 ? 255 : (x == 4 ? 100 : 0);
-            image.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(material == 0 ? soft : 255 - soft);
-        }
-        return image;
-    }
-
     void make_job() {
-        job.name = "halves";
-        job.width_px = width;
-        job.height_px = height;
-        job.pixel_um = 158.75;
-        job.bottom_layers = 2;
-        const double pixel_mm2 = 0.15875 * 0.15875;
-        const double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255);
-        const double rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
-        const std::string first = printer.vats.front().resin, last = printer.vats.back().resin;
-        job.materials = {{"soft", first, soft_mm2 * 0.05 * layers, 0, 2.5, 12},
-                         {"rigid", last, rigid_mm2 * 0.05 * layers, 0, 2.5, 12}};
-        for (int i = 0; i < layers; ++i)
-            job.layers.push_back({50 * (i + 1), 50, {{0, "soft.png", soft_mm2}, {1, "rigid.png", rigid_mm2}}});
+        job = halves::job({layers, 2, 12, 0, printer.vats.front().resin, printer.vats.back().resin});
         auto planned = plan::make_plan(job, printer);
         REQUIRE_MESSAGE(planned, (planned ? "" : planned.error().message));
         const plan::Plan& plan = *planned;
@@ -201,13 +180,13 @@ struct ControlBench {
             *clock,
             operate::programs_of(printer),
             operate::link_options(printer.controller),
-            {},
+            emergency_line,
             [this](int layer) {
                 if (after_layer) after_layer(layer);
             },
             guarded ? &guard : nullptr};
         life->on_death = [this] {
-            guard.host_died(twin->now());
+            guard.host_died();
             twin->light_off();
         };
         control = std::make_unique<host::Control>(std::move(setup));
@@ -215,11 +194,11 @@ struct ControlBench {
         ready.name = job.name;
         ready.digest = host::job_digest(gcode);
         ready.gcode = gcode;
-        ready.images = image;
+        ready.images = halves::image;
         ready.materials = {"soft", "rigid"};
         ready.layers = layers;
         ready.refills = refills;
-        ready.journal = folder / "halves.zip.journal";
+        ready.journal = folder.path() / "halves.zip.journal";
         ready.sync_journal = sync;
         const Status loaded = control->load(std::move(ready));
         REQUIRE_MESSAGE(loaded, (loaded ? "" : loaded.error().message));
@@ -246,13 +225,13 @@ struct ControlBench {
         }
         return text;
     }
-    [[nodiscard]] twin::Report report() { return twin::inspect(*twin, job, twin::ImageSource(image)).value(); }
+    [[nodiscard]] twin::Report report() { return twin::inspect(*twin, job, twin::ImageSource(halves::image)).value(); }
     void must_be_whole() {
         const twin::Report r = report();
         CHECK_MESSAGE(r.passed, twin::report_text(r));
     }
     [[nodiscard]] int lights() const { return twin->log().exposures; }
-    [[nodiscard]] std::filesystem::path journal() const { return folder / "halves.zip.journal"; }
+    [[nodiscard]] std::filesystem::path journal() const { return folder.path() / "halves.zip.journal"; }
 };
 
 }  // namespace pliant::app

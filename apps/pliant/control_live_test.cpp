@@ -4,13 +4,13 @@
 
 #include <atomic>
 #include <functional>
-#include <mutex>
 #include <thread>
 
 #include "control_bench.hpp"
 #include "host/control_api.hpp"
 #include "host/scaled_time.hpp"
 #include "host/serial.hpp"
+#include "shared_light.hpp"
 #include "twin/serve.hpp"
 
 using namespace pliant;
@@ -19,36 +19,6 @@ using namespace pliant::app;
 namespace {
 
 constexpr double speed = 200;
-
-class SharedLight final : public host::Projector {
-public:
-    [[nodiscard]] Status show(const job::Image& image) override {
-        const std::scoped_lock lock(mutex_);
-        image_ = image;
-        return {};
-    }
-    [[nodiscard]] Status black() override {
-        const std::scoped_lock lock(mutex_);
-        image_.reset();
-        return {};
-    }
-    [[nodiscard]] bool lit() const {
-        const std::scoped_lock lock(mutex_);
-        return image_.has_value();
-    }
-    Status look(twin::Twin& twin) {
-        const std::scoped_lock lock(mutex_);
-        if (image_.has_value() == seen_) return {};
-        seen_ = image_.has_value();
-        seen_ ? twin.light_on(*image_) : twin.light_off();
-        return {};
-    }
-
-private:
-    mutable std::mutex mutex_;
-    std::optional<job::Image> image_;
-    bool seen_ = false;
-};
 
 /// The machine's own clock, which lags on a busy computer: so nobody loses patience there.
 class MachineClock final : public host::Clock {
@@ -120,7 +90,7 @@ TEST_CASE("an emergency stop from another thread makes dark and reaches the mach
     Live live;
     REQUIRE(live.control.connect());
     REQUIRE(live.reaches(host::State::idle));
-    REQUIRE(live.control.expose_test(ControlBench::image(0, 0).value(), 60));
+    REQUIRE(live.control.expose_test(halves::image(0, 0).value(), 60));
     REQUIRE(live.reaches([&] { return live.light.lit(); }));
     live.control.emergency_stop();
     CHECK(live.reaches(host::State::halted));
@@ -145,10 +115,10 @@ TEST_CASE("a print, looked at and paused from other threads, is quit, and the ne
     job.name = "halves";
     job.digest = "x";
     job.gcode = live.small.gcode;
-    job.images = ControlBench::image;
+    job.images = halves::image;
     job.materials = {"soft", "rigid"};
     job.layers = 5;
-    job.journal = live.small.folder / "live.journal";
+    job.journal = live.small.folder.path() / "live.journal";
     job.sync_journal = false;
     REQUIRE(live.control.load(job));
     REQUIRE(live.control.start({}));

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "control_bench.hpp"
+#include "core/files.hpp"
 
 using namespace pliant;
 using namespace pliant::app;
@@ -38,6 +39,16 @@ std::string block_of(twin::Twin& twin) {
         }
     }
     return text;
+}
+
+/// False if a vat hung half-way on its hooks; else the part must be the undisturbed one.
+bool has_gone_on(ControlBench& b, const std::string& whole) {
+    INFO(b.last_error());
+    if (b.last_error().find("half-way on the hooks") != std::string::npos) return false;
+    CHECK(b.snapshot().finished);
+    CHECK(block_of(*b.twin) == whole);
+    b.must_be_whole();
+    return true;
 }
 
 }  // namespace
@@ -89,17 +100,10 @@ TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on i
         }
         CHECK_FALSE(b.projector->lit);
         b.life->at_deed = {};
-        REQUIRE(b.snapshot().can_resume);
-        b.start({true, {}});
-        INFO(b.last_error());
-        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
-            ++refused;
-            continue;
-        }
-        ++resumed;
-        CHECK(b.snapshot().finished);
-        CHECK(block_of(*b.twin) == whole);
-        b.must_be_whole();
+        const bool begun = b.snapshot().can_resume;
+        if (!begun) CHECK(b.twin->log().homings == 0);
+        b.start({begun, {}});
+        ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
     CHECK(resumed > deeds / every / 2);
@@ -136,15 +140,7 @@ TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked abo
             CHECK(b.snapshot().state == host::State::offline);  // nothing has been touched
             b.start({true, {lit_s, false}});
         }
-        INFO(b.last_error());
-        if (b.last_error().find("half-way on the hooks") != std::string::npos) {
-            ++refused;
-            continue;
-        }
-        ++resumed;
-        CHECK(b.snapshot().finished);
-        CHECK(block_of(*b.twin) == whole);
-        b.must_be_whole();
+        ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << asked << " asked about, " << refused << " refused");
     CHECK(asked > 10 / every);
@@ -306,6 +302,224 @@ TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print g
     b.must_be_whole();
 }
 
+namespace {
+
+class CountingLine final : public host::EmergencyLine {
+public:
+    [[nodiscard]] Status release() override {
+        pulled = false;
+        return works ? Status{} : Status(failure("emergency line: the device is gone"));
+    }
+    [[nodiscard]] Status pull() override {
+        ++pulls;
+        pulled = true;
+        return release_before_m112 ? release_before_m112() : Status{};
+    }
+    int pulls = 0;
+    bool pulled = false, works = true;
+    std::function<Status()> release_before_m112;
+};
+
+}  // namespace
+
+TEST_CASE("an emergency stop pulls the hardware's line before it says M112; connecting again releases it") {
+    CountingLine line;
+    ControlBench b;
+    b.emergency_line = &line;
+    b.new_host();
+    bool alive = false;
+    line.release_before_m112 = [&]() -> Status {
+        alive = !b.twin->log().power_cut;  // M112 would have dropped the board's own relay
+        return {};
+    };
+    Person person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
+    b.start();
+    CHECK(line.pulls == 1);
+    CHECK(line.pulled);
+    CHECK(alive);
+    CHECK(b.twin->log().power_cut);
+    CHECK_FALSE(b.projector->lit);
+    b.twin->reset();
+    b.life->at_look = {};
+    b.start({true, {}});
+    CHECK_FALSE(line.pulled);
+    CHECK(b.snapshot().finished);
+    b.must_be_whole();
+}
+
+TEST_CASE("a line that is gone is told before anything moves") {
+    CountingLine line;
+    line.works = false;
+    ControlBench b;
+    b.emergency_line = &line;
+    b.new_host();
+    b.start();
+    CHECK(b.last_error().find("the device is gone") != std::string::npos);
+    CHECK(b.twin->log().homings == 0);
+}
+
+namespace {
+
+void with_door(machine::Printer& printer) {
+    printer.door.input = "y_max";
+}
+
+twin::Options faulty(twin::Fault::Kind kind, int n, double amount = 0) {
+    twin::Options options;
+    options.faults = {{kind, n, amount}};
+    return options;
+}
+
+/// Somebody who tries to resume all the time; what happened meanwhile.
+struct Impatient {
+    ControlBench& b;
+    int refused = 0, paused = 0;
+    bool lit_behind_door = false, moved = false;
+    machine::Position at;
+
+    explicit Impatient(ControlBench& bench) : b(bench) {
+        b.life->at_look = [this] { look(); };
+    }
+    void look() {
+        const Snapshot s = b.snapshot();
+        if (s.state != State::paused) return;
+        if (++paused == 1) at = b.twin->interlock().position();
+        const bool open = b.twin->door_is_open();
+        moved = moved || (open && b.twin->interlock().position() != at);
+        lit_behind_door = lit_behind_door || (open && b.projector->lit);
+        if (!b.control->resume()) ++refused;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the door is opened in the light: dark within half a second, nothing moves, and it goes on once it is shut") {
+    for (const int light : {1, 4, 7}) {
+        CAPTURE(light);
+        ControlBench b(faulty(twin::Fault::Kind::door_open, light, 40), "tower", 5, with_door);
+        Impatient person(b);
+        b.start();
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        CHECK(b.twin->log().lit_while_open_s > 0);
+        CHECK(b.twin->log().lit_while_open_s < 0.5);
+        CHECK(person.refused > 10);
+        CHECK_FALSE(person.moved);
+        CHECK_FALSE(person.lit_behind_door);
+        CHECK(b.lights() == 11);
+        b.must_be_whole();
+        const std::string journal = read_file(b.journal()).value();
+        CHECK(journal.find(" door open=1\n") < journal.find(" door open=0\n"));
+        CHECK(journal.find(" door open=0\n") != std::string::npos);
+    }
+}
+
+TEST_CASE("a host that dies while the door is open is followed by one that waits for the door") {
+    ControlBench b(faulty(twin::Fault::Kind::door_open, 5, 100), "tower", 5, with_door);
+    b.life->at_deed = [&](long deed) {
+        if (b.life->dies_at < 0 && b.snapshot().state == State::paused) b.life->dies_at = deed + 5;
+    };
+    REQUIRE_FALSE(b.start());
+    b.new_host();
+    b.start({true, {}});
+    CHECK(b.last_error() == "the door is open: shut it");
+    CHECK(b.twin->log().violations.empty());
+    b.twin->advance_to(b.twin->now() + 100);
+    b.start({true, {}});
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    b.must_be_whole();
+}
+
+TEST_CASE("with an open door a suspended print stays where it is, a cancelled one parks once the door is shut") {
+    for (const bool cancel : {true, false}) {
+        ControlBench b(faulty(twin::Fault::Kind::door_open, 5, 60), "tower", 5, with_door);
+        b.life->at_look = [&] {
+            if (b.snapshot().state != State::paused) return;
+            CHECK((cancel ? b.control->cancel() : b.control->suspend()));
+        };
+        b.start();
+        INFO(b.last_error());
+        CHECK(b.snapshot().state == State::idle);
+        CHECK(b.twin->door_is_open() == !cancel);
+        CHECK(b.twin->interlock().hooked_vat().has_value() == !cancel);
+        CHECK(b.snapshot().can_resume == !cancel);
+        if (cancel) continue;
+        b.life->at_look = {};
+        b.twin->advance_to(b.twin->now() + 60);
+        b.start({true, {}});
+        INFO(b.last_error());
+        CHECK(b.snapshot().finished);
+        b.must_be_whole();
+    }
+}
+
+TEST_CASE("a print does not begin with an open door, nor does a test light, and no journal is left") {
+    ControlBench b(faulty(twin::Fault::Kind::door_open, 1, 200), "tower", 5, with_door);
+    b.twin->light_on(halves::image(0, 0).value());  // opens it
+    b.twin->light_off();
+    b.twin->advance_to(10);
+    REQUIRE(b.twin->door_is_open());
+    b.start();
+    CHECK(b.last_error() == "the door is open: shut it");
+    CHECK_FALSE(b.snapshot().can_resume);
+    CHECK(b.twin->log().homings == 0);
+    REQUIRE(b.control->connect());
+    b.control->serve_until_idle();
+    REQUIRE(b.control->expose_test(halves::image(0, 0).value(), 1));
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().message == "the door is open: shut it");
+    CHECK(b.lights() == 1);
+}
+
+TEST_CASE("both switches of an axis pressed at once: not before it is looked at") {
+    ControlBench b(faulty(twin::Fault::Kind::stuck_switch, 4), "tower", 2, [](machine::Printer& printer) {
+        printer.limit_switches.push_back({machine::Axis::carriage, true, false});
+    });
+    b.start();  // the carriage is parked at its other switch
+    CHECK(b.last_error().find("both limit switches of the carriage are pressed") == 0);
+    CHECK(b.twin->log().homings == 0);
+}
+
+TEST_CASE("a switch that is stuck is found before the axis that homed to it goes far") {
+    for (const int which : {1, 2, 3}) {
+        CAPTURE(which);
+        ControlBench b(faulty(twin::Fault::Kind::stuck_switch, which));
+        b.start();
+        CHECK(b.last_error().find("limit switch of the") != std::string::npos);
+        CHECK(b.last_error().find("is pressed, but the") != std::string::npos);
+        CHECK(b.lights() == 0);
+        CHECK(b.twin->log().homings == (which == 2 ? 1 : which == 1 ? 2 : 3));
+        CHECK(b.twin->log().violations.empty());
+    }
+}
+
+TEST_CASE("a controller that restarts between the fence and the light gets no light, though it says nothing yet") {
+    twin::Options options;
+    options.boot_s = 2;  // silent for longer than it takes to light
+    ControlBench b(options);
+    int reset_before = 0;
+    b.life->at_deed = [&](long) {
+        const std::string journal = read_file(b.journal()).value_or("");
+        const std::size_t last = journal.rfind(" light step=");
+        const bool noted = last != std::string::npos && journal.find(" dark ", last) == std::string::npos;
+        if (!noted || b.projector->lit || reset_before > 0 || b.lights() != 4) return;
+        reset_before = b.lights();
+        b.twin->reset();
+    };
+    b.start();
+    CHECK(reset_before == 4);
+    CHECK(b.lights() == 4);
+    CHECK_FALSE(b.snapshot().finished);
+    CHECK(read_file(b.journal()).value().find("on=0 done=0 by=host") != std::string::npos);
+    b.life->at_deed = {};
+    b.start({true, {}});
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    CHECK(b.lights() == 10);
+    b.must_be_whole();
+}
+
 TEST_CASE("a firmware without emergency parser is known by its capabilities, and is reset to be stopped") {
     twin::Options options;
     options.emergency_parser = false;
@@ -324,7 +538,7 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
         CHECK_FALSE(b.control->set_exposure(2, 3));
         CHECK_FALSE(b.control->set_exposure(0, 61));  // the machine's limit is 60 s
     });
-    b.life->on_death = [&] { b.guard.host_died(b.twin->now()), b.twin->light_off(); };
+    b.life->on_death = [&] { b.guard.host_died(), b.twin->light_off(); };
     b.life->at_deed = [&](long deed) {
         if (person.acted && b.life->dies_at < 0 && b.snapshot().layer == 3) b.life->dies_at = deed + 20;
     };

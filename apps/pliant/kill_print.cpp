@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/files.hpp"
+#include "halves.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
 #include "operate/clock_file.hpp"
@@ -35,7 +36,10 @@ namespace {
 using namespace pliant;
 namespace fs = std::filesystem;
 
-constexpr int width = 8, height = 6, layers = 3;
+using app::halves::height_px;
+using app::halves::width_px;
+
+constexpr int layers = 3;
 
 struct Wanted {
     std::string program;
@@ -57,17 +61,6 @@ T need(Result<T> result) {
     return std::move(*result);
 }
 
-/// Left half soft, right half rigid, with a grey column between them that both share.
-Result<job::Image> image_of(int, int material) {
-    job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
-    for (int i = 0; i < width * height; ++i) {
-        const int x = i % width;
-        const int soft = x < 4 ? 255 : (x == 4 ? 100 : 0);
-        image.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(material == 0 ? soft : 255 - soft);
-    }
-    return image;
-}
-
 void replace(std::string& text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     if (at == std::string::npos) stop("the printer file has changed: no " + from);
@@ -83,29 +76,18 @@ struct Job {
 /// A small job on the tower of the thesis, with a projector of a few pixels.
 Job make_job(const fs::path& folder) {
     std::string text = need(read_file("examples/printers/tower.toml"));
-    replace(text, "width = 1920", fmt::format("width = {}", width));
-    replace(text, "height = 1080", fmt::format("height = {}", height));
+    replace(text, "width = 1920", fmt::format("width = {}", width_px));
+    replace(text, "height = 1080", fmt::format("height = {}", height_px));
     Job made;
     made.printer = need(machine::parse_printer(text, "printer.toml"));
-    job::Manifest& job = made.manifest;
-    job.name = "halves";
-    job.pliant_version = "0";
-    job.width_px = width;
-    job.height_px = height;
-    job.pixel_um = 158.75;
-    job.bottom_layers = 1;
-    const double pixel_mm2 = 0.15875 * 0.15875;
-    const double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255), rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
-    job.materials = {{"soft", "semi-flex", soft_mm2 * 0.05 * layers, 1, 2.5, 6},
-                     {"rigid", "rigid-flex", rigid_mm2 * 0.05 * layers, 1, 2.5, 6}};
+    made.manifest = app::halves::job({layers, 1, 6, 1});
+    const job::Manifest& job = made.manifest;
     made.file = folder / "halves.zip";
     job::Writer writer = need(job::Writer::create(made.file));
     for (int layer = 0; layer < layers; ++layer) {
-        job.layers.push_back({50 * (layer + 1), 50, {}});
-        for (int material = 0; material < 2; ++material) {
-            const std::string name = fmt::format("layers/{:05}_{}.png", layer, material);
-            job.layers.back().images.push_back({material, name, material == 0 ? soft_mm2 : rigid_mm2});
-            if (!writer.add_image(name, *image_of(layer, material))) stop("the job cannot be written");
+        for (const job::LayerImage& image : job.layers[static_cast<std::size_t>(layer)].images) {
+            if (!writer.add_image(image.file, *app::halves::image(layer, image.material)))
+                stop("the job cannot be written");
         }
     }
     const plan::Plan plan = need(plan::make_plan(job, made.printer));
@@ -159,7 +141,7 @@ private:
         if (is_lit) {
             const auto bytes = read_file(shown_);
             if (!bytes) return {};
-            const auto image = job::decode_png(*bytes, {width, height}, "shown.png");
+            const auto image = job::decode_png(*bytes, {width_px, height_px}, "shown.png");
             if (!image) return {};
             twin_.light_on(*image);
         } else {
@@ -274,7 +256,7 @@ public:
 
 private:
     std::string judge(twin::Twin& twin, Count& count) {
-        const twin::Report report = need(twin::inspect(twin, job_.manifest, twin::ImageSource(image_of)));
+        const twin::Report report = need(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image)));
         for (const twin::CuredLayer& layer : twin.cured().layers()) {
             for (const twin::VatLayer& vat : layer.vats) {
                 for (const twin::Lit& lit : vat.lit) count.pieces += lit.pieces > 1 ? 1 : 0;
@@ -292,7 +274,14 @@ private:
     double print_s_;
 };
 
+void tell(const Count& count) {
+    fmt::print(
+        "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
+        count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
+}
+
 int run(const Wanted& wanted) {
+    constexpr int tell_every = 20;
     std::string pattern = (fs::temp_directory_path() / "pliant_kill_XXXXXX").string();
     const fs::path folder = ::mkdtemp(pattern.data());
     const Job job = make_job(folder);
@@ -311,11 +300,10 @@ int run(const Wanted& wanted) {
         const std::string wrong = round.print(std::min(left, wanted.per_print), resets, count);
         ++count.prints;
         if (!wrong.empty()) ++count.wrong, fmt::print("print {}: {}\n", count.prints, wrong);
+        if (count.prints % tell_every == 0) tell(count);
         std::fflush(stdout);
     }
-    fmt::print(
-        "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
-        count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
+    tell(count);
     fs::remove_all(folder);
     return count.wrong == 0 ? 0 : 1;
 }

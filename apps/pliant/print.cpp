@@ -132,6 +132,7 @@ Result<int> print(const Options& options) {
     if (options.twin == !options.live.port.empty())
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
     if (options.twin && !options.live.clock_file.empty()) return input_error("--clock goes with --port");
+    if (options.twin && !options.live.emergency_line.empty()) return input_error("--emergency-line goes with --port");
     if (options.twin && options.live.resume)
         return input_error("--resume needs a printer that is still there: --port DEVICE");
     if (!options.twin && options.live.projector.empty())
@@ -156,6 +157,9 @@ void add_print(CLI::App& app, int& status) {
     command->add_option("--assume-lit", live.assume_lit_s, "seconds that a light was on whose end nobody saw");
     command->add_flag("--assume-vats-untouched", live.assume_vats_untouched,
                       "another program has used the controller since, but moved no vat");
+    command->add_option("--emergency-line", live.emergency_line,
+                        "what an emergency stop pulls, instead of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
+                        "stops), file-low:FILE (0 stops), none");
     command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
     command->add_option(
         "--report", live.report,

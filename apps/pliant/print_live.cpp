@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "core/files.hpp"
@@ -23,6 +22,7 @@
 #include "operate/print_job.hpp"
 #include "plan/plan.hpp"
 #include "report/print_report.hpp"
+#include "shared_light.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
 #include "twin_bench.hpp"
@@ -63,36 +63,6 @@ public:
 private:
     termios before_{};
     bool active_ = false;
-};
-
-/// The projector of the virtual printer in this program: what the host shows, the machine's thread looks at.
-class SharedLight final : public host::Projector {
-public:
-    [[nodiscard]] Status show(const job::Image& image) override {
-        const std::scoped_lock lock(mutex_);
-        image_ = image;
-        return {};
-    }
-    [[nodiscard]] Status black() override {
-        const std::scoped_lock lock(mutex_);
-        image_.reset();
-        return {};
-    }
-    Status look(twin::Twin& twin) {
-        const std::scoped_lock lock(mutex_);
-        if (image_.has_value() == lit_) return {};
-        lit_ = image_.has_value();
-        if (lit_)
-            twin.light_on(*image_);
-        else
-            twin.light_off();
-        return {};
-    }
-
-private:
-    std::mutex mutex_;
-    std::optional<job::Image> image_;
-    bool lit_ = false;
 };
 
 /// The virtual printer on a pseudo-terminal, in a thread of its own.
@@ -293,8 +263,8 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
 }
 
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
-    auto station =
-        operate::PortStation::open({options.port, options.projector, options.speed, options.clock_file}, ready);
+    auto station = operate::PortStation::open(
+        {options.port, options.projector, options.speed, options.clock_file, options.emergency_line}, ready);
     if (!station) return tl::unexpected(station.error());
     host::ControlSetup setup = (*station)->setup(ready.printer);
     add_layer_command(options, setup);

@@ -15,7 +15,8 @@ struct LiveOptions {
     std::string projector;  ///< folder for the pictures
     std::string journal;    ///< "": beside the job
     std::string after_layer;
-    std::string report;  ///< file for the report of the print (HTML); "": none
+    std::string emergency_line;  ///< "": the printer file's
+    std::string report;          ///< file for the report of the print (HTML); "": none
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "halves.hpp"
 #include "operate/programs.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -17,51 +18,22 @@ namespace {
 
 using twin::Fault;
 
-constexpr int width = 8, height = 6, layers = 5;
+using app::halves::height_px;
+using app::halves::image;
+using app::halves::width_px;
 
-/// Left half soft, right half rigid, with a grey column between them that both share.
-Result<job::Image> halves(int, int material) {
-    job::Image image{width, height, std::vector<std::uint8_t>(width * height)};
-    for (int i = 0; i < width * height; ++i) {
-        const int x = i % width;
-        const int soft = x < 4 ? 255 : (x == 4 ? 100 : 0);
-        image.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(material == 0 ? soft : 255 - soft);
-    }
-    return image;
-}
+constexpr int layers = 5;
 
 machine::Printer small_tower() {
     auto printer = machine::load_printer("examples/printers/tower.toml").value();
-    printer.projector.width_px = width;
-    printer.projector.height_px = height;
+    printer.projector.width_px = width_px;
+    printer.projector.height_px = height_px;
     return printer;
-}
-
-/// Pixels of 158.75 um: soft covers 24 + 6 * 100/255 of them, rigid the rest of 48.
-job::Manifest small_job() {
-    job::Manifest job;
-    job.name = "halves";
-    job.width_px = width;
-    job.height_px = height;
-    job.pixel_um = 158.75;
-    job.bottom_layers = 2;
-    const double pixel_mm2 = 0.15875 * 0.15875;
-    const double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255);
-    const double rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
-    job.materials = {{"soft", "semi-flex", soft_mm2 * 0.25, 0, 2.5, 12},
-                     {"rigid", "rigid-flex", rigid_mm2 * 0.25, 0, 2.5, 12}};
-    for (int i = 0; i < layers; ++i) {
-        job.layers.push_back(
-            {50 * (i + 1),
-             50,
-             {{0, fmt::format("{}_soft.png", i), soft_mm2}, {1, fmt::format("{}_rigid.png", i), rigid_mm2}}});
-    }
-    return job;
 }
 
 struct Print {
     machine::Printer printer = small_tower();
-    job::Manifest job = small_job();
+    job::Manifest job = app::halves::job({});
     plan::Plan plan = plan::make_plan(job, printer).value();
     std::string gcode = plan::write_gcode(plan, job, printer);
     host::PrintRecord record;
@@ -76,8 +48,8 @@ struct Print {
     void run(twin::Options options = {}) {
         app::TwinBench bench(printer, std::move(options));
         Progress silent;
-        status = host::print_job(gcode, halves, bench.devices(), silent, record);
-        report = twin::inspect(bench.twin(), job, halves).value();
+        status = host::print_job(gcode, image, bench.devices(), silent, record);
+        report = twin::inspect(bench.twin(), job, image).value();
     }
     void must_pass() const {
         CHECK_MESSAGE(status, (status ? "" : status.error().message));
@@ -142,7 +114,7 @@ TEST_CASE("no more lines are under way than the printer file allows") {
         Progress silent;
         host::PrintRecord record;
         const host::Devices devices{wire, bench.devices().projector, bench.devices().clock};
-        REQUIRE(host::print_job(p.gcode, halves, devices, silent, record, operate::link_options(printer.controller)));
+        REQUIRE(host::print_job(p.gcode, image, devices, silent, record, operate::link_options(printer.controller)));
         CHECK(wire.most() == lines);
     }
 }
@@ -216,7 +188,7 @@ TEST_CASE("a wrong order of vats shows as foreign resin") {
 
 TEST_CASE("a missing exposure shows") {
     Print p;
-    const std::string line = ";@expose layer=3 material=1 seconds=2.500 image=3_rigid.png\n";
+    const std::string line = ";@expose layer=3 material=1 seconds=2.500 image=layers/00003_1.png\n";
     p.replace(line, "");
     p.run();
     REQUIRE(p.status);
@@ -239,7 +211,7 @@ TEST_CASE("an exposure that is too short, and one that comes twice, show") {
     shorter.run();
     CHECK_FALSE(shorter.report.passed);
     Print twice;
-    const std::string line = ";@expose layer=4 material=0 seconds=2.500 image=4_soft.png\n";
+    const std::string line = ";@expose layer=4 material=0 seconds=2.500 image=layers/00004_0.png\n";
     twice.replace(line, line + line);
     twice.run();
     CHECK_FALSE(twice.report.passed);
@@ -327,7 +299,7 @@ bool noticed(const std::string& gcode) {
 /// of a spray, what only loosens or settles, and what the next line does as well.
 bool harmless_to_drop(const std::string& line) {
     if (line[0] == ';') return line.rfind(";@expose", 0) != 0;
-    for (const char* start : {"M400", "M107", "M106 P0", "M84", "G4 "}) {
+    for (const char* start : {"M400", "M107", "M106 P0", "M106 P2", "M84", "G4 "}) {
         if (line.rfind(start, 0) == 0) return true;
     }
     return false;
@@ -397,12 +369,12 @@ TEST_CASE("mutation: any one image that is shown with one pixel changed is notic
             Progress silent;
             host::PrintRecord record;
             const auto shown = [&](int l, int m) {
-                auto image = halves(l, m);
-                if (l == layer && m == material) image->pixels[9] ^= 0x40;
-                return image;
+                auto changed = image(l, m);
+                if (l == layer && m == material) changed->pixels[9] ^= 0x40;
+                return changed;
             };
             REQUIRE(host::print_job(p.gcode, shown, bench.devices(), silent, record));
-            const twin::Report report = twin::inspect(bench.twin(), p.job, twin::ImageSource(halves)).value();
+            const twin::Report report = twin::inspect(bench.twin(), p.job, twin::ImageSource(image)).value();
             CHECK_FALSE(report.passed);
             CHECK(report.wrong_pixels >= 1);
             CHECK(holds(report.first_deviation, fmt::format("layer {}", layer)));

@@ -1,10 +1,12 @@
 // The host's link on a wire that damages lines, loses bytes and swallows answers: many lines, each carried out exactly
 // once in effect, the end position exact; then whole prints on the same wire, which the oracle must pass.
 //
-//   pliant_soak_link [LINES] [SEED] [PER]       PER "line" (default): noise hits so many lines; "byte": so many bytes
+//   pliant_soak_link [LINES] [SEED]              1 % of the lines with a flipped bit, 1 % with a lost byte
+//   pliant_soak_link [LINES] [SEED] byte SHARE   that share of all bytes flipped and as many lost (0.01: 1 %)
 //   pliant_soak_link throughput [LINES]         lines a second over a pseudo-terminal to a fast virtual printer
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -135,6 +137,79 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
     return status && exact;
 }
 
+struct Session {
+    long lines = 0;
+    bool wrong = false;    ///< a line was carried out otherwise than it was sent
+    bool stopped = false;  ///< the link has judged the wire
+    std::string why;
+};
+
+/// A fresh machine, moved until something is wrong or `lines` have gone through. Every few moves the machine is looked
+/// at from behind, so that a line which has passed its checksum damaged is noticed at once.
+Session soak_session(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, bool judged) {
+    constexpr int together = 10;
+    twin::Twin twin(printer);
+    NoisyWire wire(twin, noise, seed);
+    app::TwinClock clock(twin);
+    host::LinkOptions options = patient();
+    if (!judged) options.most_refused = 1e9;
+    host::Link link(wire, clock, options);
+    Session session;
+    Status status = link.connect();
+    for (const char* line : {"M84 S0", "G90", "G28 Z", "G28 X"}) {
+        if (status) status = link.send(line);
+    }
+    if (status) status = link.fence();
+    std::mt19937 random(seed);
+    machine::Position at = twin.interlock().position();
+    std::uint64_t path = twin.log().path;
+    while (status && session.lines < lines && twin.log().path == path && twin.log().violations.empty()) {
+        for (int i = 0; status && i < together; ++i) {
+            machine::Position to = at;
+            to[Axis::platform] = 100000 + static_cast<int>(random() % 290000);
+            if (to == at) continue;
+            status = link.send(machine::write_move(printer, at, to, printer.axis(Axis::platform).speed_mm_s));
+            at = to;
+            path = twin::path_after(path, to);
+        }
+        if (status) status = link.fence();
+        session.lines = link.lines_sent();
+    }
+    session.stopped = !status && status.error().message.find("the wire damages") == 0;
+    session.wrong = !session.stopped && (!status || twin.log().path != path || !twin.log().violations.empty());
+    if (session.stopped) session.wrong = !twin.log().violations.empty();
+    if (!status) session.why = status.error().message;
+    return session;
+}
+
+/// The noise of whole bytes: how often a damaged line passes the checksum of 8 bits, and what the link makes of it.
+/// True if the link as it is has carried out every line as it was sent, and to the end.
+bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise) {
+    bool good = true;
+    for (const bool judged : {false, true}) {
+        long sent = 0;
+        int sessions = 0, wrong = 0, stopped = 0;
+        std::string last;
+        for (; sent < lines && sessions < 10000; ++sessions) {
+            const Session s =
+                soak_session(printer, lines - sent, seed + static_cast<unsigned>(sessions), noise, judged);
+            sent += std::max(1L, s.lines);
+            wrong += s.wrong ? 1 : 0;
+            stopped += s.stopped ? 1 : 0;
+            if (!s.why.empty()) last = s.why;
+            if (judged && s.stopped && sessions >= 200) break;
+        }
+        fmt::print(
+            "{:g} % of bytes flipped, as many lost; {}: {} lines in {} sessions, {} with a line that was carried "
+            "out damaged ({}), {} stopped by the link{}\n",
+            100 * noise.flipped, judged ? "the link as it is" : "the link does not judge the wire", sent, sessions,
+            wrong, wrong > 0 ? fmt::format("one in {} lines", sent / wrong) : "none", stopped,
+            last.empty() ? "" : "; last: " + last);
+        good = wrong == 0 && stopped == 0;
+    }
+    return good;
+}
+
 constexpr int width = 8, height = 6;
 
 Result<job::Image> image_of(int, int material) {
@@ -228,11 +303,13 @@ int main(int argc, char** argv) {
     }
     Noise noise;
     noise.per_byte = argc > 3 && std::strcmp(argv[3], "byte") == 0;
+    if (noise.per_byte && argc > 4) noise.flipped = noise.lost = std::atof(argv[4]);
     const auto printer = machine::load_printer("examples/printers/tower.toml");
     if (!printer) {
         fmt::print(stderr, "{}\n", printer.error().message);
         return 2;
     }
+    if (noise.per_byte) return soak_bytes(*printer, lines, seed, noise) ? 0 : 1;
     bool good = soak_moves(*printer, lines, seed, noise, false);
     good = soak_moves(*printer, lines, seed, noise, true) && good;
     good = soak_prints(*printer, lines, seed, noise) && good;

@@ -115,6 +115,7 @@ struct Control::State_ {
     [[nodiscard]] Result<Ending> print(const StartOptions& options, bool abandon, Journal* journal);
     [[nodiscard]] Result<Ending> print_anew(Journal* journal);
     [[nodiscard]] Result<Ending> go_on(const StartOptions& options, bool abandon, Journal& journal);
+    [[nodiscard]] Status preflight() const;
     [[nodiscard]] Status check_journal(const JournalFacts& facts) const;
     void finish(const Result<Ending>& ending);
     void show_machine();
@@ -231,7 +232,9 @@ Status Control::pause(PauseWhen when) {
 }
 
 Status Control::resume() {
-    if (snapshot().state != State::paused) return failure("not now: the print is not paused");
+    const Snapshot now = snapshot();
+    if (now.state != State::paused) return failure("not now: the print is not paused");
+    if (now.door_open.value_or(false)) return failure("not now: the door is open; shut it first");
     state_->desk.wish([](Wishes& w) { w.resume = true; });
     return {};
 }
@@ -253,7 +256,7 @@ Status Control::suspend() {
 }
 
 void Control::emergency_stop() {
-    if (state_->setup.emergency_line) state_->setup.emergency_line();
+    const Status pulled = state_->setup.emergency_line != nullptr ? state_->setup.emergency_line->pull() : Status{};
     {
         const std::scoped_lock lock(state_->mutex);
         if (state_->wire) (void)state_->wire->write("\nM112\n");
@@ -262,6 +265,7 @@ void Control::emergency_stop() {
     }
     state_->desk.stop_everything();
     state_->woken.notify_all();
+    if (!pulled) state_->desk.event("error", pulled.error().message);
     state_->desk.event("error", "emergency stop");
 }
 
@@ -362,12 +366,19 @@ Status Control::expose_test(job::Image image, double seconds) {
                            printer.projector.width_px, printer.projector.height_px);
     return state_->ask_for(State::working, only_when_idle, [this, image = std::move(image), seconds] {
         State_& s = *state_;
+        if (Status status = s.preflight(); !status) {
+            s.desk.event("error", status.error().message);
+            return s.desk.state(State::idle, status.error().message);
+        }
         const double end_s = s.setup.clock.now() + seconds;
         Status status = s.setup.projector.show_for(image, seconds);
         s.desk.event("light", fmt::format("test, {:g} s", seconds));
         while (status && s.setup.clock.now() < end_s) {
             if (status = s.desk.watch(); !status) break;
-            s.setup.clock.sleep(std::min(0.01, end_s - s.setup.clock.now()));
+            if (status = s.machine->ask_for_door(); !status) break;
+            if (status = s.machine->link().listen_for(std::min(0.01, end_s - s.setup.clock.now()), false); !status)
+                break;
+            if (s.machine->door_open().value_or(false)) break;
         }
         const Status dark = s.setup.projector.black();
         s.desk.event("dark", "test");
@@ -461,6 +472,9 @@ void Control::quit() {
 
 Status Control::State_::open() {
     touched = true;
+    if (setup.emergency_line != nullptr) {
+        if (Status status = setup.emergency_line->release(); !status) return status;
+    }
     if (machine) {
         machine->link().set_watch(nullptr);
         auto fresh = std::make_unique<Machine>(*wire, setup.clock, setup.printer, setup.link);
@@ -478,6 +492,7 @@ Status Control::State_::open() {
     }
     machine->link().set_watch([this] { return desk.watch(); });
     machine->link().set_listener([this](std::string_view line) {
+        machine->hear(line);
         for (const std::string_view told : {"//action:prompt_begin", "//action:notification", "echo:busy: paused"}) {
             if (line.substr(0, told.size()) == told) desk.event("log", std::string(line));
         }
@@ -499,6 +514,7 @@ void Control::State_::close() {
     desk.update([](Snapshot& s) {
         s.firmware.clear();
         s.homed.fill(false);
+        s.door_open.reset();
         s.slot = 0;
     });
 }
@@ -545,6 +561,7 @@ void Control::State_::show_machine() {
         const auto vat = at.hooked_vat();
         s.slot = vat ? setup.printer.vats[static_cast<std::size_t>(*vat)].slot : 0;
         s.pump = at.pump_runs();
+        s.door_open = machine->door_open();
     });
 }
 
@@ -580,6 +597,12 @@ Status Control::State_::new_session(Journal* journal, const JournalFacts& facts,
     return {};
 }
 
+/// Before anything moves: the switches as they must be, the door shut.
+Status Control::State_::preflight() const {
+    if (Status status = machine->look_at_switches(); !status) return status;
+    return machine->door_open().value_or(false) ? Status(failure("the door is open: shut it")) : Status{};
+}
+
 Status Control::State_::check_journal(const JournalFacts& facts) const {
     const std::string where = job->journal.string();
     if (!facts.begun || facts.ended || facts.cancelled) {
@@ -610,6 +633,10 @@ Result<Ending> Control::State_::print_anew(Journal* journal) {
     if (Status status = open(); !status) return tl::unexpected(status.error());
     const Standing standing{machine::Interlock(setup.printer), false};
     if (Status status = new_session(journal, {}, standing, boot_name()); !status) return tl::unexpected(status.error());
+    if (Status status = preflight(); !status) {
+        if (journal != nullptr) (void)journal->clear();  // nothing has begun
+        return tl::unexpected(status.error());
+    }
     PrintRun run({setup, *job, script, times, *machine, journal, desk}, {});
     Result<Ending> ending = run.print();
     if (!ending) run.make_safe(ending.error());
@@ -637,6 +664,7 @@ Result<Ending> Control::State_::go_on(const StartOptions& options, bool abandon,
     if (const auto possible = setup.programs.resume(*recovery); !possible) return tl::unexpected(possible.error());
     if (Status status = new_session(&journal, *facts, {recovery->state, false}, boot_name()); !status)
         return tl::unexpected(status.error());
+    if (Status status = preflight(); !status) return tl::unexpected(status.error());
     PrintRun run({setup, *job, script, times, *machine, &journal, desk}, std::move(*facts));
     Result<Ending> ending = abandon ? run.abandon(*recovery) : run.resume(*recovery);
     if (!ending) run.make_safe(ending.error());
@@ -695,7 +723,9 @@ void Control::State_::finish(const Result<Ending>& ending) {
     });
     const char* what = *ending == Ending::finished    ? "the print is complete"
                        : *ending == Ending::cancelled ? "the print was cancelled, the machine is parked"
-                                                      : "the print is suspended, the machine is parked";
+                       : *ending == Ending::left
+                           ? "the print is suspended; the machine stands where it was: the door is open"
+                           : "the print is suspended, the machine is parked";
     desk.event("log", what);
     desk.state(State::idle, what);
 }

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "host/devices.hpp"
+#include "host/emergency_line.hpp"
 #include "host/guard.hpp"
 #include "host/link.hpp"
 #include "host/print.hpp"
@@ -36,6 +37,8 @@ struct Programs {
     Make pause_begin;  ///< everything off, platform clear of the vat
     /// From where pause_begin has left it back to `before`.
     std::function<Result<std::string>(const machine::Interlock& before)> pause_end;
+    Make hold_begin;  ///< pump and fans off, and nothing moves
+    Make hold_end;    ///< what ran before, runs again
     std::function<Result<std::string>(const machine::Interlock& state, int slot)> bring_vat;  ///< 0: put it away
     std::function<Result<std::string>(const machine::Interlock& state, double seconds)> clean;
     /// From where an interrupted print has left the machine to where its light goes on next.
@@ -71,9 +74,9 @@ struct ControlSetup {
     Clock& clock;
     Programs programs;
     LinkOptions link;
-    std::function<void()> emergency_line;  ///< pulls the hardware's emergency line; may be empty
-    LayerHook after_layer;                 ///< may be empty
-    Guard* guard = nullptr;                ///< who makes dark if this program dies; may be null
+    EmergencyLine* emergency_line = nullptr;  ///< the hardware's; may be null
+    LayerHook after_layer;                    ///< may be empty
+    Guard* guard = nullptr;                   ///< who makes dark if this program dies; may be null
 };
 
 /// What to take for granted where the journal proves nothing.
@@ -132,7 +135,8 @@ struct Snapshot {
     std::array<bool, machine::axis_count> homed{};
     int slot = 0;  ///< of the vat in use; 0: none
     bool pump = false;
-    std::string prompt;  ///< what a person is asked to do before resume()
+    std::optional<bool> door_open;  ///< nullopt: not known, or the machine has no switch at its door
+    std::string prompt;             ///< what a person is asked to do before resume()
     long lines_sent = 0;
     long resends = 0;
     long last_event = 0;  ///< number of the newest event

@@ -57,6 +57,8 @@ public:
 
     /// What was in the file when it was opened.
     [[nodiscard]] const std::vector<JournalRecord>& records() const { return records_; }
+    /// The number that the next record will have.
+    [[nodiscard]] long next_number() const { return last_number_ + 1; }
     /// Throws everything away and begins anew.
     [[nodiscard]] Status clear();
     /// The number of the new record. Errors: the disk is full or broken; then no step may be taken.

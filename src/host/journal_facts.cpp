@@ -88,7 +88,7 @@ private:
         facts_.before_base = *before;
         facts_.boot = *boot;
         facts_.stopped_short = false;
-        facts_.go = GoFact{-1, 0, *base + 1, *state};
+        facts_.go = GoFact{-1, 0, *base + 1, *state, 0};
         return {};
     }
     Status program(const JournalRecord& r) {
@@ -108,7 +108,13 @@ private:
         if (!state) return input_error("journal record {}: {}", r.number, state.error().message);
         if (*program != 0 && facts_.programs.count(*program) == 0)
             return input_error("journal record {}: there is no program {}", r.number, *program);
-        facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state};
+        long most = 0;
+        if (r.find("most") != nullptr) {
+            const auto given = r.whole("most");
+            if (!given) return tl::unexpected(given.error());
+            most = std::max(0L, *given);
+        }
+        facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state, most};
         return {};
     }
     Status light(const JournalRecord& r) {

@@ -35,6 +35,7 @@ struct GoFact {
     std::size_t step = 0;  ///< of the job, or line of the program
     long line = 0;         ///< number on the wire of that step; each further step has the next
     machine::Interlock::State state;
+    long most = 0;  ///< steps sent from there at most, before the next entry; 0: up to the next phase
 };
 
 struct ChangeFact {

@@ -9,21 +9,13 @@
 #include <iterator>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "host/journal_facts.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
 
 namespace {
-
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "pliant_journal_XXXXXX").string();
-        path = ::mkdtemp(name.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-};
 
 std::string three_records() {
     return write_record(1, "begin", {{"job", "a b%=\n\xff"}, {"digest", ""}, {"printer", "x"}}) +
@@ -70,8 +62,8 @@ TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle i
 }
 
 TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on behind them") {
-    const Folder folder;
-    const auto path = folder.path / "journal";
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "journal";
     {
         Journal journal = Journal::open(path, true).value();
         CHECK(journal.append("begin", {{"job", "x"}}).value() == 1);
@@ -91,18 +83,18 @@ TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on b
 }
 
 TEST_CASE("what is no journal is not touched") {
-    const Folder folder;
-    const auto path = folder.path / "picture.png";
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "picture.png";
     REQUIRE(write_file(path, "something else\nof two lines\n"));
     CHECK_FALSE(Journal::open(path, true));
     CHECK(read_file(path).value() == "something else\nof two lines\n");
-    CHECK_FALSE(Journal::open(folder.path, true));
-    CHECK_FALSE(Journal::open(folder.path / "no" / "folder", true));
+    CHECK_FALSE(Journal::open(folder.path(), true));
+    CHECK_FALSE(Journal::open(folder.path() / "no" / "folder", true));
 }
 
 TEST_CASE("a full disk is an error, and leaves no half record behind") {
-    const Folder folder;
-    const auto path = folder.path / "journal";
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "journal";
     Journal journal = Journal::open(path, false).value();
     REQUIRE(journal.append("begin", {}));
     const auto size = std::filesystem::file_size(path);

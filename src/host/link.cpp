@@ -14,6 +14,7 @@ constexpr std::size_t longest_command = 80;  // leaves room for N, number and ch
 constexpr double watch_every_s = 0.02;
 constexpr double echo_timeout_s = 4;  // the echo of a fence; `busy` comes every 2 s before it
 constexpr std::size_t longest_answer = 4096;
+constexpr double recent_lines = 200;  // over which the wire is judged
 
 bool begins(std::string_view text, std::string_view with) {
     return text.substr(0, with.size()) == with;
@@ -151,6 +152,7 @@ Status Link::send(std::string_view command) {
         return input_error("\"{}\" cannot be sent: a command has 1 to {} characters and no comment", command,
                            longest_command);
     }
+    refused_ *= 1 - 1 / recent_lines;
     history_.push_back(framed(next_number_, command));
     ++next_number_;
     return run_until([this] { return next_to_send_ == next_number_; });
@@ -192,12 +194,12 @@ Status Link::fence() {
     return failure("the printer answers, but never the echo that ends a move");
 }
 
-Status Link::listen_for(double seconds) {
+Status Link::listen_for(double seconds, bool repair) {
     const double end = clock_.now() + seconds;
     do {
         const auto heard = hear(std::max(0.0, end - clock_.now()));
         if (!heard) return tl::unexpected(heard.error());
-        if (wanted_ && next_number_ > base_ + 1) {
+        if (repair && wanted_ && next_number_ > base_ + 1) {
             if (Status status = resynchronise(); !status) return status;
             if (Status status = transmit(); !status) return status;
         }
@@ -418,8 +420,19 @@ void Link::handle_wait() {
 
 // --- recovering ----------------------------------------------------------------------------------------------------
 
+/// What the checksum has caught tells how much it cannot have caught.
+Status Link::note_refusal() {
+    refused_ += 1 / recent_lines;
+    if (refused_ <= options_.most_refused) return {};
+    return failure(
+        "the wire damages {:.0f} % of the lines: at that rate its checksum lets some through, so nothing more is sent; "
+        "look at cable, plugs and ground",
+        100 * refused_);
+}
+
 /// Lines in flight behind a bad one are refused one by one; only when the wire is quiet is the state known.
 Status Link::resynchronise() {
+    if (Status status = note_refusal(); !status) return status;
     if (Status status = wait_until_quiet(); !status) return status;
     ignore_ok_ = false;
     const long number = *std::exchange(wanted_, std::nullopt);

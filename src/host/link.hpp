@@ -27,6 +27,9 @@ struct LinkOptions {
     double answer_timeout_s = 12;  ///< silence after which an answer counts as lost; `busy` comes every 2 s
     double quiet_s = 0.2;          ///< silence after which nothing more is under way
     int most_repeats = 10;         ///< of one and the same line, and of silences in a row
+    /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
+    /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
+    double most_refused = 0.2;
 };
 
 /// What M115 says.
@@ -67,8 +70,11 @@ public:
     [[nodiscard]] Result<std::vector<std::string>> ask(std::string_view command);
     /// Returns when everything sent has been executed and all motion is done.
     [[nodiscard]] Status fence();
-    /// Listens for so long, and lets the watch be asked.
-    [[nodiscard]] Status listen_for(double seconds);
+    /// Listens for so long, and lets the watch be asked. Without `repair` what the firmware asks for again is left for
+    /// later: nothing delays the end.
+    [[nodiscard]] Status listen_for(double seconds, bool repair = true);
+    /// Whether every line has had its ok: the next one goes out at once.
+    [[nodiscard]] bool is_quiet() const { return outstanding_.empty() && !wanted_ && next_to_send_ == next_number_; }
 
     /// Past the window and without a number: M112, M410, M108. May be called from any thread if the wire allows it.
     void urgent(std::string_view command);
@@ -112,6 +118,7 @@ private:
     void handle_firmware(std::string_view line);
     void adapt_window(std::string_view answer);
     [[nodiscard]] Status resynchronise();
+    [[nodiscard]] Status note_refusal();
     [[nodiscard]] Status go_back_to(long number);
     [[nodiscard]] Status give_up_waiting();
     [[nodiscard]] bool window_takes(const std::string& line) const;
@@ -136,6 +143,7 @@ private:
     bool ignore_ok_ = false;      ///< the one that follows a Resend
     long repeated_ = 0;           ///< line that was asked for last, and how often
     int repeats_ = 0;
+    double refused_ = 0;     ///< share of recent lines that had to be repeated
     int silences_ = 0;       ///< since the last ok
     bool probing_ = false;   ///< a line was repeated after a silence, to find out where the firmware is
     bool silent_ = false;    ///< nothing is outstanding and nothing came

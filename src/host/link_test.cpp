@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
+
 #include "host/test_devices.hpp"
 
 using namespace pliant;
@@ -172,4 +174,25 @@ TEST_CASE("a command that would not survive the wire is refused") {
     CHECK_FALSE(b.link.send("G1 X1\nG1 X2"));
     CHECK_FALSE(b.link.send("G1 ; there"));
     CHECK_FALSE(b.link.send(std::string(81, 'G')));
+}
+
+TEST_CASE("a wire that damages every third line is not trusted, one that damages every tenth is") {
+    for (const long every : {3L, 10L}) {
+        CAPTURE(every);
+        long damaged = 0;
+        Bench b([&](const std::string& line) {
+            const long number = line[0] == 'N' ? std::atol(line.c_str() + 1) : 0;
+            if (number == 0 || number % every != 0 || number == damaged) return good_answer(line);
+            damaged = number;
+            return fmt::format("Error:checksum mismatch, Last Line: {}\nResend: {}\nok\n", number - 1, number);
+        });
+        Status status = b.link.connect();
+        for (int i = 1; i <= 1000 && status; ++i) {
+            status = b.link.send("M400");
+            if (status) status = b.link.listen_for(0);
+        }
+        CHECK(status.has_value() == (every == 10));
+        if (!status) CHECK(holds(status.error().message, "the wire damages"));
+        if (!status) CHECK(b.link.lines_sent() < 400);
+    }
 }

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "machine/switches.hpp"
+
 namespace pliant::host {
 namespace {
 
@@ -76,29 +78,105 @@ Status Machine::connect(long base) {
     return link_.send_if_known("M113 S2");  // `busy` every two seconds, whatever the build says
 }
 
-Status Machine::note_go(long program, std::size_t step, const Interlock& before) {
+Status Machine::note_go(long program, std::size_t step, const Interlock& before, long most) {
     if (Status status = link_.fence(); !status) return status;
+    if (printer_.door.present()) {
+        if (Status status = look_at_switches(); !status) return status;
+    }
     noted_ = true;
     const auto number = journal_->append("go", {{"program", fmt::format("{}", program)},
                                                 {"step", fmt::format("{}", step)},
                                                 {"line", fmt::format("{}", link_.next_number())},
+                                                {"most", fmt::format("{}", most)},
                                                 {"state", write_state(before.state())}});
     return number ? Status{} : tl::unexpected(number.error());
 }
+
+// --- switches ------------------------------------------------------------------------------------------------------
+
+void Machine::hear(std::string_view line) {
+    if (!printer_.door.present()) return;
+    if (const auto reading = machine::parse_switch(line); reading && reading->name == printer_.door.input)
+        door_open_ = reading->pressed;
+}
+
+Status Machine::ask_for_door() {
+    constexpr double every_s = 0.25;
+    if (!printer_.door.present() || !link_.is_quiet() || clock_.now() - door_asked_s_ < every_s) return {};
+    door_asked_s_ = clock_.now();
+    noted_ = false;
+    return link_.send("M119");
+}
+
+/// Answers lose bytes: what is not named is asked for again before it counts as not there.
+Status Machine::look_at_switches() {
+    if (!has_switches()) return {};
+    constexpr int attempts = 3;
+    noted_ = false;
+    Status status;
+    for (int i = 0; i < attempts; ++i) {
+        const auto answers = link_.ask("M119");
+        if (!answers) return tl::unexpected(answers.error());
+        std::vector<machine::SwitchReading> readings;
+        for (const std::string& answer : *answers) {
+            if (auto reading = machine::parse_switch(answer)) readings.push_back(std::move(*reading));
+        }
+        if (const auto open = machine::door_open(printer_, readings)) door_open_ = open;
+        status = machine::check_switches(printer_, at_.lock, readings);
+        if (status) break;
+    }
+    return status;
+}
+
+bool Machine::homes_to_switch(std::string_view command) const {
+    return !printer_.limit_switches.empty() && command.substr(0, 3) == "G28";
+}
+
+/// Of every axis that `command` has homed.
+Status Machine::after_homing(std::string_view command) {
+    const auto parsed = machine::parse_command(command);
+    if (!homes_to_switch(command) || !parsed) return {};
+    for (const machine::Word& word : parsed->words) {
+        const auto axis = machine::axis_of_letter(printer_, word.letter);
+        if (!axis) continue;
+        if (Status status = leave_switch(*axis); !status) return status;
+    }
+    return {};
+}
+
+/// A switch that is stuck ends homing wherever the axis stands. So it goes a little further than the switch reaches,
+/// where the machine allows that, is looked at, and goes back.
+Status Machine::leave_switch(Axis axis) {
+    const machine::AxisSpec& spec = printer_.axis(axis);
+    const machine::Position home = at_.lock.position();
+    machine::Position off = home;
+    off[axis] += (spec.homes_to_max ? -1 : 1) * (machine::switch_reach_um + 1000);
+    machine::Followed trial = at_;
+    const std::string there = machine::write_move(printer_, home, off, spec.homing_speed_mm_s);
+    const std::string back = machine::write_move(printer_, off, home, spec.homing_speed_mm_s);
+    if (!trial.line(printer_, there) || !trial.line(printer_, back)) return {};
+    Status status = run("G90\n" + there + "\n");
+    if (status) status = look_at_switches();
+    return status ? run(back + "\n") : status;
+}
+
+// --- sending -------------------------------------------------------------------------------------------------------
 
 Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;
     if (Status status = after.line(printer_, command); !status)
         return failure("{} is not sent: {}", command, status.error().message);
-    if (journal_ != nullptr && (!noted_ || !same_phase(printer_, at_.lock, after.lock))) {
-        if (Status status = note_go(program, step, at_.lock); !status) return status;
+    // What is sent after homing to try the switch is no step of this program: it must not be taken for the next ones.
+    const bool alone = homes_to_switch(command);
+    if (journal_ != nullptr && (!noted_ || alone || !same_phase(printer_, at_.lock, after.lock))) {
+        if (Status status = note_go(program, step, at_.lock, alone ? 1 : 0); !status) return status;
     }
     if (Status status = link_.send(command); !status) return status;
     // When the tower has done its stroke, the journal says so as soon as it can: in the middle of it nobody knows where
     // it stands.
     if (after.lock.in_hooks_stroke() && after.lock.position() != at_.lock.position()) noted_ = false;
     at_ = std::move(after);
-    return {};
+    return after_homing(command);
 }
 
 Status Machine::run(std::string_view program) {
@@ -136,11 +214,11 @@ Status Machine::rest_in_place() {
             found = read;
             said = answer;
         }
-        if (found == Position::agrees) return {};
+        if (found == Position::agrees) break;
         if (found == Position::differs && std::exchange(differed, true))
             return failure("the controller is not where it was sent: it says {}", said);
     }
-    return {};
+    return look_at_switches();
 }
 
 }  // namespace pliant::host

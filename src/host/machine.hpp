@@ -2,6 +2,7 @@
 // forbid, and none that a later host could not reckon with.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,8 +34,9 @@ public:
     /// Connects and learns what the firmware can; lines are numbered from `base` on.
     [[nodiscard]] Status connect(long base);
 
-    /// Sends step `step` of program `program` (see GoFact). Where a vat is taken, left or carried, the machine first
-    /// comes to rest and the journal says so. Errors: forbidden by the interlocks, journal, link.
+    /// Sends step `step` of program `program` (see GoFact). After homing, the axis leaves its switch and comes back:
+    /// one that stays pressed is stuck. Where a vat is taken, left or carried, the machine first comes to rest and the
+    /// journal says so. Errors: forbidden by the interlocks, journal, link.
     [[nodiscard]] Status send(long program, std::size_t step, std::string_view command);
     /// Sends a program that is not the job's, and waits until it is done.
     [[nodiscard]] Status run(std::string_view program);
@@ -43,11 +45,27 @@ public:
     /// The same, and the controller says that it is where it has been sent. A controller that cannot say is believed.
     [[nodiscard]] Status rest_in_place();
 
+    // Switches: nothing is asked of a machine whose file lists none and that has no door.
+
+    /// Waits until the machine stands still, asks M119 and holds the answer against where it stands. Errors: what
+    /// machine::check_switches() says.
+    [[nodiscard]] Status look_at_switches();
+    /// Asks M119, four times a second at most and only if nothing is under way; hear() gets the answer.
+    [[nodiscard]] Status ask_for_door();
+    /// Takes a line that the controller has said.
+    void hear(std::string_view line);
+    /// As last heard; nullopt: not yet, or there is no switch.
+    [[nodiscard]] std::optional<bool> door_open() const { return door_open_; }
+
     [[nodiscard]] Status light_on() { return at_.lock.light_on(false); }
     void light_off() { at_.lock.light_off(); }
 
 private:
-    [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before);
+    [[nodiscard]] bool has_switches() const { return !printer_.limit_switches.empty() || printer_.door.present(); }
+    [[nodiscard]] bool homes_to_switch(std::string_view command) const;
+    [[nodiscard]] Status after_homing(std::string_view command);
+    [[nodiscard]] Status leave_switch(machine::Axis axis);
+    [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before, long most);
 
     Clock& clock_;
     const machine::Printer& printer_;
@@ -55,6 +73,8 @@ private:
     Firmware firmware_;
     machine::Followed at_;
     Journal* journal_ = nullptr;
+    std::optional<bool> door_open_;
+    double door_asked_s_ = 0;
     bool noted_ = false;  ///< the journal knows which line the next step will have
 };
 

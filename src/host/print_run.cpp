@@ -10,8 +10,9 @@
 namespace pliant::host {
 namespace {
 
-constexpr double look_every_s = 0.01;  // at wishes, while the light is on
-constexpr double pause_look_s = 0.05;  // at wishes, while paused
+constexpr double look_every_s = 0.01;   // at wishes, while the light is on
+constexpr double pause_look_s = 0.05;   // at wishes, while paused
+constexpr double last_stretch_s = 0.5;  // of a light: what a noisy wire asks for must not delay its end
 
 std::string number(double value) {
     return fmt::format("{}", value);
@@ -142,6 +143,8 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     if (Status status = run_.machine.light_on(); !status) return status;
     const double left_s = fact.planned_s - fact.lit_s;
     const double noted_s = clock_.now();
+    if (run_.setup.guard != nullptr && run_.journal != nullptr)
+        run_.setup.guard->announced(run_.journal->next_number());
     if (Status status = note("light", {{"step", fmt::format("{}", step)},
                                        {"layer", fmt::format("{}", fact.layer)},
                                        {"material", fmt::format("{}", fact.material)},
@@ -152,11 +155,13 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
         return status;
     }
     fact.open_light = last_record_;
-    // The last look before the light: a controller that restarts now has said so already.
-    if (Status status = run_.machine.link().listen_for(0); !status) {
+    // The last look before the light: a controller that has restarted since says so, or does not answer any more.
+    Status alive = run_.machine.rest();
+    if (alive) alive = run_.machine.link().listen_for(0);
+    if (!alive) {
         run_.machine.light_off();
         (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
-        return status;
+        return alive;
     }
     if (run_.setup.guard != nullptr) run_.setup.guard->lit(fact.open_light);
     const double start_s = clock_.now();
@@ -200,9 +205,13 @@ Status PrintRun::burn(double until_s, bool& whole) {
     const double start_s = clock_.now();
     for (double now_s = start_s; now_s < until_s; now_s = clock_.now()) {
         const Wishes wishes = run_.desk.wishes();
-        if (wishes.pause_now || wishes.cancel || wishes.suspend) return {};
+        if (wishes.pause_now || wishes.cancel || wishes.suspend || door_is_open()) return {};
         run_.desk.update([&](Snapshot& s) { s.lit_s = now_s - start_s; });
-        if (Status status = run_.machine.link().listen_for(std::min(look_every_s, until_s - now_s)); !status)
+        if (until_s - now_s > last_stretch_s) {
+            if (Status status = run_.machine.ask_for_door(); !status) return status;
+        }
+        const double next_s = std::min(look_every_s, until_s - now_s);
+        if (Status status = run_.machine.link().listen_for(next_s, until_s - now_s > last_stretch_s); !status)
             return status;
     }
     whole = true;
@@ -237,6 +246,8 @@ Status PrintRun::serve_wishes(std::size_t step) {
     if (Status status = keep_changes(); !status) return status;
     const Wishes wishes = run_.desk.wishes();
     if (wishes.cancel || wishes.suspend) return wish_to_end();
+    show_door();
+    if (door_is_open()) return hold_for_door();
     if (wishes.pause_now || (wishes.pause_after && at_safe_point())) return pause("");
     return at_safe_point() ? between_layers(step) : Status{};
 }
@@ -285,10 +296,24 @@ Status PrintRun::keep_changes() {
 }
 
 Status PrintRun::pause(const std::string& prompt) {
+    return halt(prompt, run_.setup.programs.pause_begin, run_.setup.programs.pause_end);
+}
+
+/// Somebody has opened the door: nothing moves before it is shut and somebody says so.
+Status PrintRun::hold_for_door() {
+    if (Status status = note("door", {{"open", "1"}}); !status) return status;
+    run_.desk.event("log", "the door is open");
+    Status status =
+        halt("the door is open: shut it, then resume", run_.setup.programs.hold_begin, run_.setup.programs.hold_end);
+    return status ? note("door", {{"open", "0"}}) : status;
+}
+
+/// Brings the machine to a halt by `begin`, waits for somebody to resume, and goes back by `end`.
+Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begin, const Programs::Make& make_end) {
     run_.desk.state(State::pausing);
     if (Status status = run_.machine.rest(); !status) return status;
     const machine::Interlock before = run_.machine.state();
-    const auto begin = run_.setup.programs.pause_begin(before);
+    const auto begin = make_begin(before);
     if (!begin) return tl::unexpected(begin.error());
     if (Status status = run_.machine.run(*begin); !status) return status;
     if (Status status = note("pause", {}); !status) return status;
@@ -300,7 +325,7 @@ Status PrintRun::pause(const std::string& prompt) {
     run_.desk.update([](Snapshot& s) { s.prompt.clear(); });
     if (!status) return status;
     if (status = note("resume", {}); !status) return status;
-    const auto end = run_.setup.programs.pause_end(before);
+    const auto end = make_end(before);
     if (!end) return tl::unexpected(end.error());
     return run_.machine.run(*end);
 }
@@ -309,12 +334,40 @@ Status PrintRun::wait_for_resume() {
     for (;;) {
         if (Status status = run_.desk.watch(); !status) return status;
         if (wants_to_end()) return wish_to_end();
-        if (run_.desk.wishes().resume) break;
-        if (Status status = run_.machine.link().listen_for(pause_look_s); !status) return status;
+        if (run_.desk.wishes().resume && !door_is_open()) break;
+        run_.desk.wish([](Wishes& w) { w.resume = false; });  // not while the door is open
+        if (Status status = listen_at_door(pause_look_s); !status) return status;
     }
     run_.desk.wish([](Wishes& w) { w.resume = false; });
     run_.desk.state(State::printing);
     return {};
+}
+
+// --- the door ------------------------------------------------------------------------------------------------------
+
+Status PrintRun::listen_at_door(double seconds) {
+    if (Status status = run_.machine.ask_for_door(); !status) return status;
+    Status status = run_.machine.link().listen_for(seconds);
+    show_door();
+    return status;
+}
+
+void PrintRun::show_door() {
+    run_.desk.update([&](Snapshot& s) { s.door_open = run_.machine.door_open(); });
+}
+
+/// Nothing is parked while the door is open. A suspended print stays as it is; a cancelled one waits, unless the host
+/// has to end.
+Result<Ending> PrintRun::wait_to_park(Ending ending) {
+    if (!door_is_open()) return ending;
+    if (ending == Ending::cancelled)
+        run_.desk.state(State::cancelling, "the door is open: shut it, then the machine parks");
+    while (door_is_open()) {
+        if (Status status = run_.desk.watch(); !status) return tl::unexpected(status.error());
+        if (run_.desk.wishes().suspend) return Ending::left;
+        if (Status status = listen_at_door(pause_look_s); !status) return tl::unexpected(status.error());
+    }
+    return ending;
 }
 
 // --- the end -------------------------------------------------------------------------------------------------------
@@ -323,6 +376,12 @@ Result<Ending> PrintRun::park(Ending ending) {
     (void)projector_.black();
     run_.desk.state(State::cancelling);
     if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
+    const auto may_park = wait_to_park(ending);
+    if (!may_park) return may_park;
+    if (*may_park == Ending::left) {
+        if (Status status = note("suspend", {{"parked", "0"}}); !status) return tl::unexpected(status.error());
+        return Ending::left;
+    }
     const auto program = run_.setup.programs.cancel(run_.machine.state());
     if (!program) return tl::unexpected(program.error());
     if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());

@@ -26,7 +26,12 @@ struct RunSetup {
     Desk& desk;
 };
 
-enum class Ending { finished, cancelled, suspended };
+enum class Ending {
+    finished,
+    cancelled,
+    suspended,
+    left,  ///< suspended, but not parked: the door is open
+};
 
 class PrintRun {
 public:
@@ -53,7 +58,13 @@ private:
     [[nodiscard]] Status between_layers(std::size_t step);
     [[nodiscard]] Status keep_changes();
     [[nodiscard]] Status pause(const std::string& prompt);
+    [[nodiscard]] Status hold_for_door();
+    [[nodiscard]] Status halt(const std::string& prompt, const Programs::Make& begin, const Programs::Make& end);
     [[nodiscard]] Status wait_for_resume();
+    [[nodiscard]] Status listen_at_door(double seconds);
+    [[nodiscard]] Result<Ending> wait_to_park(Ending ending);
+    [[nodiscard]] bool door_is_open() const { return run_.machine.door_open().value_or(false); }
+    void show_door();
     [[nodiscard]] Result<Ending> park(Ending ending);
     [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
     [[nodiscard]] double exposure_s(const machine::Expose& light) const;

@@ -36,6 +36,8 @@ std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& fac
         if (command == nullptr) break;
         commands.push_back(*command);
     }
+    if (go.most > 0 && static_cast<std::size_t>(go.most) < commands.size())
+        commands.resize(static_cast<std::size_t>(go.most));
     return commands;
 }
 
@@ -105,7 +107,9 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
         if (fact.open_light == 0) continue;
         OpenLight open{fact.open_light, 0, false, false};
         const auto dark_at = guard != nullptr ? guard->dark_at(fact.open_light) : std::nullopt;
-        if (dark_at && *dark_at >= fact.open_since_s) {
+        if (dark_at && *dark_at == Guard::never_lit) {
+            open.on_s = 0;
+        } else if (dark_at && *dark_at >= fact.open_since_s) {
             open.on_s = *dark_at - fact.open_since_s;
         } else if (assume.lit_s) {
             open.on_s = *assume.lit_s;

@@ -80,8 +80,8 @@ void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
     }
 }
 
-bool Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides, int columns,
-                                double tolerance, int limit) const {
+std::optional<int> Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides,
+                                              int columns, double tolerance, int limit) const {
     const SymmetricPattern& pattern = state_->pattern;
     const auto n = static_cast<std::size_t>(pattern.size());
     const auto column = [n](std::span<double> all, int c) { return all.subspan(static_cast<std::size_t>(c) * n, n); };
@@ -112,7 +112,8 @@ bool Cholesky::solve_and_refine(std::span<const double> values, std::span<double
             for (std::size_t i = 0; i < n; ++i) direction[c * n + i] = product[c * n + i] + keep * direction[c * n + i];
             left[c] = now;
         }
-        if (enough || iteration == limit) return enough;
+        if (enough) return iteration;
+        if (iteration == limit) return std::nullopt;
     }
 }
 

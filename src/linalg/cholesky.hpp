@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "linalg/analysis.hpp"
@@ -38,9 +39,11 @@ public:
     void solve(std::span<double> right_hand_sides, int columns) const;
 
     /// Likewise, by conjugate gradients with the factor as preconditioner, until the error, in the norm of the matrix,
-    /// is about `tolerance` of the solution; `values` are those of the factor. False if `limit` iterations leave more.
-    [[nodiscard]] bool solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides, int columns,
-                                        double tolerance, int limit) const;
+    /// is about `tolerance` of the solution; `values` are those of the factor. How many it took beyond the first, or
+    /// nothing if `limit` leave more.
+    [[nodiscard]] std::optional<int> solve_and_refine(std::span<const double> values,
+                                                      std::span<double> right_hand_sides, int columns, double tolerance,
+                                                      int limit) const;
 
     /// Entries of the factor, as analysed: a measure of memory.
     [[nodiscard]] double factor_entries() const;

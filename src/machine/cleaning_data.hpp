@@ -16,6 +16,7 @@ struct CleaningTest {
     std::array<double, 4> removed;  ///< cone, scaffold, cylinder, pyramids
     double printed_pyramids = 0;    ///< what the thesis' table says for the pyramids; 0: the same
 
+    [[nodiscard]] double pyramids() const { return removed[3]; }
     [[nodiscard]] double mean() const { return (removed[0] + removed[1] + removed[2] + removed[3]) / 4; }
 };
 

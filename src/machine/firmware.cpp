@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "machine/gcode.hpp"
+#include "machine/switches.hpp"
+
 namespace pliant::machine {
 namespace {
 
@@ -20,13 +23,12 @@ struct Slot {
     const AxisSpec* axis = nullptr;
 };
 
-/// Where a motor is plugged in, with the pins of that socket, and a free switch input.
+/// Where a motor is plugged in, with the pins of that socket.
 struct Socket {
     std::string_view name;
     int step, dir, enable;
 };
 constexpr std::array<Socket, 2> free_sockets = {Socket{"E0", 26, 28, 24}, Socket{"E1", 36, 34, 30}};
-constexpr std::array<int, 2> free_switches = {2, 15};  // X_MAX and Y_MAX
 
 std::string number(double value) {
     std::string text = fmt::format("{:.4f}", value);
@@ -94,9 +96,30 @@ private:
     std::vector<FirmwareSetting> settings_;
 };
 
+/// M106 P2: the output that would heat a hotend is free without one.
+void add_third_output(List& list, const Printer& printer) {
+    std::vector<Switch> devices = printer.fans;
+    devices.push_back(printer.pump);
+    for (const Switch& device : devices) {
+        const auto command = parse_command(device.on);
+        if (command && command->is('M', 106) && command->value('P') == 2.0)
+            return list.add("FAN2_PIN", "10", fmt::format("{}: D10, free without an extruder", device.on));
+    }
+}
+
+/// The relay that M112 drops: what Marlin calls the switch of a power supply.
+void add_emergency_line(List& list, const Printer& printer) {
+    if (printer.emergency_line.signal != EmergencyLine::Signal::controller) return;
+    list.add("PSU_CONTROL", "on", "the emergency line: a relay that holds the power of motors, pump, fans and lamp");
+    list.add("PS_ON_PIN", std::to_string(printer.emergency_line.pin), "as emergency_line.pin");
+    list.add("PSU_ACTIVE_STATE", "HIGH", "the relay is held while all is well, and falls when M112 kills the firmware");
+    list.add("PSU_DEFAULT_OFF", "off", "power as soon as the firmware runs; no program may send M80 or M81");
+}
+
 void add_board(List& list, const Printer& printer) {
     list.add("MOTHERBOARD", "BOARD_RAMPS_14_EFF",
              "RAMPS 1.4 whose outputs D9 and D8 are fans: M106 P0 switches the fans on D9, M106 P1 the pump on D8");
+    add_third_output(list, printer);
     list.add("SERIAL_PORT", "0", "the USB socket of the Mega 2560");
     list.add("BAUDRATE", std::to_string(printer.controller.baud_rate), "as controller.baud_rate");
     list.add("CUSTOM_MACHINE_NAME", fmt::format("\"{}\"", printer.name), "what M115 answers as MACHINE_TYPE");
@@ -160,24 +183,76 @@ void add_motors(List& list, const std::vector<Slot>& slots) {
     }
 }
 
-void add_switches(List& list, const std::vector<Slot>& slots) {
+/// A switch input of the board by the name that M119 has for it, and its pin.
+struct Input {
+    std::string_view name;
+    int pin;
+};
+constexpr std::array<Input, 2> free_inputs = {Input{"x_max", 2}, Input{"y_max", 15}};
+
+/// Inputs that no extra axis may take: a limit switch or the door is on them.
+bool is_taken(const Printer& printer, std::string_view input) {
+    if (printer.door.input == input) return true;
+    const auto switches = switches_of(printer);
+    return std::any_of(switches.begin(), switches.end(),
+                       [&](const LimitSwitch& s) { return switch_names(printer, s).front() == input; });
+}
+
+void add_plug(List& list, std::string_view id, bool at_max, bool inverted, const std::string& reason = "") {
+    const std::string_view end = at_max ? "MAX" : "MIN";
+    list.add(fmt::format("USE_{}{}_PLUG", id, end), "on", reason);
+    list.add(fmt::format("{}_{}_ENDSTOP_INVERTING", id, end), inverted ? "true" : "false",
+             inverted ? "inverted = true: a normally open switch" : "");
+}
+
+std::string upper(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    return result;
+}
+
+void add_door(List& list, const DoorSwitch& door) {
+    if (!door.present()) return;
+    const std::string id = upper(door.input.substr(0, 1));
+    if (door.input.ends_with("_min") || door.input.ends_with("_max"))
+        return add_plug(list, id, door.input.ends_with("_max"), door.inverted,
+                        fmt::format("the door: M119 calls its switch {}", door.input));
+    list.add(door.input == "filament" ? "FIL_RUNOUT_STATE" : "Z_MIN_PROBE_ENDSTOP_INVERTING",
+             door.input == "filament" ? (door.inverted ? "LOW" : "HIGH") : (door.inverted ? "true" : "false"),
+             fmt::format("the door is on the input {}: enable it as your board needs", door.input));
+}
+
+Status add_switches(List& list, const std::vector<Slot>& slots, const Printer& printer) {
     list.add("ENDSTOPPULLUPS", "on", "normally closed switches to ground: a broken wire reads as pressed, and stops");
-    std::size_t used = 0;
+    const auto switches = switches_of(printer);
+    auto input = free_inputs.begin();
     for (const Slot& slot : slots) {
         const bool to_max = slot.axis != nullptr && slot.axis->homes_to_max;
         const std::string_view end = to_max ? "MAX" : "MIN";
         list.add(fmt::format("{}_HOME_DIR", slot.id), to_max ? "1" : "-1",
                  slot.axis == nullptr ? "never homed" : fmt::format("home = \"{}\"", to_max ? "max" : "min"));
-        list.add(fmt::format("USE_{}{}_PLUG", slot.id, end), "on");
-        if (to_max) list.add(fmt::format("USE_{}MIN_PLUG", slot.id), "off");
-        list.add(fmt::format("{}_{}_ENDSTOP_INVERTING", slot.id, end), "false");
-        if (slot.id >= "I" && slot.id <= "K" && used < free_switches.size()) {
-            list.add(fmt::format("{}_{}_PIN", slot.id, end), std::to_string(free_switches[used]),
-                     used == 0 ? "the input X_MAX, which X leaves free" : "the input Y_MAX, which Y leaves free");
-            ++used;
+        bool inverted = false, far = false, far_inverted = false;
+        for (const LimitSwitch& s : switches) {
+            if (&printer.axis(s.axis) != slot.axis) continue;
+            (s.at_max == to_max ? inverted : far_inverted) = s.inverted;
+            far = far || s.at_max != to_max;
         }
+        add_plug(list, slot.id, to_max, inverted);
+        if (far) add_plug(list, slot.id, !to_max, far_inverted, "the switch at the other end");
+        if (to_max && !far) list.add(fmt::format("USE_{}MIN_PLUG", slot.id), "off");
+        if (slot.id < "I" || slot.id > "K") continue;
+        while (input != free_inputs.end() && is_taken(printer, input->name)) ++input;
+        if (input == free_inputs.end() || far)
+            return input_error("letter {}: RAMPS 1.4 has no free input for its limit switch",
+                               slot.axis == nullptr ? '?' : slot.axis->letter);
+        list.add(
+            fmt::format("{}_{}_PIN", slot.id, end), std::to_string(input->pin),
+            fmt::format("the input {}, which {} leaves free", upper(input->name), upper(input->name.substr(0, 1))));
+        ++input;
     }
+    add_door(list, printer.door);
     list.add("VALIDATE_HOMING_ENDSTOPS", "on", "homing that ends without its switch is an error");
+    return {};
 }
 
 void add_travel(List& list, const std::vector<Slot>& slots) {
@@ -305,10 +380,7 @@ void read_line(std::string_view line, BoardReport& board) {
         if (const auto s = words.find('S'); s != words.end()) board.busy_every_s = s->second;
         return;
     }
-    const std::size_t colon = line.find(':');
-    const std::string name = lower(line.substr(0, colon));
-    if (colon != std::string_view::npos && (name.ends_with("_min") || name.ends_with("_max")))
-        board.switches.push_back(name);
+    if (const auto reading = parse_switch(line)) board.switches.push_back(reading->name);
 }
 
 class Board {
@@ -328,6 +400,9 @@ public:
         for (const Axis axis : all_axes) {
             if (printer_.axis(axis).present()) check_axis(axis, printer_.axis(axis));
         }
+        for (const LimitSwitch& s : switches_of(printer_)) check_switch(s);
+        if (printer_.door.present() && !names_one({printer_.door.input}))
+            problems_.push_back(fmt::format("M119: no {}: the door's switch is there", printer_.door.input));
         return std::move(problems_);
     }
 
@@ -349,7 +424,6 @@ private:
         if (axis.drive.known()) compare("M92", "steps a mm", which, axis.drive.steps_per_mm(), 1e-3);
         compare("M203", "mm/s", which, axis.speed_mm_s, 1e-2);
         compare("M201", "mm/s^2", which, axis.acceleration_mm_s2, 1e-2);
-        if (!axis.homes_by_hand) check_switch(which, axis);
     }
 
     void compare(const std::string& code, std::string_view unit, Axis which, double wanted, double tolerance) {
@@ -370,21 +444,18 @@ private:
         }
     }
 
-    /// Marlin calls the switches of its extra axes by their letter or by their own name.
-    void check_switch(Axis which, const AxisSpec& axis) {
-        const auto slots = marlin_axes(printer_);
-        std::vector<std::string> names = {std::string(1, axis.letter)};
-        if (slots) {
-            for (const Slot& slot : *slots) {
-                if (slot.axis != nullptr && slot.axis->letter == axis.letter) names.emplace_back(slot.id);
-            }
-        }
-        for (const std::string& name : names) {
-            const std::string wanted = lower(name) + (axis.homes_to_max ? "_max" : "_min");
-            if (std::find(board_.switches.begin(), board_.switches.end(), wanted) != board_.switches.end()) return;
-        }
-        problems_.push_back(fmt::format("M119: no {}_{}: the {} homes there", lower(names[0]),
-                                        axis.homes_to_max ? "max" : "min", axis_name(which)));
+    [[nodiscard]] bool names_one(const std::vector<std::string>& names) const {
+        return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+            return std::find(board_.switches.begin(), board_.switches.end(), name) != board_.switches.end();
+        });
+    }
+
+    void check_switch(const LimitSwitch& s) {
+        const std::vector<std::string> names = switch_names(printer_, s);
+        if (names_one(names)) return;
+        const bool home = printer_.axis(s.axis).homes_to_max == s.at_max;
+        problems_.push_back(fmt::format("M119: no {}: the {} {}", names.front(), axis_name(s.axis),
+                                        home ? "homes there" : "has a limit switch there"));
     }
 
     const BoardReport& board_;
@@ -406,7 +477,8 @@ Result<std::vector<FirmwareSetting>> firmware_settings(const Printer& printer) {
     add_wire(list, printer);
     add_idle(list);
     add_motors(list, *slots);
-    add_switches(list, *slots);
+    if (Status status = add_switches(list, *slots, printer); !status) return tl::unexpected(status.error());
+    add_emergency_line(list, printer);
     add_travel(list, *slots);
     add_motion(list, *slots);
     return list.take();

@@ -41,6 +41,8 @@ Status Followed::command(const Printer& printer, const Command& c) {
     if (c.is('G', 91)) return input_error("G91: relative moves do not survive a repeated line");
     if (c.is('G', 4)) seconds += c.value('P').value_or(0) / 1000 + c.value('S').value_or(0);
     if ((c.is('M', 84) || c.is('M', 18)) && !c.has('S')) lock.stopped_at(lock.position());
+    if (moves_emergency_line(printer, c))
+        return input_error("M42 P{}: that pin is the emergency line", printer.emergency_line.pin);
     if (const auto on = switched(printer.pump, c)) return lock.pump(*on);
     return {};
 }

@@ -166,6 +166,12 @@ std::optional<bool> switched(const Switch& device, const Command& command) {
     return pin->on == own->on;
 }
 
+bool moves_emergency_line(const Printer& printer, const Command& command) {
+    const EmergencyLine& line = printer.emergency_line;
+    return line.signal == EmergencyLine::Signal::controller && command.is('M', 42) &&
+           command.value('P') == static_cast<double>(line.pin);
+}
+
 std::string write_dwell(double seconds) {
     return fmt::format("G4 P{:.0f}", seconds * 1000);
 }

@@ -57,6 +57,8 @@ struct Command {
 /// Whether `command` switches the device of that pin, and to what. Any way of saying so counts: M107 P1 and M106 P1 S0
 /// are the same.
 [[nodiscard]] std::optional<bool> switched(const Switch& device, const Command& command);
+/// Whether `command` writes to the board's pin of the emergency line: only the firmware may.
+[[nodiscard]] bool moves_emergency_line(const Printer& printer, const Command& command);
 [[nodiscard]] std::string write_dwell(double seconds);
 
 /// The target of a G0 or G1, axes that it does not name as in `from`. Fails for letters that are no axis.

@@ -37,6 +37,11 @@ Result<Interlock> Interlock::restored(const Printer& printer, const State& state
     return lock;
 }
 
+bool Interlock::all_homed() const {
+    return std::all_of(all_axes.begin(), all_axes.end(),
+                       [&](Axis axis) { return !printer_->axis(axis).present() || homed(axis); });
+}
+
 bool Interlock::in_print_window(int carriage_um) const {
     const Carriage& c = printer_->carriage;
     return carriage_um >= c.print_um && carriage_um <= c.print_um + c.shear_um;

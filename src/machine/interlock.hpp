@@ -57,6 +57,8 @@ public:
 
     [[nodiscard]] const Position& position() const { return position_; }
     [[nodiscard]] bool homed(Axis axis) const { return homed_[static_cast<std::size_t>(axis)]; }
+    /// Whether every axis that the machine has is homed.
+    [[nodiscard]] bool all_homed() const;
     /// Index into Printer::vats of the vat on the hooks; without a tower, of the vat that stands under the platform.
     [[nodiscard]] std::optional<int> hooked_vat() const;
     /// Whether what the vat in use would be lit through, or the drain for what is sprayed, is under the platform.

@@ -30,6 +30,11 @@ std::string_view method_name(CleaningMethod method) {
     return names[static_cast<std::size_t>(method)];
 }
 
+std::string_view signal_name(EmergencyLine::Signal signal) {
+    constexpr std::string_view names[] = {"none", "controller", "dtr", "rts", "file"};
+    return names[static_cast<std::size_t>(signal)];
+}
+
 int Printer::slot_count() const {
     const int stations = static_cast<int>(table.stations_um.size());
     switch (store()) {

@@ -173,7 +173,7 @@ struct Cleaning {
     double spray_s = 0;                    ///< duration, whatever the method
     int stroke_x_um = 0, stroke_z_um = 0;  ///< oscillation of the carriage and of the platform
     double speed_mm_s = 0;                 ///< of the carriage (with a table: of the platform) while it oscillates
-    double dry_s = 0;                      ///< fans after the new vat is in; 0: only while it is pulled in
+    double dry_s = 0;                      ///< all fans after the new vat is in; 0: only while it is pulled in
     bool brush = false;                    ///< wipes the part while the vat is pushed away
     int film_um = 0;                       ///< thickness of the resin that clings to the part's cross-section
     double solvent_ml_s = 0;               ///< solution that a second of cleaning takes
@@ -185,6 +185,39 @@ struct Cleaning {
 struct Switch {
     std::string on, off;
 };
+
+/// A switch at the end of an axis' travel. The controller reads it; its M119 says TRIGGERED while it is pressed.
+struct LimitSwitch {
+    Axis axis = Axis::platform;
+    bool at_max = false;    ///< at the upper end of the travel
+    bool inverted = false;  ///< normally open: the firmware must turn its reading round
+};
+
+/// A switch that is pressed while the door (lid, hood) is open, on a free switch input of the controller.
+struct DoorSwitch {
+    std::string input;  ///< as M119 names it: "y_max"; "": the machine has none
+    bool inverted = false;
+
+    [[nodiscard]] bool present() const { return !input.empty(); }
+};
+
+/// How the host stops the machine without its controller's help.
+struct EmergencyLine {
+    enum class Signal {
+        none,
+        controller,  ///< a relay on a pin of the board, which the firmware drops when it is killed (M112)
+        dtr,         ///< a control line of a serial port of its own, up while all is well, dropped to stop
+        rts,
+        file,  ///< a file that switches a pin of the computer, such as that of a GPIO
+    };
+    Signal signal = Signal::none;
+    std::string device;     ///< port or file
+    int pin = 0;            ///< of the board
+    bool stop_high = true;  ///< of the file: "1" stops, "0" lets run; or the other way round
+};
+
+/// "none", "controller", "dtr", "rts", "file".
+[[nodiscard]] std::string_view signal_name(EmergencyLine::Signal signal);
 
 /// What no program may ask for, whatever the job says.
 struct Limits {
@@ -210,7 +243,11 @@ struct Printer {
     std::vector<Resin> resins;
     Projector projector;
     Cleaning cleaning;
-    Switch pump, fans;
+    Switch pump;
+    std::vector<Switch> fans;
+    std::vector<LimitSwitch> limit_switches;  ///< empty: not listed; each axis has one where it homes
+    DoorSwitch door;
+    EmergencyLine emergency_line;
     Limits limits;
 
     [[nodiscard]] const AxisSpec& axis(Axis a) const { return axes[static_cast<std::size_t>(a)]; }

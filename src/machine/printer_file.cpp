@@ -8,6 +8,7 @@
 #include "core/config.hpp"
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
+#include "machine/switches.hpp"
 
 namespace pliant::machine {
 namespace {
@@ -373,6 +374,82 @@ Switch read_switch(Reader r) {
     return s;
 }
 
+std::string command_key(const Switch& s) {
+    const auto parsed = parse_command(s.on);
+    return parsed ? fmt::format("{}{}", parsed->number == 42 ? "pin " : "fan ", parsed->value('P').value_or(0)) : s.on;
+}
+
+/// [[fan]], one table each; [fans] is the older form of a single one.
+void read_fans(Reader& root, Printer& p) {
+    if (root.has("fans") && root.has("fan")) root.problem("fans", "is the older form of [[fan]]; keep one of them");
+    const Switch single = read_switch(root.table("fans", false));
+    if (!single.on.empty()) p.fans.push_back(single);
+    if (!root.has("fan")) return;
+    for (Reader& r : root.tables("fan")) {
+        Switch fan = read_switch(r);
+        const auto same = [&](const Switch& other) { return command_key(other) == command_key(fan); };
+        if (fan.on.empty())
+            root.problem("fan", "needs \"on\" and \"off\"");
+        else if (std::any_of(p.fans.begin(), p.fans.end(), same) || (!p.pump.on.empty() && same(p.pump)))
+            root.problem("fan", fmt::format("\"{}\" is the output of another fan or of the pump", fan.on));
+        else
+            p.fans.push_back(std::move(fan));
+    }
+}
+
+LimitSwitch read_limit_switch(Reader& r, const Printer& p) {
+    const std::string axis = r.choice("axis", {"carriage", "platform", "tower", "table"});
+    LimitSwitch s;
+    for (const Axis a : all_axes) {
+        if (axis_name(a) == axis) s.axis = a;
+    }
+    s.at_max = r.choice("end", {"min", "max"}) == "max";
+    s.inverted = r.boolean("inverted", false);
+    if (r.has("axis") && !p.axis(s.axis).present()) r.problem("axis", fmt::format("the machine has no {}", axis));
+    for (const LimitSwitch& other : p.limit_switches) {
+        if (other.axis == s.axis && other.at_max == s.at_max) r.problem("end", "stands twice for this axis");
+    }
+    r.finish();
+    return s;
+}
+
+void read_limit_switches(Reader& root, Printer& p) {
+    if (!root.has("limit_switch")) return;
+    for (Reader& r : root.tables("limit_switch")) p.limit_switches.push_back(read_limit_switch(r, p));
+}
+
+DoorSwitch read_door(Reader r, const Printer& p) {
+    DoorSwitch door;
+    door.input = r.choice("input", {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "z_probe", "filament"});
+    door.inverted = r.boolean("inverted", false);
+    for (const LimitSwitch& s : switches_of(p)) {
+        const auto names = switch_names(p, s);
+        if (std::find(names.begin(), names.end(), door.input) != names.end())
+            r.problem("input", fmt::format("{} is the limit switch of the {}", door.input, axis_name(s.axis)));
+    }
+    r.finish();
+    return door;
+}
+
+EmergencyLine read_emergency_line(Reader r) {
+    using Signal = EmergencyLine::Signal;
+    constexpr int last_pin = 69;  // of a Mega 2560
+    EmergencyLine line;
+    const std::string signal = r.choice("signal", {"controller", "dtr", "rts", "file"});
+    for (const Signal s : {Signal::controller, Signal::dtr, Signal::rts, Signal::file}) {
+        if (signal_name(s) == signal) line.signal = s;
+    }
+    if (line.signal == Signal::controller) {
+        line.pin = whole(r, "pin", 0, last_pin);
+    } else {
+        line.device = r.text("device");
+        if (r.has("device") && line.device.empty()) r.problem("device", "must name a serial port or a file");
+    }
+    if (line.signal == Signal::file) line.stop_high = r.choice("stop", {"high", "low"}, "high") == "high";
+    r.finish();
+    return line;
+}
+
 /// Which axes there are follows from where the vats are kept.
 void read_axes(Reader r, Printer& printer, bool has_tower, bool has_table) {
     for (const Axis axis : all_axes) {
@@ -451,6 +528,21 @@ void check_geometry(Reader& root, const Printer& p) {
     }
 }
 
+/// A list of limit switches must be whole: an axis without the one that it homes to would run into its end.
+void check_limit_switches(Reader& root, const Printer& p) {
+    if (p.limit_switches.empty()) return;
+    for (const Axis axis : all_axes) {
+        const AxisSpec& spec = p.axis(axis);
+        if (!spec.present() || spec.homes_by_hand) continue;
+        const bool listed = std::any_of(p.limit_switches.begin(), p.limit_switches.end(), [&](const LimitSwitch& s) {
+            return s.axis == axis && s.at_max == spec.homes_to_max;
+        });
+        if (!listed)
+            root.problem("limit_switch", fmt::format("the {} homes to a switch at its {} that is not listed",
+                                                     axis_name(axis), spec.homes_to_max ? "max" : "min"));
+    }
+}
+
 /// Resins that a cleaning pair names must be known, or a slip would go unnoticed.
 void check_pairs(Reader& root, const Printer& p) {
     for (const CleaningPair& pair : p.cleaning.pairs) {
@@ -491,7 +583,10 @@ Printer read_printer(Reader& root) {
     p.projector = read_projector(root.table("projector"));
     p.cleaning = read_cleaning(root.table("cleaning", p.store() != Store::none), p.store());
     p.pump = read_switch(root.table("pump", false));
-    p.fans = read_switch(root.table("fans", false));
+    read_fans(root, p);
+    read_limit_switches(root, p);
+    if (root.has("door")) p.door = read_door(root.table("door"), p);
+    if (root.has("emergency_line")) p.emergency_line = read_emergency_line(root.table("emergency_line"));
     p.limits = read_limits(root.table("limits", false));
     root.finish();
     return p;
@@ -505,6 +600,7 @@ Result<Printer> from_document(const config::Document& document) {
         check_stations(root, printer);
         check_geometry(root, printer);
         check_pairs(root, printer);
+        check_limit_switches(root, printer);
     }
     if (auto status = problems.status(); !status) return tl::unexpected(status.error());
     return printer;

@@ -1,9 +1,9 @@
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "job/png.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/picture_projector.hpp"
@@ -11,23 +11,10 @@
 using namespace pliant;
 using namespace pliant::operate;
 
-namespace {
-
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "pliant_operate_XXXXXX").string();
-        path = ::mkdtemp(name.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-};
-
-}  // namespace
-
 TEST_CASE("a folder shows the picture as long as there is light") {
-    const Folder folder;
+    const pliant::test::Folder folder;
     {
-        PictureProjector projector(folder.path);
+        PictureProjector projector(folder.path());
         REQUIRE(projector.black());
         REQUIRE(projector.show({2, 1, {0, 200}}));
         const auto image = job::decode_png(read_file(projector.shown()).value(), {2, 1}, "shown").value();
@@ -36,14 +23,14 @@ TEST_CASE("a folder shows the picture as long as there is light") {
         CHECK_FALSE(std::filesystem::exists(projector.shown()));
         REQUIRE(projector.show({2, 1, {0, 200}}));
     }
-    CHECK(std::filesystem::is_empty(folder.path));
-    PictureProjector nowhere(folder.path / "none");
+    CHECK(std::filesystem::is_empty(folder.path()));
+    PictureProjector nowhere(folder.path() / "none");
     CHECK_FALSE(nowhere.show({2, 1, {0, 200}}));
 }
 
 TEST_CASE("the command after a layer knows the layer; one that fails or hangs is reported") {
-    const Folder folder;
-    const std::string file = (folder.path / "layer").string();
+    const pliant::test::Folder folder;
+    const std::string file = (folder.path() / "layer").string();
     CHECK(run_layer_command("echo -n $PLIANT_LAYER > " + file, 12));
     CHECK(read_file(file).value() == "12");
     CHECK_FALSE(run_layer_command("exit 3", 0));

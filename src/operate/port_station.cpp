@@ -29,6 +29,13 @@ Result<std::unique_ptr<host::Projector>> open_projector(const PortOptions& optio
     return std::make_unique<PictureProjector>(options.projector);
 }
 
+/// That of the options, or of the printer file.
+Result<std::unique_ptr<host::EmergencyLine>> open_emergency_line(const PortOptions& options,
+                                                                 const machine::Printer& printer) {
+    if (options.emergency_line.empty()) return host::open_emergency_line(printer.emergency_line);
+    return host::parse_emergency_line(options.emergency_line).and_then(host::open_emergency_line);
+}
+
 }  // namespace
 
 PortStation::PortStation(PortOptions options, std::optional<ClockFile> file)
@@ -56,6 +63,9 @@ Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, Read
                              o.speed, station->file_ ? &*station->file_ : nullptr});
     if (!guard) return tl::unexpected(guard.error());
     station->guard_.emplace(std::move(*guard));
+    auto line = open_emergency_line(o, ready.printer);
+    if (!line) return tl::unexpected(line.error());
+    station->emergency_line_ = std::move(*line);
     auto projector = open_projector(o, ready.printer);
     if (!projector) return tl::unexpected(projector.error());
     station->projector_ = std::move(*projector);
@@ -67,12 +77,14 @@ Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, Read
 }
 
 host::ControlSetup PortStation::setup(const machine::Printer& printer) {
-    return port_setup(options_.device, options_.speed, printer, *projector_, clock(), &*guard_);
+    host::ControlSetup setup = port_setup(options_.device, options_.speed, printer, *projector_, clock(), &*guard_);
+    setup.emergency_line = emergency_line_.get();
+    return setup;
 }
 
 host::ControlSetup port_setup(const std::string& device, double speed, const machine::Printer& printer,
                               host::Projector& projector, host::Clock& clock, host::Guard* guard) {
-    host::ControlSetup setup{printer, {}, projector, clock, programs_of(printer), {}, {}, {}, guard};
+    host::ControlSetup setup{printer, {}, projector, clock, programs_of(printer), {}, nullptr, {}, guard};
     setup.open_wire = [device, baud = printer.controller.baud_rate, speed]() -> Result<std::unique_ptr<host::Wire>> {
         auto wire = host::SerialWire::open(device, baud);
         if (!wire) return tl::unexpected(wire.error());

@@ -1,5 +1,5 @@
-// The machine at a serial port, with all that a print on it needs: wire, projector, clock, and a guard that outlives
-// the host. Whoever prints, the command line or a page, does it with this.
+// The machine at a serial port, with all that a print on it needs: wire, projector, clock, emergency line, and a guard
+// that outlives the host. Whoever prints, the command line or a page, does it with this.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "host/control_types.hpp"
+#include "host/emergency_line.hpp"
 #include "host/image_ahead.hpp"
 #include "host/scaled_time.hpp"
 #include "host/steady_clock.hpp"
@@ -23,13 +24,14 @@ struct PortOptions {
     std::string projector;             ///< number of a display, or a folder
     double speed = 1;                  ///< seconds of the machine in one of the wall: above 1 for virtual printers only
     std::filesystem::path clock_file;  ///< of a virtual printer; "": the wall's clock
+    std::string emergency_line;        ///< as host::parse_emergency_line() reads it; "": the printer file's
 };
 
 class PortStation {
 public:
     /// Opens the projector (dark) and starts the guard beside the job's journal; the port itself is opened by the
     /// control. The images of `ready` are decoded ahead from now on: the station must outlive the control. Errors: a
-    /// speed out of range, no such projector, no such clock.
+    /// speed out of range, no such projector, no such clock, an emergency line that cannot be pulled.
     [[nodiscard]] static Result<std::unique_ptr<PortStation>> open(PortOptions options, ReadyJob& ready);
     PortStation(const PortStation&) = delete;
     PortStation& operator=(const PortStation&) = delete;
@@ -45,6 +47,7 @@ private:
     host::SteadyClock steady_;
     host::ScaledClock scaled_;
     std::optional<ProcessGuard> guard_;
+    std::unique_ptr<host::EmergencyLine> emergency_line_;  ///< null: none
     std::unique_ptr<host::Projector> projector_;
     std::unique_ptr<host::ImageAhead> ahead_;
 };

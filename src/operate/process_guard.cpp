@@ -19,8 +19,17 @@
 namespace pliant::operate {
 namespace {
 
-constexpr long it_is_dark = 0;
-constexpr long farewell = -1;
+struct Message {
+    GuardWord word = GuardWord::farewell;
+    long light = 0;
+};
+
+/// The last light that the guard has heard of.
+struct LastLight {
+    long number = 0;  ///< 0: none yet
+    GuardWord word = GuardWord::dark;
+    double dark_at_s = 0;
+};
 
 std::string boot_name() {
     std::ifstream file("/proc/sys/kernel/random/boot_id");
@@ -35,12 +44,20 @@ double monotonic_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// What the guard does when the host has died with a light on. The picture goes first.
-void make_dark(const ProcessGuard::Options& options, const std::string& boot, long light) {
-    if (!options.shown.empty()) ::unlink(options.shown.c_str());
+double now_of(const ProcessGuard::Options& options) {
+    return options.clock != nullptr ? options.clock->now() : monotonic_s() * options.clock_speed;
+}
+
+/// What the guard does when the host has died. The picture goes first.
+void host_died(const ProcessGuard::Options& options, const std::string& boot, const LastLight& last) {
+    double dark_at_s = last.word == GuardWord::dark ? last.dark_at_s : host::Guard::never_lit;
+    if (last.word == GuardWord::lit) {
+        if (!options.shown.empty()) ::unlink(options.shown.c_str());
+        dark_at_s = now_of(options);
+    }
+    if (last.number == 0) return;
     std::array<char, 160> line{};
-    const double now_s = options.clock != nullptr ? options.clock->now() : monotonic_s() * options.clock_speed;
-    const int length = std::snprintf(line.data(), line.size(), "%s %ld %.6f\n", boot.c_str(), light, now_s);
+    const int length = std::snprintf(line.data(), line.size(), "%s %ld %.6f\n", boot.c_str(), last.number, dark_at_s);
     const int file = ::open(options.witness.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) return;
     if (::write(file, line.data(), static_cast<std::size_t>(length)) == length) ::fsync(file);
@@ -57,16 +74,20 @@ void close_all_but(int kept) {
 [[noreturn]] void stand_guard(int pipe, const ProcessGuard::Options& options, const std::string& boot) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
     ::setsid();
-    long light = it_is_dark;
+    LastLight last;
     for (;;) {
-        long message = it_is_dark;
+        Message message;
         const ssize_t got = ::read(pipe, &message, sizeof message);
         if (got < 0 && errno == EINTR) continue;
         if (got != sizeof message) break;
-        if (message == farewell) ::_exit(0);
-        light = message;
+        if (message.word == GuardWord::farewell) ::_exit(0);
+        last.word = message.word;
+        if (message.word == GuardWord::dark)
+            last.dark_at_s = now_of(options);
+        else
+            last.number = message.light;
     }
-    if (light != it_is_dark) make_dark(options, boot, light);
+    host_died(options, boot, last);
     ::_exit(0);
 }
 
@@ -93,25 +114,30 @@ ProcessGuard::ProcessGuard(ProcessGuard&& other) noexcept
 
 ProcessGuard::~ProcessGuard() {
     if (pipe_ < 0) return;
-    tell(farewell);
+    tell(GuardWord::farewell);
     ::close(pipe_);
     ::waitpid(process_, nullptr, 0);
 }
 
 /// Short enough to arrive whole or not at all.
-void ProcessGuard::tell(long message) const {
+void ProcessGuard::tell(GuardWord word, long light) const {
+    const Message message{word, light};
     ssize_t put = 0;
     do {
         put = ::write(pipe_, &message, sizeof message);
     } while (put < 0 && errno == EINTR);
 }
 
+void ProcessGuard::announced(long light) {
+    tell(GuardWord::announced, light);
+}
+
 void ProcessGuard::lit(long light) {
-    tell(light);
+    tell(GuardWord::lit, light);
 }
 
 void ProcessGuard::dark() {
-    tell(it_is_dark);
+    tell(GuardWord::dark);
 }
 
 std::optional<double> ProcessGuard::dark_at(long light) {

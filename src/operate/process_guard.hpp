@@ -1,5 +1,5 @@
 // The guard as a process: it waits at the end of a pipe whose other end is the host's, and when that falls silent it
-// takes away the projector's picture and writes down when.
+// takes away the projector's picture and writes down until when the last light was on.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,9 @@
 #include "host/guard.hpp"
 
 namespace pliant::operate {
+
+/// What a host tells its guard.
+enum class GuardWord : long { announced, lit, dark, farewell };
 
 class ProcessGuard final : public host::Guard {
 public:
@@ -25,6 +28,7 @@ public:
     ProcessGuard& operator=(ProcessGuard&&) = delete;
     ~ProcessGuard() override;  ///< the process ends in peace
 
+    void announced(long light) override;
     void lit(long light) override;
     void dark() override;
     [[nodiscard]] std::optional<double> dark_at(long light) override;
@@ -32,7 +36,7 @@ public:
 private:
     ProcessGuard(int pipe, int process, Options options)
         : pipe_(pipe), process_(process), options_(std::move(options)) {}
-    void tell(long message) const;
+    void tell(GuardWord word, long light = 0) const;
 
     int pipe_ = -1;
     int process_ = -1;

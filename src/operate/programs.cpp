@@ -19,6 +19,12 @@ host::Programs programs_of(const machine::Printer& printer) {
     programs.pause_end = [p](const Interlock& before) -> Result<std::string> {
         return plan::pause_program(before, *p).end;
     };
+    programs.hold_begin = [p](const Interlock& state) -> Result<std::string> {
+        return plan::hold_program(state, *p).begin;
+    };
+    programs.hold_end = [p](const Interlock& before) -> Result<std::string> {
+        return plan::hold_program(before, *p).end;
+    };
     programs.bring_vat = [p](const Interlock& state, int slot) { return plan::vat_program(state, *p, slot); };
     programs.clean = [p](const Interlock& state, double seconds) { return plan::clean_program(state, *p, seconds); };
     programs.resume = [p](const host::Recovery& r) {

@@ -107,6 +107,8 @@ Status run_command(Reading& r, std::string_view line) {
     if (command->is('G', 0) || command->is('G', 1)) return run_move(r, *command);
     if (command->is('G', 28)) return run_home(r, *command);
     if (command->is('G', 92)) return run_set(r, *command);
+    if (machine::moves_emergency_line(r.printer, *command))
+        return input_error("M42 P{}: that pin is the emergency line", r.printer.emergency_line.pin);
     if (const auto pump = machine::switched(r.printer.pump, *command)) return run_pump(r, *pump);
     if (command->is('G', 90)) r.absolute = true;
     if (command->is('M', 400) || command->is('G', 4)) r.moving = false;

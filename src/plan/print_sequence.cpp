@@ -21,12 +21,11 @@ void begin(Sequence& s, const Plan& plan) {
     s.comment(fmt::format("{} on {}: {} layers, {} swaps, {}", plan.job, plan.printer, plan.layers, plan.swaps,
                           clock_text(plan.seconds.total)));
     for (const VatUse& use : plan.vats) s.comment(fmt::format("slot {}: {}", use.slot, use.resin));
-    for (const machine::Switch& device : {p.pump, p.fans}) {
-        if (!device.off.empty()) s.command(machine::write_stop(device.off));
-    }
+    if (!p.pump.off.empty()) s.command(machine::write_stop(p.pump.off));
+    for (const machine::Switch& fan : p.fans) s.command(machine::write_stop(fan.off));
     for (const std::string& line : machine::preamble(p)) s.command(line);
     s.command(p.pump.off);
-    s.command(p.fans.off);
+    for (const machine::Switch& fan : p.fans) s.command(fan.off);
     for (const Axis axis : machine::homing_order(p)) s.home(axis);
     s.fence();
 }

@@ -14,19 +14,14 @@ using machine::Interlock;
 using machine::Printer;
 using machine::Store;
 
-bool all_homed(const Interlock& state, const Printer& p) {
-    return std::all_of(machine::all_axes.begin(), machine::all_axes.end(),
-                       [&](Axis axis) { return !p.axis(axis).present() || state.homed(axis); });
-}
-
 int slot_of(const Printer& p, int vat) {
     return p.vats[static_cast<std::size_t>(vat)].slot;
 }
 
 void wake(Sequence& s) {
     for (const std::string& line : machine::preamble(s.printer())) s.command(line);
-    s.switch_to(s.printer().pump.off);
-    s.switch_to(s.printer().fans.off);
+    s.pump(false);
+    s.fans(false);
 }
 
 /// Off the vat's floor as gently as a layer is peeled, as far as it is known where that is.
@@ -92,7 +87,7 @@ void approach(Sequence& s, int z_um) {
 
 /// A sequence that stands as the machine does, the platform clear of everything.
 Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
-    if (!all_homed(state, p)) return failure("the axes must be homed first");
+    if (!state.all_homed()) return failure("the axes must be homed first");
     if (p.store() == Store::tower && state.position()[Axis::carriage] != p.carriage.print_um)
         return failure("the carriage must stand at the print position first");
     Sequence s(p);
@@ -120,7 +115,7 @@ Result<std::string> resume_program(const Interrupted& from, const Printer& print
     s.comment("on with an interrupted print: up, home");
     wake(s);
     rise(s, from.state);
-    if (all_homed(from.state, printer)) carriage_out(s, from.state);
+    if (from.state.all_homed()) carriage_out(s, from.state);
     if (Status status = home_all(s, from.state); !status) return tl::unexpected(status.error());
     const int part_um = std::max(from.state.part_height_um(), from.finished ? 0 : from.target.part_height_um());
     s.comment("the right vat, and down");

@@ -11,11 +11,6 @@ using machine::Axis;
 using machine::Interlock;
 using machine::Printer;
 
-bool all_homed(const Interlock& state, const Printer& p) {
-    return std::all_of(machine::all_axes.begin(), machine::all_axes.end(),
-                       [&](Axis axis) { return !p.axis(axis).present() || state.homed(axis); });
-}
-
 Sequence from(const Interlock& state, const Printer& p) {
     Sequence s(p);
     s.stand_at(state.position());
@@ -44,8 +39,8 @@ void empty_carriage(Sequence& s, const Interlock& state) {
 }
 
 void switch_off(Sequence& s) {
-    s.switch_to(s.printer().pump.off);
-    s.switch_to(s.printer().fans.off);
+    s.pump(false);
+    s.fans(false);
 }
 
 }  // namespace
@@ -58,9 +53,21 @@ std::string cancel_program(const Interlock& state, const Printer& printer) {
     if (!state.homed(Axis::platform)) return s.text();
     const int up_um = printer.axis(Axis::platform).home_um();
     s.move(Axis::platform, up_um);
-    if (printer.store() == machine::Store::tower && all_homed(state, printer)) empty_carriage(s, state);
+    if (printer.store() == machine::Store::tower && state.all_homed()) empty_carriage(s, state);
     s.fence();
     return s.text();
+}
+
+Pause hold_program(const Interlock& state, const Printer& printer) {
+    Sequence s = from(state, printer);
+    s.comment("held: everything off, nothing moves");
+    switch_off(s);
+    s.fence();
+    Sequence back = from(state, printer);
+    back.comment("on");
+    if (state.pump_runs()) back.pump(true);
+    back.fence();
+    return {s.text(), back.text()};
 }
 
 Pause pause_program(const Interlock& state, const Printer& printer) {
@@ -80,7 +87,7 @@ Pause pause_program(const Interlock& state, const Printer& printer) {
     if (back.position()[Axis::platform] > slow_from_um) back.move(Axis::platform, slow_from_um);
     back.move_to(before, platform.approach_speed_mm_s);
     back.fence();
-    if (state.pump_runs()) back.switch_to(printer.pump.on);
+    if (state.pump_runs()) back.pump(true);
     return {s.text(), back.text()};
 }
 

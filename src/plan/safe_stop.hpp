@@ -20,6 +20,9 @@ struct Pause {
     std::string end;    ///< the platform back to where it was, the pump on again if it ran
 };
 
+/// Everything off and nothing moves, not even the platform: the door is open.
+[[nodiscard]] Pause hold_program(const machine::Interlock& state, const machine::Printer& printer);
+
 /// The vat stays where it is.
 [[nodiscard]] Pause pause_program(const machine::Interlock& state, const machine::Printer& printer);
 

@@ -58,15 +58,9 @@ void Sequence::note(Device device, double begin_s) {
     stretches_->push_back({device, begin_s, seconds_.total});
 }
 
-void Sequence::note_switch(std::string_view line) {
-    const auto follow = [&](const machine::Switch& device, double& on_s, Device which) {
-        if (line == device.on) on_s = seconds_.total;
-        if (line != device.off || on_s < 0) return;
-        note(which, on_s);
-        on_s = -1;
-    };
-    follow(printer_->pump, pump_on_s_, Device::pump);
-    follow(printer_->fans, fans_on_s_, Device::fans);
+void Sequence::note_switch(Device device, bool on, double& on_s) {
+    if (!on && on_s >= 0) note(device, on_s);
+    on_s = on ? seconds_.total : -1;
 }
 
 void Sequence::comment(std::string_view text) {
@@ -121,11 +115,19 @@ void Sequence::fence() {
     command("M400");
 }
 
-void Sequence::switch_to(std::string_view line) {
-    if (line.empty()) return;
+void Sequence::pump(bool on) {
+    const machine::Switch& pump = printer_->pump;
+    if (pump.on.empty()) return;
     fence();
-    command(line);
-    note_switch(line);
+    command(on ? pump.on : pump.off);
+    note_switch(Device::pump, on, pump_on_s_);
+}
+
+void Sequence::fans(bool on) {
+    if (printer_->fans.empty()) return;
+    fence();
+    for (const machine::Switch& fan : printer_->fans) command(on ? fan.on : fan.off);
+    note_switch(Device::fans, on, fans_on_s_);
 }
 
 void Sequence::expose(const machine::Expose& expose) {

@@ -47,8 +47,10 @@ public:
     void move_to(const machine::Position& to, double feed_mm_s = 0);
     void dwell(double seconds);
     void fence();  ///< everything before is done
-    /// Switches behind a fence and waits again: a switch travels with the move queue otherwise.
-    void switch_to(std::string_view command);
+    /// Switches the pump behind a fence: a switch travels with the move queue otherwise.
+    void pump(bool on);
+    /// Switches all fans of the machine, in the same way.
+    void fans(bool on);
     void expose(const machine::Expose& expose);
 
     [[nodiscard]] const machine::Printer& printer() const { return *printer_; }
@@ -59,7 +61,7 @@ public:
 private:
     void spend(double seconds);
     void note(Device device, double begin_s);
-    void note_switch(std::string_view command);
+    void note_switch(Device device, bool on, double& on_s);
 
     const machine::Printer* printer_;
     bool muted_ = false;

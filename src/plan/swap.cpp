@@ -73,7 +73,7 @@ void oscillate(Sequence& s, int tower_um, double seconds) {
 }
 
 void pump_off(Sequence& s) {
-    s.switch_to(s.printer().pump.off);
+    s.pump(false);
     s.activity(Activity::swap);
 }
 
@@ -82,14 +82,14 @@ void table_to(Sequence& s, int station_um) {
     s.move(Axis::table, s.printer().nearest_um(station_um, s.position()[Axis::table]));
 }
 
-/// Fans and whatever `bring` moves, then a rest under the fans.
+/// All fans and whatever `bring` moves, then a rest under the fans.
 template <class Bring>
 void dry_while(Sequence& s, Bring bring) {
     const Printer& p = s.printer();
-    s.switch_to(p.fans.on);
+    s.fans(true);
     bring();
     s.dwell(p.cleaning.dry_s);
-    s.switch_to(p.fans.off);
+    s.fans(false);
     s.activity(Activity::move);
 }
 
@@ -102,7 +102,7 @@ void push_away(Sequence& s, int slot) {
     s.comment(p.cleaning.brush ? "1 push the vat away, the brush wipes the part" : "1 push the vat away");
     s.move(Axis::carriage, p.carriage.tower_um);
     s.comment("2 spray, lower the vat off the hooks");
-    s.switch_to(p.pump.on);
+    s.pump(true);
     s.activity(Activity::clean);
     s.move(Axis::tower, lowered_um(p, slot), p.hooks.speed_mm_s);
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
@@ -167,7 +167,7 @@ void clean_on_table(Sequence& s, double seconds) {
     s.comment("to the cleaning station, down into it");
     table_to(s, p.table.cleaning_um);
     s.move(Axis::platform, part_um + p.table.bath_gap_um);
-    s.switch_to(p.pump.on);
+    s.pump(true);
     s.activity(Activity::clean);
     if (p.cleaning.stroke_z_um > 0)
         oscillate(s, s.position()[Axis::tower], seconds);
@@ -221,7 +221,7 @@ void clean_part(Sequence& s, double seconds) {
     s.activity(Activity::swap);
     s.comment("clean the part over the drain");
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
-    s.switch_to(p.pump.on);
+    s.pump(true);
     s.activity(Activity::clean);
     oscillate(s, s.position()[Axis::tower], seconds);
     pump_off(s);

@@ -68,3 +68,18 @@ TEST_CASE("the same swap on a slower carriage takes longer: times are motions, n
     CHECK(seconds_of_swap(slow, 2) > before + 40);
     CHECK(seconds_of_swap(slow, 2) == doctest::Approx(2 * push + 15).epsilon(0.02));
 }
+
+TEST_CASE("every fan of the machine dries the part while the next vat comes, none at any other time") {
+    const machine::Printer printer = test::tower();
+    REQUIRE(printer.fans.size() == 2);
+    Sequence s = loaded(printer);
+    const std::size_t before = s.text().size();
+    swap_vat(s, 1, 2);
+    const std::string swap = s.text().substr(before);
+    const std::string on = "M106 P0 S255\nM106 P2 S255\n", off = "M107 P0\nM107 P2\n";
+    REQUIRE(swap.find(on) != std::string::npos);
+    CHECK(swap.find(on) > swap.find("M107 P1\n"));  // behind the spray
+    CHECK(swap.find("X0.000") > swap.find(on));
+    CHECK(swap.find(off) > swap.find("X0.000"));
+    CHECK(swap.rfind("M106 P0") == swap.find(on));
+}

@@ -33,7 +33,7 @@ std::vector<Device> devices_of(const machine::Printer& printer) {
         if (printer.axis(axis).present()) devices.push_back(device);
     }
     if (!printer.pump.on.empty()) devices.push_back(Device::pump);
-    if (!printer.fans.on.empty()) devices.push_back(Device::fans);
+    if (!printer.fans.empty()) devices.push_back(Device::fans);
     return devices;
 }
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/vtu_writer.hpp"
-#include "report/test_folder.hpp"
 #include "report/test_robot.hpp"
 
 using namespace pliant;
@@ -24,7 +24,7 @@ std::string between(const std::string& text, const std::string& begin, const std
 
 TEST_CASE("every step is a frame in millimetres and the collection gives its time") {
     const auto robot = test::bent_bar(3, 2);
-    const test::Folder folder("frames");
+    const pliant::test::Folder folder("frames");
     Progress progress;
     REQUIRE(write_frames(folder.path(), robot.simulation(), progress).has_value());
     const auto collection = read_file(folder.path() / "frames.pvd");
@@ -54,7 +54,7 @@ TEST_CASE("contact pressure is written at the points where there is any") {
     s.contact_pressure_Pa = [&](const sim::Step& step) {
         return std::vector<double>(robot.mesh.points.size(), 1e3 * step.index);
     };
-    const test::Folder folder("frames_contact");
+    const pliant::test::Folder folder("frames_contact");
     Progress progress;
     REQUIRE(write_frames(folder.path(), s, progress).has_value());
     const auto frame = read_file(folder.path() / "frames/frame_0001.vtu");
@@ -66,7 +66,7 @@ TEST_CASE("cancelling stops the frames") {
     struct Stop : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } stop;
-    const test::Folder folder("frames_cancelled");
+    const pliant::test::Folder folder("frames_cancelled");
     const auto status = write_frames(folder.path(), test::bent_bar(3, 1).simulation(), stop);
     REQUIRE_FALSE(status.has_value());
     CHECK(status.error().cause == Cause::cancelled);

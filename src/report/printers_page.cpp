@@ -147,12 +147,15 @@ Result<std::string> growth_plot(const std::vector<Printer>& printers) {
     return fmt::format("<img alt=\"swap time over vats\" src=\"data:image/png;base64,{}\">\n", base64(*png));
 }
 
+std::string test_name(const machine::CleaningTest& t) {
+    return t.seconds > 0 ? fmt::format("{} {:.0f} s", t.method, t.seconds) : std::string(t.method);
+}
+
 std::string cleaning_table() {
     std::string text =
         "<table>\n" + row({"cleaning", "cone", "scaffold", "cylinder", "pyramids", "mean", "printed"}, "th");
     for (const machine::CleaningTest& t : machine::cleaning_tests()) {
-        std::vector<std::string> cells = {t.seconds > 0 ? fmt::format("{} {:.0f} s", t.method, t.seconds)
-                                                        : std::string(t.method)};
+        std::vector<std::string> cells = {test_name(t)};
         for (const double share : t.removed) cells.push_back(fmt::format("{:.0f} %", 100 * share));
         cells.push_back(fmt::format("{:.0f} %", 100 * t.mean()));
         cells.push_back(t.printed_pyramids > 0 ? fmt::format("pyramids {:.0f} %", 100 * t.printed_pyramids)
@@ -168,6 +171,23 @@ std::string cleaning_table() {
                spray.tau_s, sound.reach, sound.tau_s);
 }
 
+/// The row of table 4.2 that disagrees with the weights beside it, and whose shares it has got instead.
+std::string pyramids() {
+    std::string text = "<li><b>The pyramids of table 4.2.</b> The table disagrees with the weights beside it:";
+    for (const machine::CleaningTest& t : machine::cleaning_tests()) {
+        if (t.printed_pyramids <= 0) continue;
+        text += fmt::format(" under {} it prints {:.0f} %, they give {:.0f} %", test_name(t), 100 * t.printed_pyramids,
+                            100 * t.pyramids());
+        for (const machine::CleaningTest& other : machine::cleaning_tests()) {
+            if (other.pyramids() == t.printed_pyramids)
+                text += fmt::format(" ({:.0f} % is theirs for {})", 100 * other.pyramids(), test_name(other));
+        }
+        text += ";";
+    }
+    text.back() = '.';
+    return text + " Everything here goes by the weights.</li>\n";
+}
+
 std::string disagreements(const std::vector<Printer>& printers) {
     const Kinds kinds(printers);
     std::string text = "<ul>\n";
@@ -181,9 +201,7 @@ std::string disagreements(const std::vector<Printer>& printers) {
             "{:.1f} "
             "+ {:.1f} = {:.1f} s, the hooks' {:.1f} s among the spray.</li>\n",
             s.push_s, s.clean_s, s.pull_s, s.total_s, s.hooks_s);
-        text += fmt::format(
-            "<li><b>The pyramids of table 4.2.</b> The table prints 37, 27 and 57 % under cloth and 15 and 120 s of "
-            "ultrasound; the weights beside it give 27, 57 and 89 %.</li>\n");
+        text += pyramids();
         const auto times = plan::swap_over_vats(tower, {8, 32});
         text += fmt::format(
             "<li><b>O(1).</b> To the next slot a swap takes {:.1f} s whatever the tower's height: its way is hidden "

@@ -28,6 +28,8 @@ TEST_CASE("the page holds every machine and needs nothing from anywhere") {
     CHECK(page->find("http://") == std::string::npos);
     CHECK(page->find("data:image/png;base64,") != std::string::npos);
     CHECK(page->find("62 or 63 s") != std::string::npos);
+    CHECK(page->find("under ultrasound 120 s it prints 57 %, they give 89 % (57 % is theirs for ultrasound 15 s)") !=
+          std::string::npos);
     CHECK(page->find("23.7 + 15.0 + 23.7 = 62.4 s") != std::string::npos);
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/files.hpp"
-#include "report/test_folder.hpp"
+#include "core/test_folder.hpp"
 #include "report/test_robot.hpp"
 
 using namespace pliant;
@@ -15,7 +15,7 @@ using namespace pliant::report;
 
 TEST_CASE("the folder holds every file that the design names") {
     const auto robot = test::bent_bar(3, 1);
-    const test::Folder folder("results");
+    const pliant::test::Folder folder("results");
     Progress progress;
     const auto status = write_results(folder.path(), robot.simulation(), progress, {240, 150});
     REQUIRE_MESSAGE(status.has_value(), status.error().message);
@@ -35,7 +35,7 @@ TEST_CASE("a rest state alone, and robots without cables or markers, are reporte
     robot.cable_points.clear();
     robot.result.converged = false;
     robot.result.message = "step 1: did not converge";
-    const test::Folder folder("rest_only");
+    const pliant::test::Folder folder("rest_only");
     Progress progress;
     CHECK(write_results(folder.path(), robot.simulation(), progress, {240, 150}).has_value());
     const auto html = read_file(folder.path() / "report.html");

@@ -41,8 +41,11 @@ public:
         }
         untried_ = false;
         const Eigen::MatrixXd right = columns;
-        if (factor_.solve_and_refine(*values_, view(columns), count, solution_error, most_refinements))
+        if (const auto more =
+                factor_.solve_and_refine(*values_, view(columns), count, solution_error, most_refinements)) {
+            trusted_ = *more == 0 ? trust : 0;
             return Outcome::solved;
+        }
         const Eigen::MatrixXd refined = std::exchange(columns, right);
         factor_.use(linalg::Precision::double_);
         if (factorise(*values_))
@@ -59,17 +62,20 @@ private:
     [[nodiscard]] bool is_single() const { return factor_.precision() == linalg::Precision::single_; }
     [[nodiscard]] bool factorise(const std::vector<double>& values) {
         values_ = &values;
-        untried_ = is_single();
+        untried_ = is_single() && trusted_ == 0;
+        if (trusted_ > 0) --trusted_;
         return factor_.factorise(values);
     }
 
     static constexpr int refusals_until_asked = 4;  // asking costs
     static constexpr int most_refinements = 8;      // more of them, and double precision is quicker
+    static constexpr int trust = 3;                 // factors after a good one that are taken to be as good
 
     linalg::Cholesky factor_;
     const std::vector<double>* values_ = nullptr;  ///< of the factor
-    bool untried_ = false;                         ///< nothing has been solved with this factor in single precision
-    int refusals_ = 0;                             ///< by single precision
+    bool untried_ = false;  ///< nothing has been solved with this factor, and it may need refining
+    int trusted_ = 0;       ///< factors to come that need no trial
+    int refusals_ = 0;      ///< by single precision
 };
 
 class TwoLevelInverse final : public TangentInverse {

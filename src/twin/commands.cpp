@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "machine/switches.hpp"
 #include "twin/twin.hpp"
 
 namespace pliant::twin {
@@ -180,10 +181,11 @@ void Twin::execute_switch(const Command& c) {
     if (fan && options_.report_fans) {
         say(fmt::format("M106 P{:g} S{:g}", c.value('P').value_or(0), c.is('M', 107) ? 0 : c.value('S').value_or(255)));
     }
+    const double at_s = std::max(now_s_, motors_.done_at());
+    switch_fans(c, at_s);
     const auto on = machine::switched(printer_.pump, c);
     if (!on || *on == pump_on_) return;
     if (Status status = motors_.interlock().pump(*on); !status) return violation(status.error().message);
-    const double at_s = std::max(now_s_, motors_.done_at());
     pump_on_ = *on;
     if (pump_on_) {
         pump_since_s_ = at_s;
@@ -195,6 +197,15 @@ void Twin::execute_switch(const Command& c) {
         sprayed_s_ += at_s - pump_since_s_;
         residue_ *= 1 - machine::cleaning_law(printer_.cleaning.method).removed(at_s - pump_since_s_);
         fluids_.clean(at_s - pump_since_s_);
+    }
+}
+
+void Twin::switch_fans(const Command& c, double at_s) {
+    for (std::size_t i = 0; i < printer_.fans.size(); ++i) {
+        const auto on = machine::switched(printer_.fans[i], c);
+        if (!on || *on == (fan_since_s_[i] >= 0)) continue;
+        if (!*on) log_.fan_s[i] += at_s - fan_since_s_[i];
+        fan_since_s_[i] = *on ? at_s : -1;
     }
 }
 
@@ -269,15 +280,24 @@ void Twin::say_settings() {
     row("Max Acceleration (units/s2)", "M201", [](const AxisSpec& a) { return a.acceleration_mm_s2; });
 }
 
+/// Where the axis really stands, whatever the controller thinks; homed or not.
+bool Twin::is_pressed(const machine::LimitSwitch& limit) const {
+    const machine::AxisSpec& spec = printer_.axis(limit.axis);
+    const int at_um = motors_.position_at(now_s_)[limit.axis] + slip_um_[static_cast<std::size_t>(limit.axis)];
+    return limit.at_max ? at_um >= spec.max_um : at_um <= spec.min_um;
+}
+
 void Twin::say_switches() {
     say("Reporting endstop status");
-    for (const Axis axis : machine::all_axes) {
-        const machine::AxisSpec& spec = printer_.axis(axis);
-        if (!spec.present() || spec.homes_by_hand) continue;
-        const bool pressed = interlock().homed(axis) && interlock().position()[axis] == spec.home_um();
-        say(fmt::format("{}_{}: {}", static_cast<char>(spec.letter - 'A' + 'a'), spec.homes_to_max ? "max" : "min",
-                        pressed ? "TRIGGERED" : "open"));
+    const auto tell = [&](const std::string& name, bool pressed) {
+        say(fmt::format("{}: {}", name, pressed ? "TRIGGERED" : "open"));
+    };
+    const std::vector<machine::LimitSwitch> switches = machine::switches_of(printer_);
+    for (std::size_t i = 0; i < switches.size(); ++i) {
+        const bool stuck = fault_hits(Fault::Kind::stuck_switch, static_cast<int>(i) + 1);
+        tell(machine::switch_names(printer_, switches[i]).front(), stuck || is_pressed(switches[i]));
     }
+    if (printer_.door.present()) tell(printer_.door.input, door_is_open());
 }
 
 }  // namespace pliant::twin

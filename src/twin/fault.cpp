@@ -10,7 +10,7 @@ namespace {
 
 using Kind = Fault::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 14> kinds = {{{"corrupt-line", Kind::corrupt_byte},
+constexpr std::array<std::pair<std::string_view, Kind>, 16> kinds = {{{"corrupt-line", Kind::corrupt_byte},
                                                                       {"lose-line", Kind::lose_line},
                                                                       {"lose-ok", Kind::lose_ok},
                                                                       {"lose-resend", Kind::lose_resend},
@@ -23,7 +23,9 @@ constexpr std::array<std::pair<std::string_view, Kind>, 14> kinds = {{{"corrupt-
                                                                       {"stuck-hook", Kind::stuck_hook},
                                                                       {"empty-vat", Kind::empty_vat},
                                                                       {"dead-pump", Kind::dead_pump},
-                                                                      {"dark-projector", Kind::dark_projector}}};
+                                                                      {"dark-projector", Kind::dark_projector},
+                                                                      {"door-open", Kind::door_open},
+                                                                      {"stuck-switch", Kind::stuck_switch}}};
 
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {

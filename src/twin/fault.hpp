@@ -28,6 +28,8 @@ struct Fault {
         empty_vat,       ///< slot n holds no resin
         dead_pump,       ///< from its n-th start on the pump moves nothing
         dark_projector,  ///< the n-th light is none
+        door_open,     ///< half a second into the n-th light somebody opens the door, for `amount` seconds (default 30)
+        stuck_switch,  ///< the n-th limit switch of the printer file is always pressed
     };
     Kind kind = Kind::corrupt_byte;
     int n = 1;

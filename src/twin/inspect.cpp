@@ -343,6 +343,8 @@ Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& im
     count_stray_layers(report, twin, job);
     judge_contamination(report, twin, job);
     measure_resins(report, twin);
+    const machine::Projector& projector = twin.printer().projector;
+    report.trapped = trapped_resin(twin.cured().layers(), projector.width_px, projector.height_px, projector.pixel_um);
     judge_materials(report, job);
     judge(report, twin);
     return report;

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "job/job.hpp"
+#include "twin/trapped.hpp"
 #include "twin/twin.hpp"
 
 namespace pliant::twin {
@@ -55,6 +56,7 @@ struct Report {
     double worst_residue = 0;  ///< share of the film that a cleaning left
     double deepest_overcure_um = 0;
     std::vector<Contamination> contamination;  ///< layer by layer
+    std::vector<Trapped> trapped;              ///< liquid that stays in the part, largest first
     Log log;
     double clock_s = 0;
 };

@@ -46,13 +46,18 @@ double Motors::room_at(double now_s) {
     return moves_[moves_.size() - most_moves].end_s;
 }
 
+Position Motors::position_at(double now_s) const {
+    for (const Move& move : moves_) {
+        if (now_s < move.end_s) return machine::position_at(move.profile, move.from, move.to, now_s - move.start_s);
+    }
+    return interlock_.position();
+}
+
 void Motors::stop(double now_s) {
     forget_done(now_s);
-    Position here = interlock_.position();
+    const Position here = position_at(now_s);
     if (!moves_.empty()) {
-        const Move& running = moves_.front();
-        here = machine::position_at(running.profile, running.from, running.to, now_s - running.start_s);
-        const machine::Interlock before = running.before;
+        const machine::Interlock before = moves_.front().before;
         interlock_ = before;
     }
     interlock_.stopped_at(here);

@@ -29,6 +29,9 @@ public:
     [[nodiscard]] double room_at(double now_s);
     [[nodiscard]] bool moving(double now_s) const { return now_s < done_at_s_; }
 
+    /// Where the axes are at a moment that is not before the last one asked for.
+    [[nodiscard]] machine::Position position_at(double now_s) const;
+
     /// Drops the queue and stands where the machine is; it must be homed again.
     void stop(double now_s);
     /// The motors let go: positions are lost.

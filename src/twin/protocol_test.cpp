@@ -305,6 +305,73 @@ TEST_CASE("machine: a switch takes effect when the moves before it are done") {
     CHECK(p.twin.interlock().pump_runs() == false);
 }
 
+TEST_CASE("machine: a limit switch is pressed where the axis really stands, also on its way and off its steps") {
+    Peer p(with({}, {{Fault::Kind::missed_steps, 2, 2}}));
+    CHECK(holds(p.send("M119"), "x_min: TRIGGERED\nz"));  // parked at its switch, homed or not
+    p.home();
+    CHECK(holds(p.send("M119"), "z_max: TRIGGERED"));
+    p.send("G1 Z300 F600");
+    p.raw("", 5);
+    CHECK(holds(p.send("M119"), "z_max: open"));
+    p.raw("", 60);
+    p.send("G1 Z400 F600", 60);  // stops 2 mm short, and the controller does not know
+    CHECK(holds(p.send("M114"), "Z:400.000"));
+    CHECK(holds(p.send("M119"), "z_max: open"));
+}
+
+TEST_CASE("machine: a stuck switch and a switch at the far end are reported as such") {
+    auto printer = machine::load_printer("examples/printers/tower.toml").value();
+    printer.limit_switches.push_back({Axis::carriage, true, false});
+    Options options;
+    options.faults = {{Fault::Kind::stuck_switch, 4, 0}};
+    Twin twin(printer, options);
+    twin.receive("M119\n");
+    CHECK(holds(twin.take_output(), "x_min: TRIGGERED\nz_max: open\ny_min: open\nx_max: TRIGGERED\nok"));
+}
+
+TEST_CASE("machine: the door's switch is on its input, and light behind an open door is counted") {
+    const auto printer = machine::load_printer("examples/printers/single.toml").value();
+    Options options;
+    options.faults = {{Fault::Kind::door_open, 1, 20}};
+    Twin twin(printer, options);
+    const auto says = [&] {
+        (void)twin.take_output();
+        twin.receive("M119\n");
+        return twin.take_output();
+    };
+    twin.receive("M84 S0\nG28 Z\nG1 Z1 F1200\nM400\n");
+    twin.advance_to(60);
+    CHECK(holds(says(), "y_max: open"));
+    const job::Image white{printer.projector.width_px, printer.projector.height_px,
+                           std::vector<std::uint8_t>(static_cast<std::size_t>(printer.projector.width_px) *
+                                                         static_cast<std::size_t>(printer.projector.height_px),
+                                                     255)};
+    twin.light_on(white);
+    twin.advance_to(61);
+    CHECK(twin.door_is_open());
+    CHECK(holds(says(), "y_max: TRIGGERED"));
+    twin.advance_to(62);
+    twin.light_off();
+    CHECK(twin.log().lit_while_open_s == doctest::Approx(1.5));
+    twin.advance_to(81);
+    CHECK(holds(says(), "y_max: open"));
+}
+
+TEST_CASE("machine: both fans run on their own; M112 switches everything off and drops the relay until a reset") {
+    Peer p;
+    p.send("M106 P0 S255");
+    p.raw("", 2);
+    p.send("M106 P2 S255");
+    p.raw("", 3);
+    p.send("M107 P0");
+    CHECK(p.twin.log().fan_s == std::vector<double>{5, 0});
+    p.raw("M112\n");
+    CHECK(p.twin.log().fan_s == std::vector<double>{5, 3});
+    CHECK(p.twin.log().power_cut);
+    p.twin.reset();
+    CHECK_FALSE(p.twin.log().power_cut);
+}
+
 TEST_CASE("faults on the wire: a lost or flipped byte is caught by the checksum") {
     Peer lost(with({}, {{Fault::Kind::lose_byte, 5, 0}}));
     CHECK(holds(lost.send("M400"), "Error:"));

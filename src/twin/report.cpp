@@ -46,6 +46,43 @@ Json contamination_json(const Report& r) {
 
 }  // namespace
 
+namespace {
+
+/// A part full of small holes has thousands of them: the sums are of all, the list is of the largest.
+Json trapped_json(const Report& r) {
+    constexpr std::size_t most = 50;
+    Json spaces = Json::array();
+    double pockets_ml = 0, cups_ml = 0;
+    for (const Trapped& t : r.trapped) {
+        (t.closed ? pockets_ml : cups_ml) += t.ml;
+        if (spaces.size() == most) continue;
+        spaces.push_back({{"kind", t.closed ? "pocket" : "cup"},
+                          {"ml", rounded(t.ml)},
+                          {"z_um", {t.z_begin_um, t.z_end_um}},
+                          {"x_px", {t.x_begin_px, t.x_end_px}},
+                          {"y_px", {t.y_begin_px, t.y_end_px}}});
+    }
+    return {{"pockets_ml", rounded(pockets_ml)},
+            {"cups_ml", rounded(cups_ml)},
+            {"count", r.trapped.size()},
+            {"largest", std::move(spaces)}};
+}
+
+std::string trapped_text(const Report& r) {
+    constexpr std::size_t most = 5;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, r.trapped.size()); ++i) {
+        const Trapped& t = r.trapped[i];
+        text += fmt::format("  {:.3f} ml of resin stay in a {} at z {:.2f} to {:.2f} mm, pixels {} to {} by {} to {}\n",
+                            t.ml, t.closed ? "closed pocket" : "cup", t.z_begin_um / 1000.0, t.z_end_um / 1000.0,
+                            t.x_begin_px, t.x_end_px, t.y_begin_px, t.y_end_px);
+    }
+    if (r.trapped.size() > most) text += fmt::format("  and in {} smaller ones\n", r.trapped.size() - most);
+    return text;
+}
+
+}  // namespace
+
 std::string report_json(const Report& r) {
     Json materials = Json::array();
     for (const MaterialReport& m : r.materials) materials.push_back(material_json(m));
@@ -73,6 +110,7 @@ std::string report_json(const Report& r) {
                        {"short_cleanings", r.log.short_cleanings},
                        {"exposures", r.log.exposures},
                        {"contamination", contamination_json(r)},
+                       {"trapped", trapped_json(r)},
                        {"deepest_overcure_um", rounded(r.deepest_overcure_um)},
                        {"mishaps", r.log.mishaps},
                        {"violations", r.log.violations},
@@ -95,6 +133,7 @@ std::string report_text(const Report& r) {
         text += fmt::format("  {:<16}{:>12.1f} ml left, {:.4f} % foreign; {:.2f} mm^3 overcured below overhangs\n",
                             resin.name, resin.left_ml, 100 * resin.foreign_share, resin.overcure_mm3);
     }
+    text += trapped_text(r);
     if (!r.first_deviation.empty()) text += fmt::format("  first: {}\n", r.first_deviation);
     for (const std::string& mishap : r.log.mishaps) text += fmt::format("  fault: {}\n", mishap);
     for (const std::string& reason : r.reasons) text += fmt::format("  wrong: {}\n", reason);

@@ -42,7 +42,9 @@ Twin::Twin(const machine::Printer& printer, Options options)
       motors_(printer_, unknown_start(printer_)),
       cure_(printer_),
       fluids_(printer_),
-      busy_every_s_(options_.busy_every_s) {
+      busy_every_s_(options_.busy_every_s),
+      fan_since_s_(printer_.fans.size(), -1) {
+    log_.fan_s.resize(printer_.fans.size());
     for (const Fault& f : options_.faults) {
         const machine::Vat* vat = f.kind == Fault::Kind::empty_vat ? printer_.vat_of_slot(f.n) : nullptr;
         if (vat != nullptr) cure_.set_level_ml(static_cast<int>(vat - printer_.vats.data()), 0);
@@ -159,8 +161,11 @@ void Twin::refuse(const ReceivedLine& line) {
     say("ok");
 }
 
+/// A killed firmware switches everything off, and drops the relay of the emergency line if the machine has one.
 void Twin::kill() {
     dead_ = true;
+    outputs_off();
+    log_.power_cut = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
     motors_.release(now_s_);
     queue_.clear();
     buffer_.clear();
@@ -168,6 +173,14 @@ void Twin::kill() {
     say("echo:M112 Shutdown");
     say("Error:Printer halted. kill() called!");
     say("//action:poweroff");
+}
+
+void Twin::outputs_off() {
+    pump_on_ = false;
+    for (std::size_t i = 0; i < fan_since_s_.size(); ++i) {
+        if (fan_since_s_[i] >= 0) log_.fan_s[i] += now_s_ - fan_since_s_[i];
+        fan_since_s_[i] = -1;
+    }
 }
 
 void Twin::quick_stop() {
@@ -195,7 +208,8 @@ void Twin::reset() {
     dead_ = false;
     idle_limit_s_ = 120;
     busy_every_s_ = options_.busy_every_s;
-    pump_on_ = false;
+    outputs_off();
+    log_.power_cut = false;
     stalled_until_s_ = 0;
     if (options_.boot_s > 0)
         boots_at_s_ = now_s_ + options_.boot_s;
@@ -281,6 +295,7 @@ void Twin::finish_running() {
 void Twin::light_on(const job::Image& image) {
     if (shown_) light_off();
     ++log_.exposures;
+    open_door();
     const bool fits =
         image.width_px == printer_.projector.width_px && image.height_px == printer_.projector.height_px &&
         image.pixels.size() == static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
@@ -302,6 +317,16 @@ void Twin::light_on(const job::Image& image) {
         mishap("light without a vat in its place");
     }
     sprayed_s_ = 0;
+}
+
+/// The fault of that light: nobody tells the controller, which only sees its switch.
+void Twin::open_door() {
+    const Fault* fault = fault_at(Fault::Kind::door_open, log_.exposures);
+    if (fault == nullptr) return;
+    constexpr double after_s = 0.5, usual_s = 30;
+    door_opens_s_ = now_s_ + after_s;
+    door_shuts_s_ = door_opens_s_ + (fault->amount > 0 ? fault->amount : usual_s);
+    mishap("somebody opens the door");
 }
 
 /// The vat that really is under the platform, by index; -1: none is where it should be.
@@ -330,6 +355,7 @@ void Twin::light_off() {
     if (!shown_) return;
     const int z_um =
         interlock().position()[machine::Axis::platform] + slip_um_[static_cast<std::size_t>(machine::Axis::platform)];
+    log_.lit_while_open_s += std::max(0.0, std::min(now_s_, door_shuts_s_) - std::max(shown_since_s_, door_opens_s_));
     if (shown_vat_ >= 0) cure_.expose(*shown_, shown_vat_, now_s_ - shown_since_s_, z_um);
     shown_.reset();
 }

@@ -55,8 +55,11 @@ struct Log {
     int homings = 0;
     int bad_lines = 0;
     int resets = 0;
-    int clamped_moves = 0;  ///< that asked for more than an axis' travel, and were cut without a word
-    long moves = 0;         ///< carried out; a repeated one changes nothing and is none
+    std::vector<double> fan_s;    ///< how long each fan has run
+    double lit_while_open_s = 0;  ///< light behind an open door
+    bool power_cut = false;       ///< the board's relay has dropped (emergency_line), until a reset
+    int clamped_moves = 0;        ///< that asked for more than an axis' travel, and were cut without a word
+    long moves = 0;               ///< carried out; a repeated one changes nothing and is none
     std::uint64_t path = 14695981039346656037ULL;  ///< hash (FNV-1a) of where they went, in order
 };
 
@@ -81,6 +84,8 @@ public:
     [[nodiscard]] std::string take_output();
 
     [[nodiscard]] double now() const { return now_s_; }
+    /// Somebody has it open, for those who stand outside; light goes through it.
+    [[nodiscard]] bool door_is_open() const { return now_s_ >= door_opens_s_ && now_s_ < door_shuts_s_; }
     void advance_to(double seconds);  ///< never back
     /// When the firmware will say or do something next; nullopt while it waits for the host.
     [[nodiscard]] std::optional<double> next_event() const;
@@ -134,6 +139,9 @@ private:
     void execute_other(const machine::Command& command);
     void say_settings();
     void say_switches();
+    [[nodiscard]] bool is_pressed(const machine::LimitSwitch& limit) const;
+    void switch_fans(const machine::Command& command, double at_s);
+    void open_door();
     void note_vat(std::optional<int> before);
     void count_swap(int vat);
     void miss_steps(const machine::Position& from, const machine::Position& to);
@@ -146,6 +154,7 @@ private:
     [[nodiscard]] double idle_event() const;
     [[nodiscard]] machine::Position clamped(machine::Position to);
     void kill();
+    void outputs_off();
     void quick_stop();
     /// The fault of that kind for the n-th time something happens; nullptr: none.
     [[nodiscard]] const Fault* fault_at(Fault::Kind kind, int n) const;
@@ -187,6 +196,8 @@ private:
     std::optional<Runs> shown_;
     double shown_since_s_ = 0;
     int shown_vat_ = -1;
+    double door_opens_s_ = -1, door_shuts_s_ = -1;  ///< the last time
+    std::vector<double> fan_since_s_;               ///< below 0: off
     bool pump_on_ = false;
     double pump_since_s_ = 0;
     double sprayed_s_ = 0;  ///< since the last light

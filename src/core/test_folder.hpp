@@ -3,16 +3,18 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
-namespace pliant::report::test {
+namespace pliant::test {
 
 class Folder {
 public:
-    explicit Folder(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() / ("pliant_report_" + name + "_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
+    explicit Folder(const std::string& name = "test") {
+        std::string pattern = (std::filesystem::temp_directory_path() / ("pliant_" + name + "_XXXXXX")).string();
+        if (::mkdtemp(pattern.data()) == nullptr) std::abort();  // no place for temporary files
+        path_ = pattern;
     }
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
@@ -26,4 +28,4 @@ private:
     std::filesystem::path path_;
 };
 
-}  // namespace pliant::report::test
+}  // namespace pliant::test

@@ -1,0 +1,47 @@
+// The projector of a virtual printer in the same program: what the host shows in its thread, the machine's thread looks
+// at in its own time.
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include "host/devices.hpp"
+#include "twin/twin.hpp"
+
+namespace pliant::app {
+
+class SharedLight final : public host::Projector {
+public:
+    [[nodiscard]] Status show(const job::Image& image) override {
+        const std::scoped_lock lock(mutex_);
+        image_ = image;
+        return {};
+    }
+    [[nodiscard]] Status black() override {
+        const std::scoped_lock lock(mutex_);
+        image_.reset();
+        return {};
+    }
+    [[nodiscard]] bool lit() const {
+        const std::scoped_lock lock(mutex_);
+        return image_.has_value();
+    }
+    /// For the machine's thread.
+    [[nodiscard]] Status look(twin::Twin& twin) {
+        const std::scoped_lock lock(mutex_);
+        if (image_.has_value() == seen_) return {};
+        seen_ = image_.has_value();
+        if (seen_)
+            twin.light_on(*image_);
+        else
+            twin.light_off();
+        return {};
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::optional<job::Image> image_;
+    bool seen_ = false;
+};
+
+}  // namespace pliant::app
