@@ -96,7 +96,7 @@ struct Control::State_ {
     /// The same, as long as nothing but numbers and questions has been sent since: what is connected and then resumed
     /// is as proven as what is resumed at once.
     std::optional<long> untouched_line;
-    long last_base = 0;    ///< of our own last session
+    long last_base = 0;  ///< of our own last session
     std::optional<PrintJob> job;
     Script script;
     std::vector<double> times;

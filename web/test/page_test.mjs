@@ -135,6 +135,74 @@ test('several look, one steers, and the helm is handed over', async (t) => {
   assert.deepEqual([...first.wrong, ...second.wrong], []);
 });
 
+test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; everything is taken home', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  const picture = () =>
+    page.evaluate(() => {
+      const c = document.querySelector('[data-testid=view]');
+      const small = Object.assign(document.createElement('canvas'), { width: 120, height: 80 }).getContext('2d');
+      small.drawImage(c, 0, 0, 120, 80);
+      return Array.from(small.getImageData(0, 0, 120, 80).data);
+    });
+  let before = await picture();
+  const changed = async (what) => {
+    await page.waitForTimeout(400);
+    const after = await picture();
+    const differ = after.filter((v, k) => Math.abs(v - before[k]) > 12).length;
+    assert.ok(differ > 20, `${what} changes the picture (${differ})`);
+    before = after;
+  };
+  await page.getByRole('button', { name: 'Mesh' }).click();
+  await changed('the mesh');
+  await page.getByRole('button', { name: 'Section' }).click();
+  await page.getByRole('group', { name: 'Section plane' }).getByRole('button', { name: 'x' }).click();
+  await changed('a section');
+  await page.getByRole('slider', { name: 'Pull materials apart' }).fill('0.8');
+  await changed('pulling apart');
+  await page.getByRole('slider', { name: 'Pull materials apart' }).fill('0');
+  await page.getByRole('group', { name: 'Section plane' }).getByRole('button', { name: 'off' }).click();
+  await page.getByRole('button', { name: 'Section' }).click();
+  await page.getByRole('button', { name: 'Mesh' }).click();
+  const started = await tag(page);
+  await page.getByTestId('number-flexor').fill('0.88');
+  await page.getByTestId('number-flexor').press('Enter');
+  await answered(page, started);
+  await page.waitForTimeout(400);
+  before = await picture();
+  await page.getByRole('button', { name: 'Rest shape' }).click();
+  await changed('the rest shape');
+  for (const field of ['displacement', 'von_mises', 'stretch', 'J', 'energy']) {
+    await page.getByTestId('field').selectOption(field);
+    await page.waitForFunction(() => document.querySelector('[data-testid=legend] .ticks span').textContent !== '0');
+    if (field === 'displacement') await changed('a field');
+  }
+  await page.getByTestId('pin').click();
+  await page.getByTestId('pinned').waitFor();
+  const files = await page.evaluate(async () =>
+    Promise.all(
+      ['steps.csv', 'markers.csv', 'robot.glb', 'robot.vtu'].map(async (name) => {
+        const answer = await fetch(`/api/export/${name}`);
+        return [answer.status, (await answer.text()).slice(0, 400)];
+      }),
+    ),
+  );
+  assert.deepEqual(files.map((f) => f[0]), [200, 200, 200, 200]);
+  assert.match(files[0][1], /flexor/);
+  assert.match(files[1][1], /tip/);
+  assert.match(files[2][1], /^glTF/);
+  assert.match(files[3][1], /VTKFile/);
+  const [png] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Export' }).click().then(() => page.getByRole('button', { name: 'Picture' }).click()),
+  ]);
+  assert.equal(readFileSync(await png.path()).toString('latin1', 1, 4), 'PNG');
+  await page.getByRole('button', { name: 'Export' }).click();
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('.popover').count(), 0, 'a menu goes with Escape');
+  assert.deepEqual(wrong, []);
+});
+
 test('a lost connection comes back, still at the helm', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
