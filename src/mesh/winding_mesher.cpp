@@ -21,6 +21,7 @@
 #include "mesh/gmsh_kernel.hpp"
 #include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
+#include "mesh/tet_improver.hpp"
 #include "mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
@@ -175,6 +176,7 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
         if (!complex)
             return failure("the mesh of the damaged surface does not come to an end; try a smaller mesh size");
         TetMesh mesh = collect(*complex, middle);
+        improve_tets(mesh, {.feature_deg = angle_deg});
         const double meshed = mesh::volume(mesh);
         if (!(std::fabs(meshed - volume) < 0.1 * volume))
             return failure(
