@@ -1,6 +1,7 @@
 #include "linalg/analysis.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pliant::linalg {
 namespace {
@@ -56,14 +57,15 @@ std::vector<Stretch> Analysis::stretches(int child, int s) const {
     return result;
 }
 
-Analysis analyse(const SymmetricPattern& pattern) {
+std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern) {
     Analysis a{pattern, eliminate(pattern), {}, {}, {}};
+    a.pattern.block = 1;
     a.children.resize(static_cast<std::size_t>(a.e.supernodes()));
     for (int s = 0; s < a.e.supernodes(); ++s) {
         if (a.e.parent[s] >= 0) a.children[a.e.parent[s]].push_back(s);
     }
     find_sources(a);
-    return a;
+    return std::make_shared<const Analysis>(std::move(a));
 }
 
 }  // namespace pliant::linalg

@@ -1,6 +1,7 @@
 // What is known about a matrix before its numbers: the order of elimination and where each of its blocks goes.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "linalg/elimination.hpp"
@@ -17,6 +18,7 @@ struct Source {
     bool transpose;  ///< the order of elimination turned the pair round
 };
 
+/// Of one unknown a node: good for any number of them.
 struct Analysis {
     SymmetricPattern pattern;
     Elimination e;
@@ -30,7 +32,7 @@ struct Analysis {
     [[nodiscard]] std::vector<Stretch> stretches(int child, int s) const;
 };
 
-/// Copies the pattern.
-[[nodiscard]] Analysis analyse(const SymmetricPattern& pattern);
+/// Copies the pattern, whose block is of no account.
+[[nodiscard]] std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern);
 
 }  // namespace pliant::linalg

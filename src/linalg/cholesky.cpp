@@ -13,9 +13,9 @@ namespace {
 
 using AnyFactor = std::variant<Factor<float>, Factor<double>>;
 
-AnyFactor make_factor(const std::shared_ptr<const Analysis>& analysis, Precision precision) {
-    if (precision == Precision::single_) return Factor<float>(analysis);
-    return Factor<double>(analysis);
+AnyFactor make_factor(const std::shared_ptr<const Analysis>& analysis, int block, Precision precision) {
+    if (precision == Precision::single_) return Factor<float>(analysis, block);
+    return Factor<double>(analysis, block);
 }
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -31,6 +31,7 @@ void add(std::span<double> a, double factor, std::span<const double> b) {
 
 struct Cholesky::State {
     std::shared_ptr<const Analysis> analysis;
+    SymmetricPattern pattern;  ///< that of the analysis, with its block
     AnyFactor factor;
 
     [[nodiscard]] const FrontLayout& layout() const {
@@ -38,10 +39,14 @@ struct Cholesky::State {
     }
 };
 
-Cholesky::Cholesky(const SymmetricPattern& pattern, Precision precision) {
-    auto analysis = std::make_shared<const Analysis>(analyse(pattern));
-    AnyFactor factor = make_factor(analysis, precision);
-    state_ = std::make_unique<State>(State{std::move(analysis), std::move(factor)});
+Cholesky::Cholesky(const SymmetricPattern& pattern, Precision precision)
+    : Cholesky(analyse(pattern), pattern.block, precision) {}
+
+Cholesky::Cholesky(std::shared_ptr<const Analysis> analysis, int block, Precision precision) {
+    AnyFactor factor = make_factor(analysis, block, precision);
+    SymmetricPattern pattern = analysis->pattern;
+    pattern.block = block;
+    state_ = std::make_unique<State>(State{std::move(analysis), std::move(pattern), std::move(factor)});
 }
 
 Cholesky::Cholesky(Cholesky&&) noexcept = default;
@@ -49,7 +54,7 @@ Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
 Cholesky::~Cholesky() = default;
 
 void Cholesky::use(Precision precision) {
-    state_->factor = make_factor(state_->analysis, precision);
+    state_->factor = make_factor(state_->analysis, state_->pattern.block, precision);
 }
 
 Precision Cholesky::precision() const {
@@ -57,7 +62,7 @@ Precision Cholesky::precision() const {
 }
 
 bool Cholesky::factorise(std::span<const double> values) {
-    assert(values.size() == state_->analysis->pattern.entries());
+    assert(values.size() == state_->pattern.entries());
     return std::visit([&](auto& factor) { return factor.factorise(values); }, state_->factor);
 }
 
@@ -66,7 +71,7 @@ void Cholesky::release_work_space() {
 }
 
 void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
-    const auto n = static_cast<std::size_t>(state_->analysis->pattern.size());
+    const auto n = static_cast<std::size_t>(state_->pattern.size());
     assert(right_hand_sides.size() == n * static_cast<std::size_t>(columns));
     constexpr int together = 4;
     for (int c = 0; c < columns && n > 0; c += together) {
@@ -77,7 +82,7 @@ void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
 
 bool Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides, int columns,
                                 double tolerance, int limit) const {
-    const SymmetricPattern& pattern = state_->analysis->pattern;
+    const SymmetricPattern& pattern = state_->pattern;
     const auto n = static_cast<std::size_t>(pattern.size());
     const auto column = [n](std::span<double> all, int c) { return all.subspan(static_cast<std::size_t>(c) * n, n); };
     std::vector<double> residual(right_hand_sides.begin(), right_hand_sides.end());
@@ -117,6 +122,10 @@ double Cholesky::factor_entries() const {
 
 double Cholesky::factor_work() const {
     return state_->layout().work;
+}
+
+const std::shared_ptr<const Analysis>& Cholesky::analysis() const {
+    return state_->analysis;
 }
 
 }  // namespace pliant::linalg

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "linalg/analysis.hpp"
 #include "linalg/sparse.hpp"
 
 namespace pliant::linalg {
@@ -16,6 +17,8 @@ class Cholesky {
 public:
     /// Orders and analyses the pattern, which is copied.
     explicit Cholesky(const SymmetricPattern& pattern, Precision precision = Precision::double_);
+    /// With an analysis that is at hand, for `block` unknowns a node, 1 or 3.
+    Cholesky(std::shared_ptr<const Analysis> analysis, int block, Precision precision = Precision::double_);
     Cholesky(Cholesky&&) noexcept;
     Cholesky& operator=(Cholesky&&) noexcept;
     ~Cholesky();
@@ -43,6 +46,7 @@ public:
     [[nodiscard]] double factor_entries() const;
     /// Multiply-adds of one factorisation, as analysed: a measure of time.
     [[nodiscard]] double factor_work() const;
+    [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const;
 
 private:
     struct State;

@@ -18,17 +18,17 @@ int panel_row(const Panel<Real>& panel, int unknown) {
 }  // namespace
 
 template <class Real>
-Factor<Real>::Factor(std::shared_ptr<const Analysis> analysis)
-    : analysis_(std::move(analysis)), layout_(lay_out(analysis_->e, block(), packet<Real>)) {}
+Factor<Real>::Factor(std::shared_ptr<const Analysis> analysis, int block)
+    : analysis_(std::move(analysis)), block_(block), layout_(lay_out(analysis_->e, block, packet<Real>)) {}
 
 template <class Real>
 Panel<Real> Factor<Real>::panel(int s) const {
-    return {factor_.data() + layout_.panel[s], analysis_->e.columns(s) * block(), analysis_->e.rows_below(s) * block()};
+    return {factor_.data() + layout_.panel[s], analysis_->e.columns(s) * block_, analysis_->e.rows_below(s) * block_};
 }
 
 template <class Real>
 std::size_t Factor<Real>::leading(int s) const {
-    return static_cast<std::size_t>(whole_packets<Real>(analysis_->e.rows_below(s) * block()));
+    return static_cast<std::size_t>(whole_packets<Real>(analysis_->e.rows_below(s) * block_));
 }
 
 template <class Real>
@@ -52,7 +52,7 @@ void Factor<Real>::add_sources(int s, std::span<const double> values) const {
 template <class Real>
 void Factor<Real>::add_to_panel(int child, const Real* update, const std::vector<Stretch>& parts, int s) const {
     const Panel<Real> p = panel(s);
-    const int b = block();
+    const int b = block_;
     const std::size_t leading_dimension = leading(child);
     std::vector<std::size_t> place;  // of each row of the child, in column 0 of the panel
     for (const Stretch& part : parts) {
@@ -78,14 +78,14 @@ void Factor<Real>::add_to_update(int child, const Real* update, const std::vecto
     const int own = analysis_->e.columns(s);
     const auto passed = std::find_if(parts.begin(), parts.end(), [&](const Stretch& part) { return part.to >= own; });
     const std::vector<Stretch> rest(passed, parts.end());
-    add_lower(update, leading(child), to, leading(s), rest, own, block());
+    add_lower(update, leading(child), to, leading(s), rest, own, block_);
 }
 
 template <class Real>
 bool Factor<Real>::eliminate_supernode(int s, std::span<const double> values, const Real* below, Real* above) const {
     const Panel<Real> p = panel(s);
     std::fill_n(p.values, p.size(), Real(0));
-    if (block() == 3)
+    if (block_ == 3)
         add_sources<3>(s, values);
     else
         add_sources<1>(s, values);
@@ -119,9 +119,9 @@ public:
     Sweep(const Factor& factor, int count)
         : factor_(factor),
           e_(factor.analysis_->e),
-          block_(factor.block()),
+          block_(factor.block_),
           count_(count),
-          size_(static_cast<std::size_t>(factor.analysis_->pattern.size())),
+          size_(factor.size()),
           all_(factor.scratch_.lend(size_ * static_cast<std::size_t>(count))) {}
 
     void take(const double* x) {

@@ -18,11 +18,12 @@ namespace pliant::linalg {
 template <class Real>
 class Factor {
 public:
-    explicit Factor(std::shared_ptr<const Analysis> analysis);
+    /// `block`: unknowns of each node, 1 or 3.
+    Factor(std::shared_ptr<const Analysis> analysis, int block);
 
     /// False if the matrix is not positive definite in this precision.
     [[nodiscard]] bool factorise(std::span<const double> values);
-    /// In place, for at most four right-hand sides of pattern.size() each, one after the other.
+    /// In place, for at most four right-hand sides of nodes * block each, one after the other.
     void solve(double* right_side, int count) const;
 
     /// For one that will not factorise again: the work space goes, the factor stays.
@@ -31,7 +32,7 @@ public:
     [[nodiscard]] const FrontLayout& layout() const { return layout_; }
 
 private:
-    [[nodiscard]] int block() const { return analysis_->pattern.block; }
+    [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(analysis_->pattern.nodes) * block_; }
     [[nodiscard]] Panel<Real> panel(int s) const;
     [[nodiscard]] std::size_t leading(int s) const;
     /// Updates of the children begin at `below`; its own goes to `above`.
@@ -45,6 +46,7 @@ private:
     class Sweep;  ///< the right-hand sides on their way through the tree
 
     std::shared_ptr<const Analysis> analysis_;
+    int block_;
     FrontLayout layout_;
     AlignedArray<Real> factor_;
     AlignedArray<Real> work_;

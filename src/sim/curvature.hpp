@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <memory>
 
+#include "linalg/analysis.hpp"
 #include "sim/element_kernels.hpp"
 #include "sim/equilibrium.hpp"
 #include "sim/solver.hpp"
@@ -30,8 +31,8 @@ public:
 
     /// Called at the start of each step of the program.
     virtual void restart() {}
-    /// Called before solve() at a new state, or again where its direction was no good. False: no H could be made, or no
-    /// better one.
+    /// Called before solve() at a new state, or again where its direction was no good. Both must still be there when
+    /// solve() is called. False: no H could be made, or no better one.
     [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, Care care) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
@@ -55,7 +56,7 @@ public:
 /// The weighted Laplacian of a model, factorised once; shared by the first three and by the prediction of each step.
 class FactoredLaplacian {
 public:
-    explicit FactoredLaplacian(const Model& model);
+    explicit FactoredLaplacian(const Equilibrium& system);
     FactoredLaplacian(FactoredLaplacian&&) noexcept;
     ~FactoredLaplacian();
     /// columns (3 free, k) <- L^-1 columns.
@@ -66,6 +67,12 @@ public:
     [[nodiscard]] Eigen::VectorXd turn(const Equilibrium& system, const Turning& turning) const;
     /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
+
+    /// Of the tangent while nothing touches, and what is known of it: its nodes are coupled as those of the Laplacian.
+    [[nodiscard]] const TangentLayout& tangent_layout() const;
+    [[nodiscard]] const std::shared_ptr<const linalg::Analysis>& analysis() const;
+    /// Multiply-adds that its factorisation took.
+    [[nodiscard]] double work() const;
 
 private:
     struct State;

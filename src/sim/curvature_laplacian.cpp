@@ -6,14 +6,11 @@ namespace pliant::sim {
 
 struct FactoredLaplacian::State {
     const Model* model;
+    TangentLayout layout;
     linalg::Cholesky factor;
 };
 
 namespace {
-
-linalg::SymmetricPattern scalar_pattern(const Model& model) {
-    return linalg::make_pattern(model.free_count(), 1, model.elements().cliques(model.free_index()));
-}
 
 /// Interleaved x y z of one vector <-> three right-hand sides of the scalar matrix.
 void solve_components(const linalg::Cholesky& factor, Eigen::Ref<Eigen::VectorXd> vector) {
@@ -39,11 +36,14 @@ private:
 
 }  // namespace
 
-FactoredLaplacian::FactoredLaplacian(const Model& model) {
-    const linalg::SymmetricPattern pattern = scalar_pattern(model);
-    std::vector<double> values(pattern.entries(), 0.0);
-    model.elements().add_laplacian(model.free_index(), pattern, values);
-    state_ = std::make_unique<State>(State{&model, linalg::Cholesky(pattern)});
+FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
+    const Model& model = system.model();
+    TangentLayout layout = system.lay_out_tangent();
+    linalg::SymmetricPattern scalar = layout.pattern;
+    scalar.block = 1;
+    std::vector<double> values(scalar.entries(), 0.0);
+    model.elements().add_laplacian(model.free_index(), scalar, values);
+    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar)});
     // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
     state_->factor.release_work_space();
@@ -51,6 +51,18 @@ FactoredLaplacian::FactoredLaplacian(const Model& model) {
 
 FactoredLaplacian::FactoredLaplacian(FactoredLaplacian&&) noexcept = default;
 FactoredLaplacian::~FactoredLaplacian() = default;
+
+const TangentLayout& FactoredLaplacian::tangent_layout() const {
+    return state_->layout;
+}
+
+const std::shared_ptr<const linalg::Analysis>& FactoredLaplacian::analysis() const {
+    return state_->factor.analysis();
+}
+
+double FactoredLaplacian::work() const {
+    return state_->factor.factor_work();
+}
 
 void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
     for (Eigen::Index k = 0; k < columns.cols(); ++k) solve_components(state_->factor, columns.col(k));

@@ -31,6 +31,10 @@ struct BatchResult {
 /// columns; rows belong to a. Precondition: min_J > 0.
 void batch_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks);
 
+/// The same, but the stiffness of each point is replaced by the nearest positive semi-definite one.
+void batch_projected_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x,
+                             double* blocks);
+
 /// A motion in which every tet turns by a rate M instead of growing: from F at `now` to exp(M) F. `end` is where the
 /// nodes would be without that. All positions (3n).
 struct Turning {

@@ -93,7 +93,9 @@ void Elements::add_tangent(std::span<const double> x, std::span<const int> slots
                 const material::Law& law = law_among(laws, first + k);
                 const auto form = material::invariant_form(law);
                 double* to = blocks.data() + k * size;
-                if (form && !project)
+                if (form && project)
+                    batch_projected_tangent(batch(first + k), *form, x.data(), to);
+                else if (form)
                     batch_tangent(batch(first + k), *form, x.data(), to);
                 else
                     tangent_one_by_one(first + k, x, law, project, to);

@@ -55,7 +55,7 @@ public:
         : model_(model),
           program_(program),
           system_(model),
-          laplacian_(model),
+          laplacian_(system_),
           chain_(make_chain(program.solver, system_, laplacian_)) {
         double softest = std::numeric_limits<double>::infinity();
         for (const Material& m : model.description().materials)

@@ -43,7 +43,7 @@ public:
         : model_(model),
           program_(program),
           system_(model),
-          laplacian_(model),
+          laplacian_(system_),
           solvers_(make_chain(program.solver, system_, laplacian_)),
           state_(system_.rest()),
           controls_(system_.controls(0)) {

@@ -251,7 +251,7 @@ TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
     auto model = Model::create(std::move(d));
     REQUIRE(model);
     const Equilibrium system(*model);
-    const FactoredLaplacian laplacian(*model);
+    const FactoredLaplacian laplacian(system);
     const auto curvature = make_local_global(laplacian);
     const Controls controls = system.controls(1);
     State state = system.rest();
@@ -283,7 +283,7 @@ TEST_CASE("a program that cannot finish says where and keeps what converged") {
 TEST_CASE("a step that does not converge in its iterations is halved") {
     Description d = bar(1);
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.7})};
-    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 6});
+    const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
     REQUIRE_MESSAGE(result.converged, result.message);
     CHECK(result.steps.back().substeps > 1);
 }

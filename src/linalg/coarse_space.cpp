@@ -1,0 +1,353 @@
+#include "linalg/coarse_space.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.hpp"
+#include "linalg/small.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+constexpr int modes = 6;
+constexpr std::size_t grain = 512;
+constexpr std::size_t restricting_pieces = 8;
+
+using Block36 = Eigen::Matrix<float, 3, modes>;
+using Block33 = Eigen::Matrix3f;
+/// What is pulled at sums up to little where a body bends easily: there single precision would see nothing but noise.
+using Pull = Eigen::Matrix<double, 3, modes>;
+using Matrix6 = Eigen::Matrix<double, modes, modes>;
+
+Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry) {
+    return Eigen::Map<Block36>(values.data() + 18 * entry);
+}
+
+Eigen::Vector3d at(std::span<const double> positions, int node) {
+    return Eigen::Map<const Eigen::Vector3d>(positions.data() + 3 * static_cast<std::size_t>(node));
+}
+
+Eigen::Vector3d middle_of(std::span<const int> nodes, std::span<const double> positions) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const int i : nodes) sum += at(positions, i);
+    return sum / static_cast<double>(nodes.size());
+}
+
+/// Places of the items of each group, in order: start (groups + 1) and items.
+void list_members(const std::vector<int>& group, int groups, std::vector<int>& start, std::vector<int>& members) {
+    start.assign(static_cast<std::size_t>(groups) + 1, 0);
+    for (const int g : group) ++start[g + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    members.resize(group.size());
+    std::vector<int> next(start.begin(), start.end() - 1);
+    for (std::size_t i = 0; i < group.size(); ++i) members[next[group[i]]++] = static_cast<int>(i);
+}
+
+/// A set of groups that forgets everything at once.
+class Seen {
+public:
+    explicit Seen(int groups) : mark_(static_cast<std::size_t>(groups), -1) {}
+    /// True the first time that `group` comes while `round` lasts.
+    bool is_new(int group, int round) { return std::exchange(mark_[group], round) != round; }
+
+private:
+    std::vector<int> mark_;
+};
+
+}  // namespace
+
+Aggregates aggregate(const BlockRows& matrix) {
+    const int nodes = matrix.rows();
+    Aggregates result{std::vector<int>(static_cast<std::size_t>(nodes), -1)};
+    auto& of = result.of_node;
+    const auto for_neighbours = [&](int i, const auto& use) {
+        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) use(matrix.column[k]);
+    };
+    // Whole neighbourhoods that nobody has taken; what is left between them joins one that it touches.
+    for (int i = 0; i < nodes; ++i) {
+        bool untouched = true;
+        for_neighbours(i, [&](int j) { untouched = untouched && of[j] < 0; });
+        if (!untouched) continue;
+        for_neighbours(i, [&](int j) { of[j] = result.count; });
+        ++result.count;
+    }
+    const std::vector<int> first = of;
+    for (int i = 0; i < nodes; ++i) {
+        if (of[i] >= 0) continue;
+        for_neighbours(i, [&](int j) {
+            if (of[i] < 0) of[i] = first[j];
+        });
+    }
+    for (int i = 0; i < nodes; ++i) {
+        if (of[i] >= 0) continue;
+        for_neighbours(i, [&](int j) {
+            if (of[j] < 0) of[j] = result.count;
+        });
+        ++result.count;
+    }
+    return result;
+}
+
+CoarseSpace::CoarseSpace(const BlockRows& matrix) : groups_(aggregate(matrix)) {
+    list_members(groups_.of_node, groups_.count, member_start_, member_);
+    find_groups(matrix);
+    find_pattern(matrix);
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    rigid_.resize(18 * nodes);
+    prolongation_.resize(18 * group_.size());
+    product_.resize(18 * product_group_.size());
+    dropped_.resize(static_cast<std::size_t>(groups_.count) * modes);
+}
+
+/// Which groups move each node once motions are smoothed, and which pull at it.
+void CoarseSpace::find_groups(const BlockRows& matrix) {
+    Seen seen(groups_.count);
+    start_.assign(1, 0);
+    for (int i = 0; i < matrix.rows(); ++i) {
+        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+            const int g = groups_.of_node[matrix.column[k]];
+            if (seen.is_new(g, i)) group_.push_back(g);
+        }
+        std::sort(group_.begin() + start_.back(), group_.end());
+        start_.push_back(static_cast<int>(group_.size()));
+    }
+    Seen pulling(groups_.count);
+    product_start_.assign(1, 0);
+    for (int i = 0; i < matrix.rows(); ++i) {
+        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+            const int j = matrix.column[k];
+            for (int e = start_[j]; e < start_[j + 1]; ++e) {
+                if (pulling.is_new(group_[e], i)) product_group_.push_back(group_[e]);
+            }
+        }
+        std::sort(product_group_.begin() + product_start_.back(), product_group_.end());
+        product_start_.push_back(static_cast<int>(product_group_.size()));
+    }
+    std::vector<int> entries;
+    list_members(group_, groups_.count, use_start_, entries);
+    use_.resize(entries.size());
+    for (std::size_t u = 0; u < entries.size(); ++u) {
+        const auto row = std::upper_bound(start_.begin(), start_.end(), entries[u]) - start_.begin() - 1;
+        use_[u] = {static_cast<int>(row), entries[u]};
+    }
+}
+
+void CoarseSpace::find_pattern(const BlockRows& matrix) {
+    (void)matrix;
+    Seen seen(groups_.count);
+    pattern_.block = 3;
+    pattern_.nodes = 2 * groups_.count;
+    pattern_.node_start.assign(1, 0);
+    std::vector<int> rows;
+    for (int g = 0; g < groups_.count; ++g) {
+        rows.clear();
+        for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
+            const int i = use_[u].node;
+            for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
+                const int h = product_group_[e];
+                if (h > g && seen.is_new(h, g)) rows.push_back(h);
+            }
+        }
+        std::sort(rows.begin(), rows.end());
+        for (const int half : {0, 1}) {
+            if (half == 0) pattern_.node_row.push_back(2 * g);
+            pattern_.node_row.push_back(2 * g + 1);
+            for (const int h : rows) pattern_.node_row.insert(pattern_.node_row.end(), {2 * h, 2 * h + 1});
+            pattern_.node_start.push_back(static_cast<int>(pattern_.node_row.size()));
+        }
+    }
+    coarse_.resize(pattern_.entries());
+}
+
+void CoarseSpace::set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal,
+                      float damping) {
+    positions_.assign(positions.begin(), positions.end());
+    turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
+    set_rigid_motions(positions);
+    smooth(matrix, inverse_diagonal, damping);
+    multiply(matrix);
+}
+
+/// Translations, and rotations about the middle of each group, made orthonormal.
+void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
+    const auto position = [&](int node) { return at(positions, node); };
+    using Motion = Eigen::Matrix<double, 3, modes>;
+    const auto motion_of = [](const Eigen::Vector3d& arm) {
+        Motion m;
+        m << 1, 0, 0, 0, arm.z(), -arm.y(), 0, 1, 0, -arm.z(), 0, arm.x(), 0, 0, 1, arm.y(), -arm.x(), 0;
+        return m;
+    };
+    parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+            const Eigen::Vector3d middle = middle_of(members(g), positions);
+            double reach = 0;
+            for (const int i : members(g)) reach = std::max(reach, (position(i) - middle).norm());
+            const double scale = reach > 0 ? 1 / reach : 0;
+            Matrix6 gram = Matrix6::Zero();
+            for (const int i : members(g)) {
+                const Motion m = motion_of(scale * (position(i) - middle));
+                gram += m.transpose() * m;
+            }
+            // gram = U^T U; motions that the nodes of a small group cannot tell from earlier ones are dropped.
+            constexpr double dependent = 1e-4;
+            Matrix6 inverse = Matrix6::Identity();  // of U, column by column
+            for (int c = 0; c < modes; ++c) {
+                for (int earlier = 0; earlier < c; ++earlier) {
+                    const double share = inverse.col(earlier).dot(gram * Matrix6::Identity().col(c));
+                    inverse.col(c) -= share * inverse.col(earlier);
+                }
+                const double squared = inverse.col(c).dot(gram * inverse.col(c));
+                const bool drop = !(squared > dependent * static_cast<double>(members(g).size()));
+                dropped_[g * modes + c] = drop ? 1 : 0;
+                inverse.col(c) *= drop ? 0 : 1 / std::sqrt(squared);
+            }
+            for (const int i : members(g))
+                block36(rigid_, static_cast<std::size_t>(i)) =
+                    (motion_of(scale * (position(i) - middle)) * inverse).cast<float>();
+        }
+    });
+}
+
+/// P = (1 - damping D^-1 A) rigid motions.
+void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping) {
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        for (std::size_t i = begin; i < end; ++i) {
+            for (int e = start_[i]; e < start_[i + 1]; ++e) {
+                slot[group_[e]] = e;
+                block36(prolongation_, static_cast<std::size_t>(e)).setZero();
+            }
+            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+                const int j = matrix.column[k];
+                block36(prolongation_, static_cast<std::size_t>(slot[groups_.of_node[j]])).noalias() +=
+                    matrix.block(k).cast<float>() * block36(rigid_, static_cast<std::size_t>(j));
+            }
+            const Block33 step = -damping * Eigen::Map<const Block33>(inverse_diagonal + 9 * i);
+            for (int e = start_[i]; e < start_[i + 1]; ++e) {
+                auto block = block36(prolongation_, static_cast<std::size_t>(e));
+                block = (step * block).eval();
+                if (group_[e] == groups_.of_node[i]) block += block36(rigid_, i);
+            }
+        }
+    });
+}
+
+/// P^T A P.
+void CoarseSpace::multiply(const BlockRows& matrix) {
+    const auto pull = [&](int entry) {
+        return Eigen::Map<Pull>(product_.data() + 18 * static_cast<std::size_t>(entry));
+    };
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        for (std::size_t i = begin; i < end; ++i) {
+            for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
+                slot[product_group_[e]] = e;
+                pull(e).setZero();
+            }
+            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+                const int j = matrix.column[k];
+                const Eigen::Matrix3d a = matrix.block(k);
+                for (int e = start_[j]; e < start_[j + 1]; ++e)
+                    pull(slot[group_[e]]).noalias() +=
+                        a * block36(prolongation_, static_cast<std::size_t>(e)).cast<double>();
+            }
+        }
+    });
+    parallel_for(static_cast<std::size_t>(groups_.count), 16, [&](std::size_t begin, std::size_t end) {
+        using Block66 = Matrix6;
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        std::vector<Block66> sums;
+        for (std::size_t g = begin; g < end; ++g) {
+            const int first = pattern_.node_start[2 * g];
+            const int pairs = (pattern_.node_start[2 * g + 1] - first) / 2;  // groups from g on
+            sums.assign(static_cast<std::size_t>(pairs), Block66::Zero());
+            for (int p = 0; p < pairs; ++p) slot[pattern_.node_row[first + 2 * p] / 2] = p;
+            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
+                const Pull mine = block36(prolongation_, static_cast<std::size_t>(use_[u].entry)).cast<double>();
+                const int i = use_[u].node;
+                for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
+                    if (product_group_[e] < static_cast<int>(g)) continue;
+                    // (A P)^T P: rows of the later group, columns of this one
+                    sums[static_cast<std::size_t>(slot[product_group_[e]])].noalias() += pull(e).transpose() * mine;
+                }
+            }
+            for (int m = 0; m < modes; ++m) {
+                if (dropped_[g * modes + m]) sums[0](m, m) = 1;
+            }
+            for (int p = 0; p < pairs; ++p) {
+                for (int c = 0; c < modes; ++c) {
+                    for (int r = 0; r < modes; ++r) {
+                        const int half = c / 3;
+                        if (p == 0 && r / 3 < half) continue;
+                        // Column 2g + 1 begins with its own diagonal, one pair later than column 2g.
+                        const std::size_t pair =
+                            static_cast<std::size_t>(pattern_.node_start[2 * g + half]) + 2 * p + r / 3 - half;
+                        coarse_[9 * pair + static_cast<std::size_t>(3 * (c % 3) + r % 3)] =
+                            sums[static_cast<std::size_t>(p)](r, c);
+                    }
+                }
+            }
+        }
+    });
+}
+
+std::span<const int> CoarseSpace::members(std::size_t group) const {
+    const auto first = static_cast<std::size_t>(member_start_[group]);
+    return std::span(member_).subspan(first, static_cast<std::size_t>(member_start_[group + 1]) - first);
+}
+
+void CoarseSpace::turn(std::span<const double> positions) {
+    parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+            const Eigen::Vector3d before = middle_of(members(g), positions_);
+            const Eigen::Vector3d now = middle_of(members(g), positions);
+            Matrix3 together = Matrix3::Zero();
+            for (const int i : members(g))
+                together += (at(positions, i) - now) * (at(positions_, i) - before).transpose();
+            turns_[g] = nearest_rotation(together).cast<float>();
+        }
+    });
+}
+
+/// Node by node, as P lies in memory. Each piece of the nodes has sums of its own, which are added in order.
+void CoarseSpace::restrict(const float* fine, double* coarse) {
+    const std::size_t nodes = groups_.of_node.size(), size = modes * static_cast<std::size_t>(groups_.count);
+    const std::size_t piece = (nodes + restricting_pieces - 1) / restricting_pieces;
+    sums_.assign(restricting_pieces * size, 0.0F);
+    parallel_for(nodes, piece, [&](std::size_t begin, std::size_t end) {
+        float* sums = sums_.data() + begin / piece * size;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector3f turned_back = turns_[static_cast<std::size_t>(groups_.of_node[i])].transpose() *
+                                                Eigen::Map<const Eigen::Vector3f>(fine + 3 * i);
+            for (int e = start_[i]; e < start_[i + 1]; ++e)
+                Eigen::Map<Eigen::Matrix<float, modes, 1>>(sums + modes * static_cast<std::size_t>(group_[e]))
+                    .noalias() += block36(prolongation_, static_cast<std::size_t>(e)).transpose() * turned_back;
+        }
+    });
+    parallel_for(size, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            coarse[k] = 0;
+            for (std::size_t p = 0; p < restricting_pieces; ++p) coarse[k] += sums_[p * size + k];
+        }
+    });
+}
+
+void CoarseSpace::add_prolonged(const double* coarse, float* fine) const {
+    using Motions = Eigen::Map<const Eigen::Matrix<double, modes, 1>>;
+    parallel_for(groups_.of_node.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3f motion = Eigen::Vector3f::Zero();
+            for (int e = start_[i]; e < start_[i + 1]; ++e)
+                motion.noalias() += block36(prolongation_, static_cast<std::size_t>(e)) *
+                                    Motions(coarse + modes * static_cast<std::size_t>(group_[e])).cast<float>();
+            Eigen::Map<Eigen::Vector3f>(fine + 3 * i).noalias() +=
+                turns_[static_cast<std::size_t>(groups_.of_node[i])] * motion;
+        }
+    });
+}
+
+}  // namespace pliant::linalg

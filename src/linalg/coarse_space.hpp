@@ -1,0 +1,76 @@
+// What a body can do without much bending: its nodes in small groups, each of which moves as something rigid, smoothed
+// by one step with the matrix (smoothed aggregation: Vanek, Mandel and Brezina 1996).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/aligned_array.hpp"
+#include "linalg/block_rows.hpp"
+#include "linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// Group of each node. Nodes of a group are next to one another; groups are about as large as a node and its
+/// neighbours.
+struct Aggregates {
+    std::vector<int> of_node;
+    int count = 0;
+};
+[[nodiscard]] Aggregates aggregate(const BlockRows& matrix);
+
+/// Six unknowns a group, as two nodes of three: its translations and its rotations.
+class CoarseSpace {
+public:
+    explicit CoarseSpace(const BlockRows& matrix);
+
+    /// Takes the matrix and where its nodes are, (nodes, 3); `damping` is of the smoothing step, about 4/3 of the
+    /// inverse of the largest eigenvalue of D^-1 A with D its diagonal blocks, whose inverses are `inverse_diagonal`
+    /// (nodes, 9).
+    void set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal, float damping);
+
+    /// Keeps all that, and turns it with the nodes, which are at `positions` now: what a turned body does is what it
+    /// did before, turned. Precondition: set() was called.
+    void turn(std::span<const double> positions);
+
+    /// Pattern and values of P^T A P, as of the last set().
+    [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
+    [[nodiscard]] const std::vector<double>& values() const { return coarse_; }
+
+    /// coarse (size of the pattern) <- P^T fine.
+    void restrict(const float* fine, double* coarse);
+    /// fine += P coarse.
+    void add_prolonged(const double* coarse, float* fine) const;
+
+private:
+    void find_groups(const BlockRows& matrix);
+    void find_pattern(const BlockRows& matrix);
+    [[nodiscard]] std::span<const int> members(std::size_t group) const;
+    void set_rigid_motions(std::span<const double> positions);
+    void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
+    void multiply(const BlockRows& matrix);
+
+    struct Use {
+        int node, entry;
+    };
+
+    Aggregates groups_;
+    std::vector<int> member_start_, member_;  ///< nodes of each group
+    // P and A P by rows of nodes, in blocks of 3 by 6, column by column.
+    std::vector<int> start_, group_;                  ///< of P
+    std::vector<int> product_start_, product_group_;  ///< of A P
+    std::vector<int> use_start_;                      ///< (groups + 1)
+    std::vector<Use> use_;                            ///< where each group appears in P
+    AlignedArray<float> rigid_;                       ///< (nodes, 18) motions of the node's own group
+    AlignedArray<float> prolongation_;                ///< (entries of P, 18)
+    AlignedArray<double> product_;                    ///< (entries of A P, 18)
+    std::vector<double> positions_;                   ///< (nodes, 3) at the last set()
+    std::vector<Eigen::Matrix3f> turns_;              ///< (groups) since then
+    std::vector<float> sums_;                         ///< work space
+    std::vector<char> dropped_;                       ///< (groups, 6) a motion that its nodes cannot do
+    SymmetricPattern pattern_;
+    std::vector<double> coarse_;
+};
+
+}  // namespace pliant::linalg

@@ -1,0 +1,122 @@
+#include "sim/tangent_inverse.hpp"
+
+#include <span>
+#include <utility>
+
+#include "linalg/cholesky.hpp"
+#include "linalg/two_level.hpp"
+
+namespace pliant::sim {
+namespace {
+
+/// Of a solution: the rate at which the last digits of a state then come.
+constexpr double solution_error = 1e-3;
+
+std::span<double> view(Eigen::MatrixXd& columns) {
+    return {columns.data(), static_cast<std::size_t>(columns.size())};
+}
+
+/// A Newton step needs few digits, so the factor is in single precision until that proves too little.
+class DirectInverse final : public TangentInverse {
+public:
+    explicit DirectInverse(linalg::Cholesky factor) : factor_(std::move(factor)) {}
+
+    [[nodiscard]] bool set(const std::vector<double>& values, const Eigen::VectorXd&, Effort effort) override {
+        if (factorise(values)) return true;
+        if (!is_single() || effort == Effort::little) return false;
+        if (effort == Effort::usual && ++refusals_ % refusals_until_asked != 0) return false;
+        // Double knows whether the matrix is indefinite or only ill-conditioned.
+        factor_.use(linalg::Precision::double_);
+        if (factorise(values)) return true;
+        if (effort == Effort::usual) factor_.use(linalg::Precision::single_);
+        return false;
+    }
+
+    /// The first solution with a factor in single precision shows how good it is.
+    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns) override {
+        const int count = static_cast<int>(columns.cols());
+        if (!untried_) {
+            factor_.solve(view(columns), count);
+            return Outcome::solved;
+        }
+        untried_ = false;
+        const Eigen::MatrixXd right = columns;
+        if (factor_.solve_and_refine(*values_, view(columns), count, solution_error, most_refinements))
+            return Outcome::solved;
+        const Eigen::MatrixXd refined = std::exchange(columns, right);
+        factor_.use(linalg::Precision::double_);
+        if (factorise(*values_))
+            factor_.solve(view(columns), count);
+        else
+            columns = refined;
+        return Outcome::solved;
+    }
+
+    /// A factorisation costs as much as some ten steps with a factor that is at hand, and gains about two digits.
+    [[nodiscard]] double worth_another() const override { return 0.4; }
+
+private:
+    [[nodiscard]] bool is_single() const { return factor_.precision() == linalg::Precision::single_; }
+    [[nodiscard]] bool factorise(const std::vector<double>& values) {
+        values_ = &values;
+        untried_ = is_single();
+        return factor_.factorise(values);
+    }
+
+    static constexpr int refusals_until_asked = 4;  // asking costs
+    static constexpr int most_refinements = 8;      // more of them, and double precision is quicker
+
+    linalg::Cholesky factor_;
+    const std::vector<double>* values_ = nullptr;  ///< of the factor
+    bool untried_ = false;                         ///< nothing has been solved with this factor in single precision
+    int refusals_ = 0;                             ///< by single precision
+};
+
+class TwoLevelInverse final : public TangentInverse {
+public:
+    explicit TwoLevelInverse(const linalg::SymmetricPattern& pattern) : levels_(pattern) {}
+
+    [[nodiscard]] bool set(const std::vector<double>& values, const Eigen::VectorXd& positions, Effort) override {
+        return levels_.set(values, {positions.data(), static_cast<std::size_t>(positions.size())});
+    }
+
+    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns) override {
+        switch (levels_.solve(view(columns), static_cast<int>(columns.cols()), solution_error, most_iterations)) {
+            case linalg::TwoLevel::Outcome::solved:
+                return Outcome::solved;
+            case linalg::TwoLevel::Outcome::indefinite:
+                return Outcome::indefinite;
+            case linalg::TwoLevel::Outcome::slow:
+                break;
+        }
+        return Outcome::slow;
+    }
+
+    /// A new matrix costs next to nothing.
+    [[nodiscard]] double worth_another() const override { return 0; }
+
+private:
+    static constexpr int most_iterations = 100;  // ten do in a usual body
+    linalg::TwoLevel levels_;
+};
+
+}  // namespace
+
+std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg::Analysis> analysis, bool exact) {
+    return std::make_unique<DirectInverse>(
+        linalg::Cholesky(std::move(analysis), 3, exact ? linalg::Precision::double_ : linalg::Precision::single_));
+}
+
+std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern) {
+    return std::make_unique<TwoLevelInverse>(pattern);
+}
+
+bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
+    // Multiply-adds of a factorisation, for each pair of nodes, that take as long as two levels do (measured: 18,000),
+    // and half as much again, because bodies that are hard to solve take two levels longer, but no factor.
+    constexpr double even = 27000;
+    const double pairs = 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
+    return 27 * factor_work > even * pairs;
+}
+
+}  // namespace pliant::sim
