@@ -1,5 +1,6 @@
 #include "problems.hpp"
 
+#include "mesh/tet_file.hpp"
 #include "sim/attach.hpp"
 #include "sim/loads.hpp"
 #include "sim/reference_problems.hpp"
@@ -55,6 +56,41 @@ Description air_bar() {
     d.material_of_region = {0};
     d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
     d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.06 - 1e-9; }))}};
+    return d;
+}
+
+Description finger_7k(const std::string& reference_data) {
+    Description d;
+    d.mesh = *mesh::read_tet_mesh(reference_data + "/softrobots/cable_finger/finger_7k.vtk");
+    for (Vec3& p : d.mesh.points) p = 1e-3 * p;
+    d.materials = {{"silicone", material::neo_hookean(6e5, 0.45), 0}};
+    d.material_of_region.assign(d.mesh.region_names.size(), 0);
+    const double edge = 1e-6;
+    d.supports = {
+        {"base", reference::nodes_where(d.mesh, [&](Vec3 p) { return p.x > -0.015 - edge && p.y < 0.01 + edge; }), {}}};
+    Cable cable{"flexor", {{{}, {}, {0, 0.0125, 0.0025}}}, {CableTarget::Kind::shortening_m, 0.04}};
+    const Attacher attacher(d.mesh);
+    const double guides[][2] = {{-17.5, 2.5},  {-32.5, 2.5},  {-47.5, 2.5},  {-62.5, 2.5},  {-77.5, 2.5},
+                                {-83.5, 4.5},  {-85.5, 6.5},  {-85.5, 8.5},  {-83.5, 10.5}, {-77.5, 12.5},
+                                {-62.5, 12.5}, {-47.5, 12.5}, {-32.5, 12.5}, {-17.5, 12.5}};
+    for (const auto& [x, z] : guides)
+        cable.points.push_back(*attacher.carried_by_tet({1e-3 * x, 0.0125, 1e-3 * z}, 1e-4));
+    d.cables = {cable};
+    d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < -0.1033; }))}};
+    return d;
+}
+
+Description notched_finger(const std::string& reference_data, int order, const CableTarget& target) {
+    const reference::NamedMesh named = reference::load_tet(reference_data + "/fem/finger_p1_8563.tet", 1e-3);
+    Description d;
+    d.mesh = order == 2 ? mesh::to_quadratic(named.mesh) : named.mesh;
+    d.materials = {{"rubber", material::neo_hookean(45e6, 0.45), 0}};
+    d.material_of_region.assign(d.mesh.region_names.size(), 0);
+    d.supports = {{"L", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    Cable cable{"cable", {}, target};
+    for (const int node : named.sets.at("cable")) cable.points.push_back({{node}, {1.0}, {}});
+    d.cables = {cable};
+    d.markers = {{"tip", reference::mean_of(named.sets.at("tip"))}};
     return d;
 }
 

@@ -1,6 +1,8 @@
 // The robots of the solver's benchmarks.
 #pragma once
 
+#include <string>
+
 #include "sim/model.hpp"
 
 namespace pliant::bench {
@@ -15,5 +17,13 @@ namespace pliant::bench {
 /// A block of 60 x 12 x 12 mm, 1 MPa, nu 0.45, clamped at one end, with a closed chamber of 40 x 4 x 4 mm near its
 /// lower side, inflated to 1.5 of its volume: 7,200 linear tets.
 [[nodiscard]] sim::Description air_bar();
+
+/// The cable finger of the SoftRobots examples (softrobots/README.md of the reference data), its mesh of 7,407 tets:
+/// 600 kPa, nu 0.45, no gravity, pulled by 40 mm.
+[[nodiscard]] sim::Description finger_7k(const std::string& reference_data);
+
+/// The thesis' cable gripper finger (fem/README.md of the reference data): 8,563 tets, 45 MPa, nu 0.45.
+[[nodiscard]] sim::Description notched_finger(const std::string& reference_data, int order,
+                                              const sim::CableTarget& target);
 
 }  // namespace pliant::bench

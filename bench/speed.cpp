@@ -1,6 +1,6 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
-//   build/release/bench/pliant_speed [frames|cold|size [TETS]]      all, or one table; sizes up to TETS
+//   build/release/bench/pliant_speed [frames|cold|fingers|size [TETS]]      all, or one table; sizes up to TETS
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -128,6 +128,52 @@ void cold() {
     for (const double nu : {0.3, 0.45, 0.49}) apart([nu] { cold_of(nu); });
 }
 
+void pull(const std::string& folder, int steps) {
+    const auto model = Model::create(bench::finger_7k(folder));
+    const Trajectory found = quickest(*model, {.steps = steps, .tolerance = 1e-4});
+    const Trajectory exact = solve(*model, {.steps = steps, .tolerance = 1e-9});
+    if (!found.converged || !exact.converged) return fmt::print("| did not converge |\n");
+    const double moved = norm(tip(exact) - exact.steps.front().markers[0].position_m);
+    fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} | {:.1e} | {:.1e} | {:.4f} |\n", steps, 1e3 * found.setup_s,
+               1e3 * found.solve_s, iterations(found), found.steps.back().residual,
+               norm(tip(found) - tip(exact)) / moved, actuation(found));
+}
+
+/// CalculiX is given the tension that we find.
+void quadratic_finger(const std::string& folder) {
+    const double ratio = 0.8;
+    const auto model = Model::create(bench::notched_finger(folder, 2, {CableTarget::Kind::length_ratio, ratio}));
+    for (const int steps : {1, 4}) {
+        const Trajectory found = quickest(*model, {.steps = steps, .tolerance = 1e-5});
+        if (!found.converged) return fmt::print("| did not converge: {} |\n", found.message);
+        const double ours = found.setup_s + found.solve_s;
+        fmt::print("| {} | {:.2f} | {:.0f} | {:.1e} | {:.3f} |", steps, ours, iterations(found),
+                   found.steps.back().residual, actuation(found));
+        std::fflush(stdout);
+        const Description pulled = bench::notched_finger(folder, 2, {CableTarget::Kind::tension_N, actuation(found)});
+        const auto theirs =
+            calculix::installed() ? calculix::solve(pulled) : Result<calculix::Solution>(input_error("not installed"));
+        if (!theirs) {
+            fmt::print(" - | - | - |\n");
+            continue;
+        }
+        const Vec3 u = tip(found) - found.steps.front().markers[0].position_m;
+        const Vec3 v = calculix::displacement(*theirs, pulled.markers[0].point);
+        fmt::print(" {:.1f} | {:.0f} | {:.1e} |\n", theirs->wall_s, theirs->wall_s / ours, norm(u - v) / norm(v));
+    }
+}
+
+void fingers() {
+    const char* folder = std::getenv("PLIANT_REFERENCE_DATA");
+    if (folder == nullptr) return fmt::print("fingers: PLIANT_REFERENCE_DATA does not say where their meshes are\n");
+    fmt::print("| 40 mm of pull, steps | setup, ms | ms | iterations | residual | error of tip | tension, N |\n");
+    fmt::print("|---|---|---|---|---|---|---|\n");
+    for (const int steps : {1, 4, 40}) apart([&] { pull(folder, steps); });
+    fmt::print("| quadratic finger, steps | ours, s | iterations | residual | tension, N | CalculiX, s | ratio |");
+    fmt::print(" tips apart |\n|---|---|---|---|---|---|---|---|\n");
+    apart([&] { quadratic_finger(folder); });
+}
+
 void size_of(int along, int across, double tolerance) {
     const auto model = Model::create(bench::two_material_bend(0.45, 1, along, across));
     const Trajectory found = solve(*model, {.steps = 1, .tolerance = tolerance});
@@ -156,5 +202,6 @@ int main(int argc, char** argv) {
     const std::string only = argc > 1 ? argv[1] : "";
     if (only.empty() || only == "frames") frames();
     if (only.empty() || only == "cold") cold();
+    if (only.empty() || only == "fingers") fingers();
     if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5);
 }

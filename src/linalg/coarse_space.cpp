@@ -6,33 +6,20 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
-#include "linalg/small.hpp"
+#include "linalg/rigid_motions.hpp"
 
 namespace pliant::linalg {
 namespace {
 
-constexpr int modes = 6;
+constexpr int modes = RigidMotions::count;
 constexpr std::size_t grain = 512;
 constexpr std::size_t restricting_pieces = 8;
 
 using Block36 = Eigen::Matrix<float, 3, modes>;
 using Block33 = Eigen::Matrix3f;
-/// What is pulled at sums up to little where a body bends easily: there single precision would see nothing but noise.
-using Pull = Eigen::Matrix<double, 3, modes>;
-using Matrix6 = Eigen::Matrix<double, modes, modes>;
 
 Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry) {
     return Eigen::Map<Block36>(values.data() + 18 * entry);
-}
-
-Eigen::Vector3d at(std::span<const double> positions, int node) {
-    return Eigen::Map<const Eigen::Vector3d>(positions.data() + 3 * static_cast<std::size_t>(node));
-}
-
-Eigen::Vector3d middle_of(std::span<const int> nodes, std::span<const double> positions) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const int i : nodes) sum += at(positions, i);
-    return sum / static_cast<double>(nodes.size());
 }
 
 /// Places of the items of each group, in order: start (groups + 1) and items.
@@ -58,42 +45,10 @@ private:
 
 }  // namespace
 
-Aggregates aggregate(const BlockRows& matrix) {
-    const int nodes = matrix.rows();
-    Aggregates result{std::vector<int>(static_cast<std::size_t>(nodes), -1)};
-    auto& of = result.of_node;
-    const auto for_neighbours = [&](int i, const auto& use) {
-        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) use(matrix.column[k]);
-    };
-    // Whole neighbourhoods that nobody has taken; what is left between them joins one that it touches.
-    for (int i = 0; i < nodes; ++i) {
-        bool untouched = true;
-        for_neighbours(i, [&](int j) { untouched = untouched && of[j] < 0; });
-        if (!untouched) continue;
-        for_neighbours(i, [&](int j) { of[j] = result.count; });
-        ++result.count;
-    }
-    const std::vector<int> first = of;
-    for (int i = 0; i < nodes; ++i) {
-        if (of[i] >= 0) continue;
-        for_neighbours(i, [&](int j) {
-            if (of[i] < 0) of[i] = first[j];
-        });
-    }
-    for (int i = 0; i < nodes; ++i) {
-        if (of[i] >= 0) continue;
-        for_neighbours(i, [&](int j) {
-            if (of[j] < 0) of[j] = result.count;
-        });
-        ++result.count;
-    }
-    return result;
-}
-
 CoarseSpace::CoarseSpace(const BlockRows& matrix) : groups_(aggregate(matrix)) {
     list_members(groups_.of_node, groups_.count, member_start_, member_);
     find_groups(matrix);
-    find_pattern(matrix);
+    find_pattern();
     const auto nodes = static_cast<std::size_t>(matrix.rows());
     rigid_.resize(18 * nodes);
     prolongation_.resize(18 * group_.size());
@@ -134,8 +89,7 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
     }
 }
 
-void CoarseSpace::find_pattern(const BlockRows& matrix) {
-    (void)matrix;
+void CoarseSpace::find_pattern() {
     Seen seen(groups_.count);
     pattern_.block = 3;
     pattern_.nodes = 2 * groups_.count;
@@ -167,45 +121,18 @@ void CoarseSpace::set(const BlockRows& matrix, std::span<const double> positions
     turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
     set_rigid_motions(positions);
     smooth(matrix, inverse_diagonal, damping);
-    multiply(matrix);
+    find_pulls(matrix);
+    multiply();
 }
 
 /// Translations, and rotations about the middle of each group, made orthonormal.
 void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
-    const auto position = [&](int node) { return at(positions, node); };
-    using Motion = Eigen::Matrix<double, 3, modes>;
-    const auto motion_of = [](const Eigen::Vector3d& arm) {
-        Motion m;
-        m << 1, 0, 0, 0, arm.z(), -arm.y(), 0, 1, 0, -arm.z(), 0, arm.x(), 0, 0, 1, arm.y(), -arm.x(), 0;
-        return m;
-    };
     parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
-            const Eigen::Vector3d middle = middle_of(members(g), positions);
-            double reach = 0;
-            for (const int i : members(g)) reach = std::max(reach, (position(i) - middle).norm());
-            const double scale = reach > 0 ? 1 / reach : 0;
-            Matrix6 gram = Matrix6::Zero();
-            for (const int i : members(g)) {
-                const Motion m = motion_of(scale * (position(i) - middle));
-                gram += m.transpose() * m;
-            }
-            // gram = U^T U; motions that the nodes of a small group cannot tell from earlier ones are dropped.
-            constexpr double dependent = 1e-4;
-            Matrix6 inverse = Matrix6::Identity();  // of U, column by column
-            for (int c = 0; c < modes; ++c) {
-                for (int earlier = 0; earlier < c; ++earlier) {
-                    const double share = inverse.col(earlier).dot(gram * Matrix6::Identity().col(c));
-                    inverse.col(c) -= share * inverse.col(earlier);
-                }
-                const double squared = inverse.col(c).dot(gram * inverse.col(c));
-                const bool drop = !(squared > dependent * static_cast<double>(members(g).size()));
-                dropped_[g * modes + c] = drop ? 1 : 0;
-                inverse.col(c) *= drop ? 0 : 1 / std::sqrt(squared);
-            }
+            const RigidMotions motions(members(g), positions);
+            for (int c = 0; c < modes; ++c) dropped_[g * modes + c] = motions.dropped(c) ? 1 : 0;
             for (const int i : members(g))
-                block36(rigid_, static_cast<std::size_t>(i)) =
-                    (motion_of(scale * (position(i) - middle)) * inverse).cast<float>();
+                block36(rigid_, static_cast<std::size_t>(i)) = motions.at(positions, i).cast<float>();
         }
     });
 }
@@ -235,11 +162,12 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
     });
 }
 
-/// P^T A P.
-void CoarseSpace::multiply(const BlockRows& matrix) {
-    const auto pull = [&](int entry) {
-        return Eigen::Map<Pull>(product_.data() + 18 * static_cast<std::size_t>(entry));
-    };
+Eigen::Map<CoarseSpace::Pull> CoarseSpace::pull(int entry) const {
+    return Eigen::Map<Pull>(product_.data() + 18 * static_cast<std::size_t>(entry));
+}
+
+/// A P.
+void CoarseSpace::find_pulls(const BlockRows& matrix) {
     const auto nodes = static_cast<std::size_t>(matrix.rows());
     parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
@@ -257,42 +185,48 @@ void CoarseSpace::multiply(const BlockRows& matrix) {
             }
         }
     });
-    parallel_for(static_cast<std::size_t>(groups_.count), 16, [&](std::size_t begin, std::size_t end) {
-        using Block66 = Matrix6;
+}
+
+/// P^T A P.
+void CoarseSpace::multiply() {
+    constexpr std::size_t groups_at_once = 16;
+    parallel_for(static_cast<std::size_t>(groups_.count), groups_at_once, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
-        std::vector<Block66> sums;
+        std::vector<Matrix6> sums;  // of this group (columns) and every later one (rows)
         for (std::size_t g = begin; g < end; ++g) {
             const int first = pattern_.node_start[2 * g];
-            const int pairs = (pattern_.node_start[2 * g + 1] - first) / 2;  // groups from g on
-            sums.assign(static_cast<std::size_t>(pairs), Block66::Zero());
-            for (int p = 0; p < pairs; ++p) slot[pattern_.node_row[first + 2 * p] / 2] = p;
+            const int groups = (pattern_.node_start[2 * g + 1] - first) / 2;
+            sums.assign(static_cast<std::size_t>(groups), Matrix6::Zero());
+            for (int p = 0; p < groups; ++p) slot[pattern_.node_row[first + 2 * p] / 2] = p;
             for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
                 const Pull mine = block36(prolongation_, static_cast<std::size_t>(use_[u].entry)).cast<double>();
                 const int i = use_[u].node;
                 for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
                     if (product_group_[e] < static_cast<int>(g)) continue;
-                    // (A P)^T P: rows of the later group, columns of this one
                     sums[static_cast<std::size_t>(slot[product_group_[e]])].noalias() += pull(e).transpose() * mine;
                 }
             }
             for (int m = 0; m < modes; ++m) {
                 if (dropped_[g * modes + m]) sums[0](m, m) = 1;
             }
-            for (int p = 0; p < pairs; ++p) {
-                for (int c = 0; c < modes; ++c) {
-                    for (int r = 0; r < modes; ++r) {
-                        const int half = c / 3;
-                        if (p == 0 && r / 3 < half) continue;
-                        // Column 2g + 1 begins with its own diagonal, one pair later than column 2g.
-                        const std::size_t pair =
-                            static_cast<std::size_t>(pattern_.node_start[2 * g + half]) + 2 * p + r / 3 - half;
-                        coarse_[9 * pair + static_cast<std::size_t>(3 * (c % 3) + r % 3)] =
-                            sums[static_cast<std::size_t>(p)](r, c);
-                    }
-                }
-            }
+            put(g, sums);
         }
     });
+}
+
+/// The columns of a group into the pattern, which has two nodes for each.
+void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+        for (const int half : {0, 1}) {
+            for (const int row : {0, 1}) {
+                if (p == 0 && row < half) continue;
+                // The second node of a group begins with its own diagonal, one pair later than the first.
+                const std::size_t pair =
+                    static_cast<std::size_t>(pattern_.node_start[2 * group + half]) + 2 * p + row - half;
+                Eigen::Map<Eigen::Matrix3d>(coarse_.data() + 9 * pair) = sums[p].block<3, 3>(3 * row, 3 * half);
+            }
+        }
+    }
 }
 
 std::span<const int> CoarseSpace::members(std::size_t group) const {
@@ -302,14 +236,8 @@ std::span<const int> CoarseSpace::members(std::size_t group) const {
 
 void CoarseSpace::turn(std::span<const double> positions) {
     parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g) {
-            const Eigen::Vector3d before = middle_of(members(g), positions_);
-            const Eigen::Vector3d now = middle_of(members(g), positions);
-            Matrix3 together = Matrix3::Zero();
-            for (const int i : members(g))
-                together += (at(positions, i) - now) * (at(positions_, i) - before).transpose();
-            turns_[g] = nearest_rotation(together).cast<float>();
-        }
+        for (std::size_t g = begin; g < end; ++g)
+            turns_[g] = rotation_between(members(g), positions_, positions).cast<float>();
     });
 }
 

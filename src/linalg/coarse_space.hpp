@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "core/aligned_array.hpp"
+#include "linalg/aggregates.hpp"
 #include "linalg/block_rows.hpp"
 #include "linalg/sparse.hpp"
 
 namespace pliant::linalg {
-
-/// Group of each node. Nodes of a group are next to one another; groups are about as large as a node and its
-/// neighbours.
-struct Aggregates {
-    std::vector<int> of_node;
-    int count = 0;
-};
-[[nodiscard]] Aggregates aggregate(const BlockRows& matrix);
 
 /// Six unknowns a group, as two nodes of three: its translations and its rotations.
 class CoarseSpace {
@@ -44,12 +37,19 @@ public:
     void add_prolonged(const double* coarse, float* fine) const;
 
 private:
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    using Pull = Eigen::Matrix<double, 3, 6>;
     void find_groups(const BlockRows& matrix);
-    void find_pattern(const BlockRows& matrix);
+    void find_pattern();
     [[nodiscard]] std::span<const int> members(std::size_t group) const;
     void set_rigid_motions(std::span<const double> positions);
     void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
-    void multiply(const BlockRows& matrix);
+    void find_pulls(const BlockRows& matrix);
+    void multiply();
+    void put(std::size_t group, std::span<const Matrix6> sums);
+    /// What moving a group pulls at a node sums up to little where a body bends easily: single precision would see
+    /// nothing but noise.
+    [[nodiscard]] Eigen::Map<Pull> pull(int entry) const;
 
     struct Use {
         int node, entry;
