@@ -512,6 +512,7 @@ private:
         }
         std::sort(bad.begin(), bad.end());
         std::vector<int> tets;
+        tets.reserve(bad.size());
         for (const auto& [quality, t] : bad) tets.push_back(t);
         return tets;
     }

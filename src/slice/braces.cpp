@@ -36,6 +36,7 @@ std::vector<std::size_t> neighbours(const std::vector<Pillar>& pillars, std::siz
     }
     std::sort(found.begin(), found.end());
     std::vector<std::size_t> order;
+    order.reserve(found.size());
     for (const auto& [way, j] : found) order.push_back(j);
     return order;
 }
