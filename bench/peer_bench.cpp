@@ -6,8 +6,11 @@
 // same work.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -72,11 +75,37 @@ Result<Lit> lit_volume(const fs::path& archive, const Screen& screen) {
     return lit;
 }
 
+struct Run {
+    bool done = false;
+    double cpu_s = 0, peak_MB = 0;
+};
+
+/// Runs a shell line and waits for it.
+Run run_program(const std::string& command) {
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        _exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    if (child < 0 || wait4(child, &status, 0, &used) != child) return {};
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return {WIFEXITED(status) && WEXITSTATUS(status) == 0, seconds(used.ru_utime) + seconds(used.ru_stime),
+            static_cast<double>(used.ru_maxrss) / 1024};
+}
+
 /// Times `command`, a shell line that writes `archive`.
 void time_program(benchmark::State& state, const std::string& command, const fs::path& archive, const Screen& screen,
                   double body_mm3) {
+    double cpu_s = 0, peak_MB = 0;
     for (auto _ : state) {
-        if (std::system(command.c_str()) != 0) return state.SkipWithError(("failed: " + command).c_str());
+        const Run run = run_program(command);
+        if (!run.done) return state.SkipWithError(("failed: " + command).c_str());
+        cpu_s += run.cpu_s;
+        peak_MB = std::max(peak_MB, run.peak_MB);
     }
     const Result<Lit> lit = lit_volume(archive, screen);
     if (!lit) return state.SkipWithError(lit.error().message.c_str());
@@ -84,6 +113,8 @@ void time_program(benchmark::State& state, const std::string& command, const fs:
     state.counters["volume_mm3"] = lit->volume_mm3;
     state.counters["body_mm3"] = body_mm3;
     state.counters["archive_MB"] = static_cast<double>(fs::file_size(archive)) / 1e6;
+    state.counters["cpu_ms_a_layer"] = 1000 * cpu_s / static_cast<double>(state.iterations()) / lit->images;
+    state.counters["peak_MB"] = peak_MB;
 }
 
 /// examples/printers/tower.toml with the pixels of `screen`.
@@ -101,12 +132,19 @@ Result<std::string> printer_text(const Screen& screen) {
 
 enum class Program { pliant, pliant_on_one_core, prusa_slicer };
 
-void slice_program(benchmark::State& state, Program program, const Screen& screen) {
+/// A bumpy ball, 2 * around * (down - 1) triangles.
+struct Ball {
+    int around, down;
+    double radius_mm;
+};
+constexpr Ball usual{300, 140, 30}, million{1000, 500, 50};
+
+void slice_program(benchmark::State& state, Program program, const Screen& screen, const Ball& shape = usual) {
     const bool peer = program == Program::prusa_slicer;
     if (peer && std::system("command -v prusa-slicer >/dev/null") != 0)
         return state.SkipWithError("prusa-slicer is not installed: nothing to compare with");
     const Scratch scratch;
-    const mesh::TriMesh ball = bench::bumpy_ball(300, 140, 30);
+    const mesh::TriMesh ball = bench::bumpy_ball(shape.around, shape.down, shape.radius_mm);
     const std::string stl = scratch.folder / "ball.stl", ini = scratch.folder / "peer.ini";
     const std::string printer = scratch.folder / "printer.toml";
     const fs::path archive = scratch.folder / (peer ? "ball.sl1" : "ball.zip");
@@ -151,3 +189,12 @@ BENCHMARK_CAPTURE(slice_program, prusa_slicer_one_core_uhd, Program::prusa_slice
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->Iterations(1);
+// A million triangles, 2000 layers.
+BENCHMARK_CAPTURE(slice_program, pliant_one_core_uhd_1m_triangles, Program::pliant_on_one_core, uhd, million)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(2);
+BENCHMARK_CAPTURE(slice_program, pliant_uhd_1m_triangles, Program::pliant, uhd, million)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(2);

@@ -57,8 +57,8 @@ struct Box3 {
 
     void add(const Vec3& p) {
         for (std::size_t i = 0; i < 3; ++i) {
-            low[i] = std::fmin(low[i], p[i]);
-            high[i] = std::fmax(high[i], p[i]);
+            if (p[i] < low[i]) low[i] = p[i];
+            if (p[i] > high[i]) high[i] = p[i];
         }
     }
     /// Closed on all sides, widened by `margin`.

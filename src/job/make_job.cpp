@@ -224,37 +224,76 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
             !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed};
 }
 
-/// Makes layers in parallel batches, stores them in order, and tells `note` of each.
+/// What becomes of layers once they are made, in order: told to `note`, stored, listed in the manifest.
+class LayerKeeper {
+public:
+    using Note = std::function<void(int, Prepared&)>;
+    LayerKeeper(const JobSettings& settings, Manifest& manifest, Writer& writer, const Note& note)
+        : settings_(settings),
+          heights_(settings.slicing.layers()),
+          words_(file_words(manifest.materials)),
+          thumbnail_(manifest.width_px),
+          manifest_(manifest),
+          writer_(writer),
+          note_(note) {}
+
+    [[nodiscard]] const Thumbnail& thumbnail() const { return thumbnail_; }
+
+    Status keep(std::vector<Result<Prepared>>& layers) {
+        for (Result<Prepared>& made : layers) {
+            if (!made) return tl::unexpected(made.error());
+            const int k = static_cast<int>(manifest_.layers.size());
+            note_(k, *made);
+            thumbnail_.add(made->seen);
+            auto layer = store(*made, k, manifest_, words_, settings_, heights_, writer_);
+            if (!layer) return tl::unexpected(layer.error());
+            manifest_.layers.push_back(std::move(*layer));
+        }
+        return {};
+    }
+
+    Status finish() { return writer_.add_image(thumbnail_file, thumbnail_.picture(heights_, manifest_.pixel_um)); }
+
+private:
+    const JobSettings& settings_;
+    slice::Layers heights_;
+    std::vector<std::string> words_;
+    Thumbnail thumbnail_;
+    Manifest& manifest_;
+    Writer& writer_;
+    const Note& note_;
+};
+
+/// Makes layers in parallel batches and keeps them in order. One core keeps a batch while the others make the next.
 Status make_layers(const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer,
-                   Progress& progress, const std::function<void(int, Prepared&)>& note) {
+                   Progress& progress, const LayerKeeper::Note& note) {
     for (const auto& [name, rule] : settings.exposures) {
         if (auto status = check(rule, "material '" + name + "'"); !status) return status;
     }
-    const std::vector<std::string> words = file_words(manifest.materials);
-    const slice::Layers heights = settings.slicing.layers();
-    Thumbnail thumbnail(manifest.width_px);
+    LayerKeeper keeper(settings, manifest, writer, note);
     constexpr int batch = slice::layers_at_once;
+    std::vector<Result<Prepared>> made;
     for (int first = 0; first < source.count; first += batch) {
         if (progress.cancelled()) return cancelled();
         progress.advance("slice", static_cast<double>(first) / source.count);
         const auto size = static_cast<std::size_t>(std::min(batch, source.count - first));
-        std::vector<Result<Prepared>> layers(size);
-        parallel_for(size, source.parallel ? 1 : size, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                layers[i] = prepare_layer(source, settings, thumbnail, first + static_cast<int>(i));
+        std::vector<Result<Prepared>> next(size);
+        Status kept;
+        parallel_for(size + 1, source.parallel ? 1 : size + 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i == 0) {
+                    kept = keeper.keep(made);
+                } else {
+                    next[i - 1] = prepare_layer(source, settings, keeper.thumbnail(), first + static_cast<int>(i) - 1);
+                }
+            }
         });
-        for (std::size_t i = 0; i < size; ++i) {
-            if (!layers[i]) return tl::unexpected(layers[i].error());
-            const int k = first + static_cast<int>(i);
-            note(k, *layers[i]);
-            thumbnail.add(layers[i]->seen);
-            auto layer = store(*layers[i], k, manifest, words, settings, heights, writer);
-            if (!layer) return tl::unexpected(layer.error());
-            manifest.layers.push_back(std::move(*layer));
-        }
+        if (!kept) return kept;
+        made = std::move(next);
     }
+    if (auto kept = keeper.keep(made); !kept) return kept;
     progress.advance("slice", 1);
-    return writer.add_image(thumbnail_file, thumbnail.picture(heights, manifest.pixel_um));
+    return keeper.finish();
 }
 
 }  // namespace

@@ -8,19 +8,13 @@
 
 #include "mesh/mesh_report.hpp"
 #include "mesh/mesher.hpp"
+#include "mesh/test_shapes.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using namespace pliant::mesh::test;
 
 namespace {
-
-Solid solid(decltype(SolidNode::shape) shape) {
-    return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
-}
-
-Solid box(Vec3 low, Vec3 high) {
-    return solid(BoxSolid{low, high});
-}
 
 Solid combined(CombinedSolid::Operation operation, std::vector<Solid> parts) {
     return solid(CombinedSolid{operation, std::move(parts)});

@@ -15,6 +15,7 @@
 #include "mesh/mesh_report.hpp"
 #include "mesh/surface_orientation.hpp"
 #include "mesh/surface_slivers.hpp"
+#include "mesh/tet_improver.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -590,6 +591,7 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
             mesh->notes.push_back(fmt::format(
                 "the surface keeps the triangles that it was drawn with, whatever the mesh size ({})", reason));
     }
+    if (mesh) improve_tets(*mesh, {.wanted_deg = 1.4 * sliver_deg, .feature_deg = angle_deg});
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);

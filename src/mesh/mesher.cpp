@@ -164,6 +164,36 @@ void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const
     meshes = {std::move(*mesh)};
 }
 
+/// The walls of a body in a mesh.
+std::vector<WallSample> walls_of(const TetMesh& mesh, std::size_t body) {
+    return wall_samples(region_surface(mesh, static_cast<int>(body)));
+}
+
+/// Tets between faces that are much closer than edges are long are flat: with shorter edges there, they are better.
+void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std::size_t b,
+                       const MeshSettings& settings, SizeField field) {
+    constexpr double elements = 0.2;  // through the thinnest wall
+    double angle = sliver_deg;
+    std::size_t thin = 0;
+    for (const TetMesh& mesh : meshes) {
+        std::vector<WallSample> walls = walls_of(mesh, 0);
+        std::erase_if(walls, [](const WallSample& w) { return w.thickness > elements * w.edge; });
+        field.add_walls(walls, elements);
+        thin += walls.size();
+        angle = std::min(angle, smallest_dihedral_deg(mesh));
+    }
+    if (angle >= sliver_deg || thin == 0) return;
+    Result<std::vector<TetMesh>> finer = mesh_pieces(surface, settings, sizes_of(field, {b}));
+    if (!finer) return;
+    double its = sliver_deg;
+    for (const TetMesh& mesh : *finer) its = std::min(its, smallest_dihedral_deg(mesh));
+    if (its <= angle) return;
+    meshes = std::move(*finer);
+    meshes.front().notes.emplace_back(
+        "edges are shorter than the mesh size beside walls that are much thinner than it");
+    return;
+}
+
 /// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
                                             const MeshSettings& settings, const SizeField& field, Progress& progress) {
@@ -187,6 +217,7 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
         meshes = std::vector<TetMesh>{std::move(*mesh)};
     } else {
         replace_slivers(*meshes, surface, settings, progress);
+        follow_thin_walls(*meshes, surface, b, settings, field);
     }
     if (progress.cancelled()) return cancelled();
     if (slivers.removed > 0 && !damaged) {
@@ -290,11 +321,6 @@ Result<TetMesh> close_gaps(std::span<const BodyGeometry> bodies, const MeshSetti
     return mesh;
 }
 
-/// The walls of a body in a mesh.
-std::vector<WallSample> walls_of(const TetMesh& mesh, std::size_t body) {
-    return wall_samples(region_surface(mesh, static_cast<int>(body)));
-}
-
 /// About as many tets as the sizes will give, by a first mesh.
 double expected_tets(const TetMesh& mesh, const SizeField& field) {
     double sum = 0;
@@ -316,7 +342,7 @@ Status follow_walls(std::span<const BodyGeometry> bodies, const MeshSettings& se
     const Result<TetMesh> first = mesh_once(bodies, coarse, field, progress);
     if (!first) return tl::unexpected(first.error());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (!bodies[b].air) field.add_walls(walls_of(*first, b));
+        if (!bodies[b].air) field.add_walls(walls_of(*first, b), settings.through_wall);
     }
     constexpr double most = 20e6;
     const double tets = expected_tets(*first, field);

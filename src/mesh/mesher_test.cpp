@@ -10,23 +10,13 @@
 
 #include "mesh/mesh_report.hpp"
 #include "mesh/surface_check.hpp"
+#include "mesh/test_shapes.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using namespace pliant::mesh::test;
 
 namespace {
-
-Solid solid(decltype(SolidNode::shape) shape) {
-    return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
-}
-
-Solid box(Vec3 low, Vec3 high) {
-    return solid(BoxSolid{low, high});
-}
-
-Solid without(Solid first, Solid second) {
-    return solid(CombinedSolid{CombinedSolid::Operation::subtract, {std::move(first), std::move(second)}});
-}
 
 /// A bar of 100 x 20 x 15 with `gaps` V notches of 1 to 10 mm width and 10 mm depth.
 Solid notched_bar(int gaps) {

@@ -7,23 +7,13 @@
 #include <numbers>
 
 #include "mesh/mesher.hpp"
+#include "mesh/test_shapes.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using namespace pliant::mesh::test;
 
 namespace {
-
-Solid solid(decltype(SolidNode::shape) shape) {
-    return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
-}
-
-Solid box(Vec3 low, Vec3 high) {
-    return solid(BoxSolid{low, high});
-}
-
-Solid without(Solid first, Solid second) {
-    return solid(CombinedSolid{CombinedSolid::Operation::subtract, {std::move(first), std::move(second)}});
-}
 
 /// What a cable finds in a body, and how large that is.
 std::vector<double> volumes(const Solid& body, const std::vector<Vec3>& path) {

@@ -21,10 +21,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 }  // namespace
 
 SizeField::SizeField(std::span<const BodyGeometry> bodies, const MeshSettings& settings)
-    : size_(settings.size),
-      through_wall_(settings.through_wall),
-      cable_size_(settings.size_near_cables),
-      cables_(settings.cables) {
+    : size_(settings.size), cable_size_(settings.size_near_cables), cables_(settings.cables) {
     for (const BodyGeometry& body : bodies) body_.push_back(body.size > 0 ? body.size : size_);
 }
 
@@ -34,10 +31,9 @@ SizeField::Cell SizeField::cell_of(const Vec3& p) const {
     return cell;
 }
 
-void SizeField::add_walls(const std::vector<WallSample>& walls) {
-    if (through_wall_ < 1) return;
+void SizeField::add_walls(const std::vector<WallSample>& walls, double elements) {
     for (const WallSample& wall : walls) {
-        const double wanted = wall.thickness / through_wall_;
+        const double wanted = wall.thickness / elements;
         if (wanted >= size_) continue;
         too_thin_ = too_thin_ || wanted < least_share * size_;
         const double size = std::max(wanted, least_share * size_);

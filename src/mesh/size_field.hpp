@@ -17,8 +17,9 @@ class SizeField {
 public:
     SizeField(std::span<const BodyGeometry> bodies, const MeshSettings& settings);
 
-    /// Walls of a first mesh. Sizes go down to an eighth of the mesh size at most.
-    void add_walls(const std::vector<WallSample>& walls);
+    /// Walls of a first mesh, each to have so many elements through it (above zero; a half: edges twice as long as it
+    /// is thick). Sizes go down to an eighth of the mesh size at most.
+    void add_walls(const std::vector<WallSample>& walls, double elements);
 
     [[nodiscard]] double at(std::size_t body, const Vec3& p) const;
     /// Whether it is the same everywhere.
@@ -34,7 +35,6 @@ private:
 
     double size_;
     std::vector<double> body_;
-    int through_wall_;
     double cable_size_;
     std::vector<std::vector<Vec3>> cables_;
     std::map<Cell, double> walls_;  ///< (cells of edge size_) the least size that a wall in or beside the cell asks for

@@ -4,28 +4,11 @@
 
 #include <cmath>
 
+#include "mesh/test_shapes.hpp"
+
 using namespace pliant;
 using namespace pliant::mesh;
-
-namespace {
-
-TriMesh cube(const Vec3& low, double side) {
-    TriMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.points.push_back(low + side * Vec3{double(i & 1), double(i >> 1 & 1), double(i >> 2)});
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
-}
-
-TriMesh joined(TriMesh a, const TriMesh& b) {
-    const int offset = static_cast<int>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-    return a;
-}
-
-}  // namespace
+using namespace pliant::mesh::test;
 
 TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; and those that do not") {
     const TriMesh one = cube({0, 0, 0}, 10);

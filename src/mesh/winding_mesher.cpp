@@ -21,6 +21,7 @@
 #include "mesh/gmsh_kernel.hpp"
 #include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
+#include "mesh/tet_improver.hpp"
 #include "mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
@@ -96,6 +97,26 @@ std::size_t node_limit(const TriMesh& surface, double size) {
 /// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
 struct Cancelled {};
 
+/// Where CGAL is, by how often it has asked whether a point is inside. It asks about `per_node` times for each node.
+class Asked {
+public:
+    Asked(double nodes, Progress& progress) : expected_(per_node * nodes), progress_(progress) {}
+
+    void count() {
+        if (progress_.cancelled()) throw Cancelled();
+        constexpr long step = 1 << 14;
+        // How many are needed is a guess: the bar nears its end ever more slowly.
+        if (++count_ % step == 0)
+            progress_.advance("mesh a damaged surface", 1 - std::exp(-2 * static_cast<double>(count_) / expected_));
+    }
+
+private:
+    static constexpr double per_node = 400;
+    long count_ = 0;
+    double expected_;
+    Progress& progress_;
+};
+
 /// What is asked of the mesh beside its size.
 struct Demands {
     std::vector<std::vector<Vec3>> edges;  ///< that stay
@@ -106,16 +127,17 @@ struct Demands {
 /// Around the origin; nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of
 /// circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
 std::optional<Complex> mesh_around_origin(const TriangleTree& tree, const Box3& box, const Demands& demands,
-                                          double size, Progress& progress) {
+                                          double size, Asked& asked) {
     namespace params = CGAL::parameters;
     CGAL::get_default_random() = CGAL::Random(0);
     const double radius = 0.6 * box.diagonal();
+    constexpr double exact = 1e-3;  // of the size: how well points lie on the surface; each digit costs three questions
     Domain domain = Domain::create_implicit_mesh_domain(
-        [&tree, &progress](const Kernel::Point_3& p) {
-            if (progress.cancelled()) throw Cancelled();
+        [&](const Kernel::Point_3& p) {
+            asked.count();
             return inside - tree.winding_number({p.x(), p.y(), p.z()});
         },
-        Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = 1e-5);
+        Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * size / radius);
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
@@ -169,12 +191,14 @@ Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angl
     if (!few) return tl::unexpected(few.error());
     try {
         const SharpEdges edges = sharp_edges(tree, size, angle_deg);
-        std::optional<Complex> complex = mesh_around_origin(tree, box, {edges.chains, 0.05, 25}, size, progress);
+        Asked asked(1 + static_cast<double>(node_limit(tree.surface(), size)) / 6, progress);
+        std::optional<Complex> complex = mesh_around_origin(tree, box, {edges.chains, 0.05, 25}, size, asked);
         const bool rounded = !complex;
-        if (rounded) complex = mesh_around_origin(tree, box, {{}, 0.15, 20}, size, progress);
+        if (rounded) complex = mesh_around_origin(tree, box, {{}, 0.15, 20}, size, asked);
         if (!complex)
             return failure("the mesh of the damaged surface does not come to an end; try a smaller mesh size");
         TetMesh mesh = collect(*complex, middle);
+        improve_tets(mesh, {.feature_deg = angle_deg});
         const double meshed = mesh::volume(mesh);
         if (!(std::fabs(meshed - volume) < 0.1 * volume))
             return failure(

@@ -7,29 +7,14 @@
 #include "mesh/mesh_report.hpp"
 #include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
+#include "mesh/test_shapes.hpp"
 #include "mesh/triangle_tree.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using namespace pliant::mesh::test;
 
 namespace {
-
-/// A cube of side 10 from `low`, 12 triangles.
-TriMesh cube(const Vec3& low = {0, 0, 0}, double side = 10) {
-    TriMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.points.push_back(low + side * Vec3{double(i & 1), double(i >> 1 & 1), double(i >> 2)});
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
-}
-
-TriMesh joined(TriMesh a, const TriMesh& b) {
-    const int offset = static_cast<int>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-    return a;
-}
 
 Progress silent;
 

@@ -1,11 +1,9 @@
 // Where the part stands, and what stands under it.
 #include "slice/arrange.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <tuple>
 
-#include "core/units.hpp"
+#include "prepare/option_text.hpp"
 #include "prepare/settings.hpp"
 #include "slice/adaptive.hpp"
 #include "slice/hollow.hpp"
@@ -14,14 +12,6 @@
 
 namespace pliant::prepare {
 namespace {
-
-/// Micrometres; `otherwise` where the option was not given.
-Result<double> length_um(const char* option, const std::string& text, double otherwise) {
-    if (text.empty()) return otherwise;
-    const Result<double> length = parse_quantity(text, Dimension::length);
-    if (!length) return input_error("{}: {}", option, length.error().message);
-    return *length * 1e6;
-}
 
 Status read_lengths(std::initializer_list<std::tuple<const char*, const std::string*, double*>> wanted) {
     for (const auto& [option, text, um] : wanted) {
@@ -36,10 +26,9 @@ Result<slice::SupportSettings> support_settings(const Order& order) {
     slice::SupportSettings s;
     s.material = order.support;
     if (!order.support_angle.empty()) {
-        const std::string& text = order.support_angle;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), s.angle_deg);
-        if (error != std::errc() || end != text.data() + text.size())
-            return input_error("--support-angle {}: a number of degrees is needed", text);
+        const Result<double> angle = plain_degrees("--support-angle", order.support_angle);
+        if (!angle) return tl::unexpected(angle.error());
+        s.angle_deg = *angle;
     }
     Status status = read_lengths({{"--support-spacing", &order.support_spacing, &s.spacing_um},
                                   {"--support-tip", &order.support_tip, &s.tip_um},
@@ -79,11 +68,9 @@ Status lift(const Order& order, double raft_um, Drawing& drawing) {
 
 Status set_heights(const Order& order, const Drawing& drawing, slice::Settings& slicing) {
     if (order.least_layer.empty()) return {};
-    double least_um = 0;
-    if (Status status = read_lengths({{"--least-layer", &order.least_layer, &least_um}}); !status) return status;
-    if (std::fabs(least_um - std::round(least_um)) > 1e-6)
-        return input_error("--least-layer {}: a whole number of micrometres is needed", order.least_layer);
-    auto tops = slice::adaptive_tops(drawing.bodies, {static_cast<int>(std::lround(least_um)), slicing.layer_um});
+    const Result<int> least_um = layer_height_um("--least-layer", order.least_layer);
+    if (!least_um) return tl::unexpected(least_um.error());
+    auto tops = slice::adaptive_tops(drawing.bodies, {*least_um, slicing.layer_um});
     if (!tops) return input_error("--least-layer: {}", tops.error().message);
     slicing.tops_um = std::move(*tops);
     return {};
@@ -130,8 +117,8 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     if (!supported) return {};
     auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
     if (!supports) return tl::unexpected(supports.error());
-    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {:.1f} mm^3", supports->tips,
-                                supports->on_part, supports->volume_mm3));
+    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {} struts, {:.1f} mm^3",
+                                supports->tips, supports->on_part, supports->struts, supports->volume_mm3));
     if (supports->islands_left > 0)
         drawing.warnings.push_back(
             fmt::format("{} islands are left that supports do not reach", supports->islands_left));

@@ -1,12 +1,11 @@
 #include "prepare/settings.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 #include "core/units.hpp"
 #include "machine/working_curve.hpp"
+#include "prepare/option_text.hpp"
 
 namespace pliant::prepare {
 namespace {
@@ -49,25 +48,6 @@ std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Print
     return materials;
 }
 
-/// A length in micrometres, as an option gives it; 0 where it was not given.
-Result<double> length_um(const char* option, const std::string& text, double least_um, double most_um) {
-    if (text.empty()) return 0;
-    const Result<double> length = parse_quantity(text, Dimension::length);
-    if (!length) return input_error("{}: {}", option, length.error().message);
-    if (!(*length * 1e6 >= least_um - 1e-6 && *length * 1e6 <= most_um + 1e-6))
-        return input_error("{} {}: must be {:.6g} to {:.6g} mm", option, text, least_um / 1000, most_um / 1000);
-    return *length * 1e6;
-}
-
-Result<int> layer_height_um(const char* option, const std::string& text) {
-    const Result<double> height = parse_quantity(text, Dimension::length);
-    if (!height) return input_error("{}: {}", option, height.error().message);
-    const double um = std::round(*height * 1e6);
-    if (um < 1 || um > 1000 || std::fabs(um - *height * 1e6) > 1e-6)
-        return input_error("{} {}: a whole number of micrometres from 1 to 1000 is needed", option, text);
-    return static_cast<int>(um);
-}
-
 /// Of every material, as the resin that it is printed in asks for.
 std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
     std::map<std::string, slice::Compensation> result;
@@ -94,13 +74,6 @@ std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, 
         if (rule.transition_layers > 0 || rule.penetration_um > 0) rules[material] = rule;
     }
     return rules;
-}
-
-/// A whole number without anything around it; -1 for anything else.
-int plain_number(const std::string& text) {
-    int number = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size() ? number : -1;
 }
 
 struct Pair {
@@ -250,7 +223,7 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
             "xy_compensation, elephant_foot and bleed_compensation: layer images are printed as they are");
     }
     if (Status status = set_pairs(order, drawing, settings.slicing); !status) return tl::unexpected(status.error());
-    const Result<double> least = length_um("--least-feature", order.least_feature, 1e-3, 10000);
+    const Result<double> least = length_um("--least-feature", order.least_feature, 0, 1e-3, 10000);
     if (!least) return tl::unexpected(least.error());
     settings.least_feature_um = *least;
     settings.slicing.rules.anti_alias = !order.no_anti_alias;

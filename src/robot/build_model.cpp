@@ -5,6 +5,7 @@
 #include "robot/build_cables.hpp"
 #include "robot/build_chambers.hpp"
 #include "robot/build_contact.hpp"
+#include "robot/build_grades.hpp"
 #include "robot/build_places.hpp"
 
 namespace pliant::robot {
@@ -38,6 +39,7 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     description.gravity_share = robot.gravity_share;
     description.ambient_pressure_Pa = robot.ambient_pressure_Pa;
     add_materials(draft);
+    add_grades(draft);
     add_supports(draft);
     add_plates(draft);
     add_loads(draft);

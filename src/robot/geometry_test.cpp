@@ -78,21 +78,6 @@ sim::Step last_step(const Built& built) {
     return run_to_the_end(built).steps.back();
 }
 
-std::string problem(const std::string& text) {
-    const Result<Robot> robot = parse_robot(text, "bar.toml");
-    if (!robot) return robot.error().message;
-    Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    if (!mesh) return mesh.error().message;
-    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    return model ? "" : model.error().message;
-}
-
-void check_problem(const std::string& text, const std::string& wanted) {
-    const std::string found = problem(text);
-    CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
-}
-
 double volume_mm3(const mesh::TetMesh& mesh, int region) {
     return 1e9 * mesh::volume(mesh, region);
 }

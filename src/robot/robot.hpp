@@ -52,7 +52,7 @@ struct CavityAt {
 struct CrossedNotches {};
 using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt, CrossedNotches>;
 
-/// A body that changes from its material to another when it is printed; in length units.
+/// A body that changes from its material to another; in length units.
 struct PrintBlend {
     int material = 0;  ///< index into Robot::materials
     Vec3 from, to;
@@ -66,7 +66,7 @@ struct BodySpec {
     Geometry geometry;
     double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
     int line = 0;
-    std::optional<PrintBlend> blend{};  ///< for printing; a simulation takes the body for its material alone
+    std::optional<PrintBlend> blend{};  ///< a simulation takes it in grades, build_grades.hpp
     double exposure_s = 0;              ///< of its layers when printed; 0: that of its material
 };
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -11,6 +12,8 @@
 
 using namespace pliant;
 using namespace pliant::robot;
+using testing::check_problem;
+using testing::problem;
 
 namespace {
 
@@ -60,22 +63,6 @@ std::string with(const std::string& line, const std::string& replacement) {
     const std::size_t at = text.find(line);
     REQUIRE_MESSAGE(at != std::string::npos, line);
     return text.replace(at, line.size(), replacement);
-}
-
-/// What is wrong with a text, whether that shows on reading or on building.
-std::string problem(const std::string& text, const std::vector<std::string>& assignments = {}) {
-    const Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
-    if (!robot) return robot.error().message;
-    Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    if (!mesh) return mesh.error().message;
-    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    return model ? "" : model.error().message;
-}
-
-void check_problem(const std::string& text, const std::string& wanted) {
-    const std::string found = problem(text);
-    CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
 }
 
 }  // namespace
@@ -136,6 +123,46 @@ TEST_CASE("slips in the text are named with their line") {
     check_problem(good + "surplus = 1\n", "bar.toml:39: program.surplus: nobody reads this key");
     check_problem(with("steps = 3", "steps = 0"), "between 1 and 100000");
     check_problem(with("name = \"right\"", "name = \"left\""), "two bodies named \"left\"");
+}
+
+TEST_CASE("a graded bar gives way like its grades in a row") {
+    // Without sideways strain, u = F / A int dx / E: with E rising straight from 1 to 5 MPa, ln 5 / 4 of what 1 MPa
+    // gives.
+    const testing::Built bar = testing::build(parse_robot(R"(name = "bar"
+length_unit = "mm"
+[material.soft]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0
+[material.hard]
+youngs_modulus = "5 MPa"
+poisson_ratio = 0
+[[body]]
+name = "bar"
+geometry = { box = [[0, 0, 0], [40, 5, 5]] }
+material = "soft"
+blend = { material = "hard", from = [0, 0, 0], to = [40, 0, 0] }
+[mesh]
+size = "2.5 mm"
+order = 2
+[[fixed]]
+name = "wall"
+box = [[0, 0, 0], [0, 5, 5]]
+[[load]]
+name = "pull"
+box = [[40, 0, 0], [40, 5, 5]]
+force = ["0.025 N", "0 N", "0 N"]
+[[marker]]
+name = "tip"
+box = [[40, 0, 0], [40, 5, 5]]
+[program]
+steps = 1
+)",
+                                                          "bar.toml"));
+    const sim::Description& d = bar.model.description();
+    CHECK(d.materials.size() > 15);
+    CHECK(d.materials.size() <= 2 + 19);
+    const double found = testing::run_to_the_end(bar).steps.back().markers[0].position_m.x - 0.04;
+    CHECK(found == doctest::Approx(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4).epsilon(0.01));
 }
 
 TEST_CASE("blends and exposures are read, and their slips named") {

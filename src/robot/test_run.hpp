@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robot/build.hpp"
 
@@ -23,6 +25,22 @@ inline Built build(Result<Robot> robot) {
     Result<sim::Model> model = build_model(*robot, std::move(*mesh));
     REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
     return {std::move(*robot), std::move(*model)};
+}
+
+/// What is wrong with a text, whether that shows on reading or on building; "" if nothing.
+inline std::string problem(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    const Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
+    if (!robot) return robot.error().message;
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    if (!mesh) return mesh.error().message;
+    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    return model ? "" : model.error().message;
+}
+
+inline void check_problem(const std::string& text, const std::string& wanted) {
+    const std::string found = problem(text);
+    CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
 }
 
 /// Whether it converged is for the test to check.

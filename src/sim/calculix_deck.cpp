@@ -103,6 +103,9 @@ private:
         if (d_.contact) return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
+        if (!d_.material_of_tet.empty())
+            return input_error(
+                "CalculiX: the deck has no bodies that change from one material to another; leave blend out");
         for (const Support& support : d_.supports) {
             if (std::fabs(support.turn.angle_rad * support.share.at(1)) > most_turn_rad)
                 return input_error("CalculiX: support \"{}\" turns by more than 60 degrees", support.name);

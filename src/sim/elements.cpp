@@ -80,7 +80,10 @@ Result<Elements> Elements::create(const Description& description) {
         elements.laws_.push_back(material.law);
         elements.has_energy_ = elements.has_energy_ && material::has_energy(material.law);
     }
-    for (const int region : mesh.region) elements.law_.push_back(description.material_of_region[region]);
+    elements.law_ = description.material_of_tet;
+    if (elements.law_.empty()) {
+        for (const int region : mesh.region) elements.law_.push_back(description.material_of_region[region]);
+    }
     elements.group_by_law();
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (Status status = elements.integrate_tet(description, t); !status) return tl::unexpected(status.error());

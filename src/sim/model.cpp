@@ -41,6 +41,12 @@ Status check_mesh(const Description& d) {
     for (const int m : d.material_of_region) {
         if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
     }
+    if (!d.material_of_tet.empty() && d.material_of_tet.size() != mesh.tet_count())
+        return input_error("there are materials of {} tets, the mesh has {}", d.material_of_tet.size(),
+                           mesh.tet_count());
+    for (const int m : d.material_of_tet) {
+        if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
+    }
     return {};
 }
 

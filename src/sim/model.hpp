@@ -167,6 +167,7 @@ struct Description {
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;
+    std::vector<int> material_of_tet{};  ///< (tets) where bodies are graded, in place of their region's; else empty
 };
 
 class Model {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/share.hpp"
 #include "slice/raster_frame.hpp"
 
 namespace pliant::slice {
@@ -142,11 +143,7 @@ Status check(const Blend& blend, const std::string& where) {
 }
 
 double share_at(const Blend& blend, const Vec3& place_um) {
-    const Vec3 way = blend.to_um - blend.from_um;
-    const double along = std::clamp(dot(place_um - blend.from_um, way) / dot(way, way), 0.0, 1.0);
-    const double at = along * static_cast<double>(blend.shares.size() - 1);
-    const std::size_t i = std::min(static_cast<std::size_t>(at), blend.shares.size() - 2);
-    return blend.shares[i] + (blend.shares[i + 1] - blend.shares[i]) * (at - static_cast<double>(i));
+    return share_along(blend.shares, blend.from_um, blend.to_um, place_um);
 }
 
 std::pair<RunImage, RunImage> dealt(const RunImage& image, const Blend& blend, const Raster& raster, double z_um,

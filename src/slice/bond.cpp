@@ -7,12 +7,6 @@
 namespace pliant::slice {
 namespace {
 
-const RunImage* find(const ComposedLayer& layer, int material) {
-    const auto found = std::find_if(layer.images.begin(), layer.images.end(),
-                                    [&](const MaterialImage& m) { return m.material == material; });
-    return found == layer.images.end() ? nullptr : &found->image;
-}
-
 MaterialImage& of_material(ComposedLayer& layer, int material, const RunImage& like) {
     const auto place = std::lower_bound(layer.images.begin(), layer.images.end(), material,
                                         [](const MaterialImage& m, int wanted) { return m.material < wanted; });
@@ -38,16 +32,17 @@ Status check(const Bond& bond) {
 
 void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
               int second, int depth_px) {
-    const RunImage* into = find(owned, second);
-    if (into == nullptr) return;
-    RunSet near(into->width_px(), into->height_px());
-    if (const RunImage* own = find(owned, first); own != nullptr) near = grown(RunSet::lit(*own), depth_px);
+    const MaterialImage* found = find(owned, second);
+    if (found == nullptr) return;
+    const RunImage& into = found->image;
+    RunSet near(into.width_px(), into.height_px());
+    if (const MaterialImage* own = find(owned, first)) near = grown(RunSet::lit(own->image), depth_px);
     for (const ComposedLayer& neighbour : around) {
-        if (const RunImage* image = find(neighbour, first); image != nullptr) near = united(near, RunSet::lit(*image));
+        if (const MaterialImage* other = find(neighbour, first)) near = united(near, RunSet::lit(other->image));
     }
-    RunImage added = inside(*into, near);
+    RunImage added = inside(into, near);
     if (added.blank()) return;
-    MaterialImage& image = of_material(layer, first, *into);
+    MaterialImage& image = of_material(layer, first, into);
     // What another bond has added already.
     added = outside(added, RunSet::lit(image.image));
     const std::int64_t sum = added.value_sum();

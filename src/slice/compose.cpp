@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace pliant::slice {
@@ -22,7 +23,7 @@ struct Pixel {
 };
 
 std::int64_t covered(std::int64_t winding) {
-    return std::min(full_coverage, winding < 0 ? -winding : winding);
+    return std::min(full_coverage, std::abs(winding));
 }
 
 /// The grey values of coverages.
@@ -154,13 +155,13 @@ private:
         int cursor = 0;
         for (std::size_t i = 0; i < cells.size();) {
             const int column = cells[i].column();
-            if (winding != 0) canvas_.run({material, grey_(covered(winding))}, row, cursor, column);
+            if (winding != 0) canvas_.run({material, grey_(counted(winding))}, row, cursor, column);
             std::int64_t here = winding;
             for (; i < cells.size() && cells[i].column() == column; ++i) {
                 here += cells[i].area;
                 winding += cells[i].cover;
             }
-            canvas_.run({material, grey_(covered(here))}, row, column, column + 1);
+            canvas_.run({material, grey_(counted(here))}, row, column, column + 1);
             cursor = column + 1;
         }
     }
@@ -208,13 +209,18 @@ private:
         }
     }
 
+    std::int64_t counted(std::int64_t winding) {
+        layer_.overlapping = layer_.overlapping || std::abs(winding) > full_coverage + rounding;
+        return covered(winding);
+    }
+
     /// Serves the bodies from the last to the first until the pixel is full.
     Owner resolve(const std::vector<Share>& shares) {
         std::int64_t used = 0;
         int winner = -1;
         served_.clear();
         for (std::size_t i = shares.size(); i-- > 0;) {
-            const std::int64_t wanted = covered(shares[i].winding);
+            const std::int64_t wanted = counted(shares[i].winding);
             if (wanted == 0) continue;
             const int material = material_of_[shares[i].body];
             if (std::find(served_.begin(), served_.end(), material) == served_.end()) {
@@ -257,7 +263,22 @@ private:
     ComposedLayer layer_;
 };
 
+template <class Images>
+auto* find_image(Images& images, int material) {
+    const auto found =
+        std::find_if(images.begin(), images.end(), [&](const MaterialImage& m) { return m.material == material; });
+    return found == images.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+const MaterialImage* find(const ComposedLayer& layer, int material) {
+    return find_image(layer.images, material);
+}
+
+MaterialImage* find(ComposedLayer& layer, int material) {
+    return find_image(layer.images, material);
+}
 
 ComposedLayer compose(const std::vector<Cell>& cells, std::span<const int> material_of, const Raster& raster,
                       const ComposeRules& rules) {

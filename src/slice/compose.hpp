@@ -33,19 +33,22 @@ struct ComposedLayer {
     std::vector<MaterialImage> images;  ///< ordered by material; blank ones are left out
     std::vector<double> lost_px;        ///< (bodies), area that later bodies of other materials took from each, pixels
     std::int64_t closed_gap_pixels = 0;
-    bool overlapping = false;          ///< there are pixels of which bodies together cover more than there is
-    std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material cover too
+    bool overlapping = false;          ///< there are pixels of which outlines cover more than there is
+    std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material, or itself, cover too
     std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
 };
 
+/// The image of a material; null where the layer has none.
+[[nodiscard]] const MaterialImage* find(const ComposedLayer& layer, int material);
+[[nodiscard]] MaterialImage* find(ComposedLayer& layer, int material);
+
 /// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.
 ///
-/// A body covers |winding| of a pixel, at most 1 (the nonzero rule: overlapping shells of one body count once; exact
-/// except in pixels that the outlines of two overlapping shells share, where the sum is capped at 1). Where the bodies
-/// together cover more than the pixel they overlap, and later bodies are served first. What each loses is left to
-/// overlaps(), which does not depend on pixels: `lost_px` and `doubled_px` are 0 here. The pixel then goes whole to the
-/// material with the largest share (the one with the latest body on a tie), at the light of all shares together: an
-/// interface between materials has neither a dark line nor a pixel in two images.
+/// A body covers |winding| of a pixel, at most 1 (the nonzero rule). Where outlines cover more than a pixel they
+/// overlap: `overlapping` says so, later bodies are served first, and a pixel that outer borders of both pass through
+/// gets too much; divided() makes outlines that do not overlap, which is exact. `lost_px` and `doubled_px` are 0 here.
+/// The pixel goes whole to the material with the largest share (the one with the latest body on a tie), at the light
+/// of all shares together: an interface between materials has neither a dark line nor a pixel in two images.
 ///
 /// Where a gap of up to `close_gap_um` between different materials runs through a pixel or along its border, the pixel
 /// gets full light: one that misses at most that width and lies, in its row or its column, between two pixels of

@@ -32,23 +32,24 @@ void sort_row(Cell* begin, Cell* end) {
 
 }  // namespace
 
-CellBuffer::CellBuffer(const Raster& raster) : raster_(raster) {}
-
-void CellBuffer::add(int body, const std::vector<Segment>& segments) {
-    body_ = static_cast<std::uint64_t>(body);
-    const RasterFrame frame(raster_, 1.0 / grid_per_um);
-    const double width = raster_.width_px, height = raster_.height_px;
+std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster) {
+    const RasterFrame frame(raster, 1.0 / grid_per_um);
+    const double width = raster.width_px, height = raster.height_px;
+    std::vector<Segment> lines;
+    lines.reserve(segments.size());
     for (const Segment& s : segments) {
         const double u0 = std::clamp(frame.column(s.x0, s.y0), 0.0, width);
         const double v0 = std::clamp(frame.row(s.x0, s.y0), 0.0, height);
         const double u1 = std::clamp(frame.column(s.x1, s.y1), 0.0, width);
         const double v1 = std::clamp(frame.row(s.x1, s.y1), 0.0, height);
-        if (frame.mirrored()) {
-            add_line(u1, v1, u0, v0);
-        } else {
-            add_line(u0, v0, u1, v1);
-        }
+        lines.push_back(frame.mirrored() ? Segment{u1, v1, u0, v0} : Segment{u0, v0, u1, v1});
     }
+    return lines;
+}
+
+void CellBuffer::add(int body, const std::vector<Segment>& lines) {
+    body_ = static_cast<std::uint64_t>(body);
+    for (const auto& [u0, v0, u1, v1] : lines) add_line(u0, v0, u1, v1);
 }
 
 /// Cuts a line where it passes from row to row. Heights are whole steps from here on, so that they add up exactly.

@@ -28,13 +28,15 @@ struct Cell {
     [[nodiscard]] int body() const { return static_cast<int>(key & 0x7FFFFFFF); }
 };
 
+/// Outlines from the platform to the image (x: columns, y: rows), the solid to the right of those that run to higher
+/// rows. They must lie inside the raster but for rounding (they are clamped to it).
+[[nodiscard]] std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster);
+
 /// Collects the cells of one layer.
 class CellBuffer {
 public:
-    explicit CellBuffer(const Raster& raster);
-
-    /// Adds outlines of a body, which must lie inside the raster but for rounding (they are clamped to it).
-    void add(int body, const std::vector<Segment>& segments);
+    /// Adds outlines of a body as in_image() gives them.
+    void add(int body, const std::vector<Segment>& lines);
 
     /// All cells, ordered by row, then column, then body; several may name the same pixel and body. Columns reach from
     /// 0 to width_px (the right border).
@@ -45,7 +47,6 @@ private:
     void add_in_row(int row, double u0, double u1, std::int64_t height);
     void add_cell(int row, int column, std::int64_t cover, double middle);
 
-    const Raster& raster_;
     std::uint64_t body_ = 0;
     std::vector<Cell> cells_, sorted_;
 };

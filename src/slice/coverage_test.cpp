@@ -68,8 +68,8 @@ std::vector<double> coverage(const std::vector<Point2>& polygon, const Raster& r
         const Point2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
         segments.push_back({p.x * grid_per_um, p.y * grid_per_um, q.x * grid_per_um, q.y * grid_per_um});
     }
-    CellBuffer buffer(raster);
-    buffer.add(0, segments);
+    CellBuffer buffer;
+    buffer.add(0, in_image(segments, raster));
     return dense(buffer.sorted(), raster);
 }
 
@@ -119,9 +119,9 @@ TEST_CASE("shapes inside one pixel, on its borders and up to the raster's edge")
 }
 
 TEST_CASE("an outline costs cells where it passes, nothing inside") {
-    CellBuffer buffer(raster);
+    CellBuffer buffer;
     const double a = 500.0 * grid_per_um;
-    buffer.add(0, {{-a, -a, a, -a}, {a, -a, a, a}, {a, a, -a, a}, {-a, a, -a, -a}});
+    buffer.add(0, in_image({{-a, -a, a, -a}, {a, -a, a, a}, {a, a, -a, a}, {-a, a, -a, -a}}, raster));
     CHECK(buffer.sorted().size() == 40);  // two upright sides of 20 rows
 }
 

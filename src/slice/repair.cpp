@@ -20,6 +20,21 @@ std::string hole_warning(const Holes& holes, const std::string& label, const Lay
                        layer_at(holes.z_high, layers));
 }
 
+/// Orients triangles and closes holes.
+Status close_surface(GridSurface& surface, const std::string& label, const Layers& layers,
+                     std::vector<std::string>& warnings) {
+    const double area = area_mm2(surface);
+    if (const int turned = orient_consistently(surface); turned > 0)
+        warnings.push_back(fmt::format("{}: {} triangles ran against their neighbours and were turned", label, turned));
+    const Holes holes = close_holes(surface);
+    if (holes.area_mm2 > 0.25 * area)
+        return input_error(
+            "{}: the surface is open: {:.4g} mm^2 are missing beside {:.4g} mm^2; a closed surface is needed", label,
+            holes.area_mm2, area);
+    if (holes.count > 0) warnings.push_back(hole_warning(holes, label, layers));
+    return {};
+}
+
 }  // namespace
 
 Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers) {
@@ -29,16 +44,13 @@ Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& labe
     GridSurface& surface = result.surface;
     if (surface.triangles.empty()) return input_error("{}: the surface has no triangle with an area", label);
     const double area = area_mm2(surface);
-    if (const int turned = orient_consistently(surface); turned > 0)
-        result.warnings.push_back(
-            fmt::format("{}: {} triangles ran against their neighbours and were turned", label, turned));
-    const Holes holes = close_holes(surface);
-    if (holes.area_mm2 > 0.25 * area)
-        return input_error(
-            "{}: the surface is open: {:.4g} mm^2 are missing beside {:.4g} mm^2; a closed surface is needed", label,
-            holes.area_mm2, area);
-    if (holes.count > 0) result.warnings.push_back(hole_warning(holes, label, layers));
-    if (const int turned = turn_inverted_shells(surface); turned > 0)
+    std::vector<EdgeUse> uses = edge_uses(surface.triangles);
+    if (!all_paired(uses)) {
+        if (auto status = close_surface(surface, label, layers, result.warnings); !status)
+            return tl::unexpected(status.error());
+        uses = edge_uses(surface.triangles);
+    }
+    if (const int turned = turn_inverted_shells(surface, uses); turned > 0)
         result.warnings.push_back(
             fmt::format("{}: {} shell{} inside out turned outwards", label, turned, turned == 1 ? "" : "s"));
     // A solid thinner than a grid unit everywhere is a sheet that was drawn twice.

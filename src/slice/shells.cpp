@@ -19,9 +19,8 @@ int free_slot(const std::array<Neighbour, 3>& slots) {
     return slots[0].triangle < 0 ? 0 : (slots[1].triangle < 0 ? 1 : 2);
 }
 
-Neighbours find_neighbours(const std::vector<Triangle>& triangles) {
-    const std::vector<EdgeUse> uses = edge_uses(triangles);
-    Neighbours neighbours(triangles.size());
+Neighbours find_neighbours(std::size_t triangles, const std::vector<EdgeUse>& uses) {
+    Neighbours neighbours(triangles);
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t end = i + 1;
         while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
@@ -127,9 +126,18 @@ std::vector<EdgeUse> edge_uses(const std::vector<Triangle>& triangles) {
     return uses;
 }
 
+bool all_paired(const std::vector<EdgeUse>& uses) {
+    const auto same = [&](std::size_t i, std::size_t j) { return uses[i].a == uses[j].a && uses[i].b == uses[j].b; };
+    for (std::size_t i = 0; i < uses.size(); i += 2) {
+        if (i + 1 == uses.size() || !same(i, i + 1) || uses[i].forward == uses[i + 1].forward) return false;
+        if (i + 2 < uses.size() && same(i, i + 2)) return false;
+    }
+    return true;
+}
+
 int orient_consistently(GridSurface& surface) {
     const std::size_t count = surface.triangles.size();
-    const Walk walk = walk_pieces(count, find_neighbours(surface.triangles));
+    const Walk walk = walk_pieces(count, find_neighbours(count, edge_uses(surface.triangles)));
     std::vector<double> turned_area(static_cast<std::size_t>(walk.shells.count), 0.0);
     for (std::size_t t = 0; t < count; ++t) {
         const double area = norm(area_vector2(surface, surface.triangles[t]));
@@ -145,12 +153,13 @@ int orient_consistently(GridSurface& surface) {
     return turned;
 }
 
-Shells find_shells(const GridSurface& surface) {
-    return walk_pieces(surface.triangles.size(), find_neighbours(surface.triangles)).shells;
+Shells find_shells(const GridSurface& surface, const std::vector<EdgeUse>& uses) {
+    const std::size_t count = surface.triangles.size();
+    return walk_pieces(count, find_neighbours(count, uses)).shells;
 }
 
-int turn_inverted_shells(GridSurface& surface) {
-    const Shells shells = find_shells(surface);
+int turn_inverted_shells(GridSurface& surface, const std::vector<EdgeUse>& uses) {
+    const Shells shells = find_shells(surface, uses);
     std::vector<Piece> pieces = measure(surface, shells);
     double total = 0;
     for (const Piece& piece : pieces) total += piece.volume6;

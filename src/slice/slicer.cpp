@@ -163,29 +163,29 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
+/// Where bodies overlap, the layer is divided among them before it is seen as pixels: a pixel tells how much of it
+/// outlines cover, not whether they cover the same.
 ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
-    CellBuffer cells(raster);
+    std::vector<std::vector<Segment>> lines(shapes_.size());
     std::vector<Segment> segments;
+    CellBuffer cells;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
         section(b, k, segments);
-        cells.add(static_cast<int>(b), segments);
+        lines[b] = in_image(segments, raster);
+        cells.add(static_cast<int>(b), lines[b]);
     }
     ComposedLayer layer = compose(cells.sorted(), zone_of_, raster, rules);
-    if (layer.overlapping) measure_overlap(k, raster, layer);
-    return layer;
-}
-
-/// From the outlines, not from pixels.
-void Slicer::measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const {
-    std::vector<std::vector<Segment>> outlines(shapes_.size());
-    for (std::size_t b = 0; b < shapes_.size(); ++b) section(b, layer, outlines[b]);
-    const std::vector<Overlap> areas = overlaps(outlines, material_of_);
-    const double pixel = raster.pixel_um * grid_per_um;
-    for (std::size_t b = 0; b < areas.size(); ++b) {
-        composed.lost_px[b] = areas[b].others / (pixel * pixel);
-        composed.doubled_px[b] = areas[b].own / (pixel * pixel);
+    if (!layer.overlapping) return layer;
+    const DividedLayer divided = slice::divided(lines, material_of_);
+    CellBuffer apart;
+    for (std::size_t b = 0; b < shapes_.size(); ++b) apart.add(static_cast<int>(b), divided.kept[b]);
+    layer = compose(apart.sorted(), zone_of_, raster, rules);
+    for (std::size_t b = 0; b < shapes_.size(); ++b) {
+        layer.lost_px[b] = divided.areas[b].others;
+        layer.doubled_px[b] = divided.areas[b].own;
     }
+    return layer;
 }
 
 /// Per zone; empty where no border of the layer moves.

@@ -96,7 +96,6 @@ private:
     [[nodiscard]] ComposedLayer owned(int layer) const;
     [[nodiscard]] ComposedLayer bled(int layer) const;
     [[nodiscard]] ComposedLayer outlined(int layer) const;
-    void measure_overlap(int layer, const Raster& raster, ComposedLayer& composed) const;
     [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;
@@ -125,7 +124,7 @@ struct Summary {
     std::vector<std::string> warnings;
     std::vector<double> lost_mm3{};      ///< per body: its share of overlap_mm3, which a later body keeps
     std::vector<double> second_share{};  ///< per body: of its light that the second material of its blend got
-    std::vector<double> doubled_mm3{};   ///< per body: what a later body of the same material fills too
+    std::vector<double> doubled_mm3{};   ///< per body: what a later one of the same material, or itself, fills too
 };
 
 /// Collects the remarks of all layers, added in order.

@@ -34,6 +34,16 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
     return hull;
 }
 
+/// A level polygon with the area of a circle.
+std::vector<Vec3> circle(const Vec3& centre, double radius_um) {
+    constexpr double angle = 2 * std::numbers::pi / sides;
+    const double equal_area = std::sqrt(angle / std::sin(angle)) * radius_um;
+    std::vector<Vec3> around;
+    for (int i = 0; i < sides; ++i)
+        around.push_back(centre + equal_area * Vec3{std::cos(i * angle), std::sin(i * angle), 0});
+    return around;
+}
+
 /// Walls between rings of `n` points, with a fan at both ends.
 mesh::TriMesh closed_tube(const std::vector<std::vector<Vec3>>& rings) {
     mesh::TriMesh mesh;
@@ -57,16 +67,13 @@ mesh::TriMesh closed_tube(const std::vector<std::vector<Vec3>>& rings) {
 }  // namespace
 
 mesh::TriMesh turned_solid(double x_um, double y_um, const std::vector<Ring>& rings) {
-    constexpr double angle = 2 * std::numbers::pi / sides;
-    const double equal_area = std::sqrt(angle / std::sin(angle));
     std::vector<std::vector<Vec3>> points;
-    for (const Ring& ring : rings) {
-        auto& around = points.emplace_back();
-        for (int i = 0; i < sides; ++i)
-            around.push_back({x_um + equal_area * ring.radius_um * std::cos(i * angle),
-                              y_um + equal_area * ring.radius_um * std::sin(i * angle), ring.z_um});
-    }
+    for (const Ring& ring : rings) points.push_back(circle({x_um, y_um, ring.z_um}, ring.radius_um));
     return closed_tube(points);
+}
+
+mesh::TriMesh rod(const Vec3& from_um, const Vec3& to_um, double radius_um) {
+    return closed_tube({circle(from_um, radius_um), circle(to_um, radius_um)});
 }
 
 mesh::TriMesh hull_prism(const std::vector<std::array<double, 2>>& points_um, double margin_um, double bottom_um,

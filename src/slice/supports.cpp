@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "slice/braces.hpp"
 #include "slice/inspect.hpp"
 #include "slice/raster_frame.hpp"
 #include "slice/support_shapes.hpp"
@@ -245,17 +246,49 @@ private:
     [[nodiscard]] Supports built() const {
         Supports supports;
         std::vector<std::array<double, 2>> feet;
+        std::vector<Column> columns;
+        std::vector<Pillar> pillars;
         for (const Tip& tip : tips_.tips()) {
-            const auto [x, y] = frame_.place(tip.column + 0.5, tip.row + 0.5);
-            const int standing = top_of_part_below(tip);
-            supports.on_part += standing > 0 ? 1 : 0;
-            if (standing == 0) feet.push_back({x, y});
-            supports.bodies.push_back(filler(turned_solid(x, y, profile(tip, standing))));
+            columns.push_back(column_of(tip));
+            pillars.push_back(columns.back().pillar);
+            supports.on_part += columns.back().on_part ? 1 : 0;
+            if (!columns.back().on_part) feet.push_back({pillars.back().x_um, pillars.back().y_um});
             ++supports.tips;
         }
+        const Braces tied = braces(pillars, settings_.raster.pixel_um, [&](const Strut& s) { return meets_part(s); });
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            if (!tied.held[i]) columns[i].foot_r = std::max(columns[i].foot_r, lone_foot_um(pillars[i]) / 2);
+            const Pillar& p = pillars[i];
+            supports.bodies.push_back(filler(turned_solid(p.x_um, p.y_um, profile(columns[i]))));
+        }
+        for (const Strut& s : tied.struts) supports.bodies.push_back(filler(rod(s.from_um, s.to_um, s.radius_um)));
+        supports.struts = static_cast<int>(tied.struts.size());
         if (wanted_.raft_um > 0 && !feet.empty())
             supports.bodies.push_back(filler(hull_prism(feet, 2 * wanted_.pillar_um, 0, wanted_.raft_um)));
         return supports;
+    }
+
+    /// Twice the slenderness of a braced one.
+    static double lone_foot_um(const Pillar& p) { return (p.high_um - p.low_um) / (2 * slender); }
+
+    /// Whether the part fills a place in or right beside a strut.
+    [[nodiscard]] bool meets_part(const Strut& s) const {
+        const double margin_px = s.radius_um / settings_.raster.pixel_um + 1;
+        for (int k = 0; k < static_cast<int>(solids_.size()); ++k) {
+            const double z = layers_.middle2_um(k) / 2.0;
+            if (z < s.from_um.z) continue;
+            if (z > s.to_um.z) break;
+            const Vec3 p = s.from_um + (z - s.from_um.z) / (s.to_um.z - s.from_um.z) * (s.to_um - s.from_um);
+            const double row = frame_.row(p.x, p.y), column = frame_.column(p.x, p.y);
+            for (const int down : {-1, 0, 1}) {
+                for (const int right : {-1, 0, 1}) {
+                    if (holds(solids_[static_cast<std::size_t>(k)], static_cast<int>(row + down * margin_px),
+                              static_cast<int>(column + right * margin_px)))
+                        return true;
+                }
+            }
+        }
+        return false;
     }
 
     [[nodiscard]] Body filler(mesh::TriMesh surface) const {
@@ -272,31 +305,55 @@ private:
         return 0;
     }
 
-    /// From the bottom up: foot or second tip, pillar, cone, tip. Cones are twice as long as the pillar is wide, where
-    /// there is room.
-    [[nodiscard]] std::vector<Ring> profile(const Tip& tip, int standing_um) const {
-        const double tip_r = std::max(wanted_.tip_um, 2 * settings_.raster.pixel_um) / 2;
-        const double pillar_r = std::max(wanted_.pillar_um / 2, tip_r);
-        const double end = layers_.top_um(tip.layer);  // one layer deep in the part
-        const double held = layers_.bottom_um(tip.layer), cone = 4 * pillar_r;
-        const double base = standing_um > 0 ? standing_um : std::min<double>(wanted_.raft_um, held / 2);
-        const double room = held - base;
+    /// One support, from the bottom up: foot or second tip, pillar, cone, tip.
+    struct Column {
+        Pillar pillar;
+        bool on_part = false;
+        double base_um = 0, held_um = 0, end_um = 0;  ///< where it stands; where it meets the part; its end inside
+        double tip_r = 0, foot_r = 0;
+        double cone_um = 0;  ///< from the pillar to a tip
+    };
+
+    /// Cones are twice as long as the pillar is wide, where there is room.
+    [[nodiscard]] Column column_of(const Tip& tip) const {
+        const auto [x, y] = frame_.place(tip.column + 0.5, tip.row + 0.5);
+        const int standing_um = top_of_part_below(tip);
+        Column c;
+        c.on_part = standing_um > 0;
+        c.tip_r = std::max(wanted_.tip_um, 2 * settings_.raster.pixel_um) / 2;
+        c.end_um = layers_.top_um(tip.layer);  // one layer deep in the part
+        c.held_um = layers_.bottom_um(tip.layer);
+        c.base_um = c.on_part ? standing_um : std::min<double>(wanted_.raft_um, c.held_um / 2);
+        const double pillar_r = std::max(wanted_.pillar_um / 2, c.tip_r), room = c.held_um - c.base_um;
+        const double cone = 4 * pillar_r;
+        const double wide = std::min(pillar_r, c.tip_r + (pillar_r - c.tip_r) * room / (c.on_part ? 2 * cone : cone));
+        c.cone_um = std::min(cone, c.on_part ? room / 2 : room);
+        const double low = c.base_um + (c.on_part ? c.cone_um : foot_um(c));
+        c.pillar = {x, y, low, std::max(low, c.held_um - c.cone_um), wide};
+        c.foot_r = wanted_.raft_um > 0 ? wide : 1.5 * wide;
+        return c;
+    }
+
+    /// Height of the foot.
+    [[nodiscard]] double foot_um(const Column& c) const {
+        return wanted_.raft_um > 0 ? 0 : std::min(500.0, (c.held_um - c.base_um) / 4);
+    }
+
+    [[nodiscard]] std::vector<Ring> profile(const Column& c) const {
+        const double wide = c.pillar.radius_um;
         std::vector<Ring> rings;
-        const bool on_part = standing_um > 0;
-        const double wide = std::min(pillar_r, tip_r + (pillar_r - tip_r) * room / (on_part ? 2 * cone : cone));
-        if (on_part) {
-            const double way = std::min(cone, room / 2);
-            rings = {{base - std::min(base, static_cast<double>(layers_.thickness_um(0))), tip_r}, {base, tip_r}};
-            rings.push_back({base + way, wide});
-            if (room > 2 * cone) rings.push_back({held - cone, wide});
+        if (c.on_part) {
+            rings = {{c.base_um - std::min(c.base_um, static_cast<double>(layers_.thickness_um(0))), c.tip_r},
+                     {c.base_um, c.tip_r}};
+            rings.push_back({c.pillar.low_um, wide});
         } else {
-            const double foot = wanted_.raft_um > 0 ? 0 : std::min(500.0, room / 4);
-            rings.push_back({base, foot > 0 ? 1.5 * wide : wide});
-            if (foot > 0) rings.push_back({base + foot, wide});
-            if (room - foot > cone) rings.push_back({held - cone, wide});
+            rings.push_back({c.base_um, c.foot_r});
+            // A pillar that stands alone tapers all the way up.
+            if (c.pillar.low_um > c.base_um && c.foot_r <= 1.5 * wide) rings.push_back({c.pillar.low_um, wide});
         }
-        rings.push_back({held, tip_r});
-        rings.push_back({end, tip_r});
+        if (c.pillar.high_um > rings.back().z_um) rings.push_back({c.pillar.high_um, wide});
+        rings.push_back({c.held_um, c.tip_r});
+        rings.push_back({c.end_um, c.tip_r});
         return rings;
     }
 

@@ -24,8 +24,9 @@ struct SupportSettings {
 [[nodiscard]] Status check(const SupportSettings& supports);
 
 struct Supports {
-    std::vector<Body> bodies;  ///< fillers, one for each tip, and the raft; to be put before the part's
+    std::vector<Body> bodies;  ///< fillers, one for each tip and strut, and the raft; to be put before the part's
     int tips = 0;
+    int struts = 0;
     int on_part = 0;  ///< of those, tips whose pillar stands on the part, as the way to the platform is barred
     int islands_left = 0;
     double volume_mm3 = 0;  ///< of the fillers, less what the part keeps
@@ -35,9 +36,10 @@ struct Supports {
 /// ends at the part's lowest layer over a pixel that nothing holds: of every island one near its middle, and of
 /// undersides so many that none of their pixels is farther than the spacing from a tip. From there a cone goes down to
 /// a pillar, upright to the platform, with a foot; where the part is in the way it stands on the part with a second
-/// tip. Then part and supports are sliced together, and islands that are left get tips in turn, for at most
-/// `support_rounds` rounds. The part keeps what it shares with supports. Deterministic. Errors: check(), what
-/// Slicer::prepare refuses, more than 20000 tips, cancellation. Cost: a few times that of slicing.
+/// tip. Slender pillars are braced (braces()); one that nothing near can hold, on the platform, gets a foot a twentieth
+/// as wide as it is long and tapers. Then part and supports are sliced together, and islands that are left get tips in
+/// turn, for at most `support_rounds` rounds. The part keeps what it shares with supports. Deterministic. Errors:
+/// check(), what Slicer::prepare refuses, more than 20000 tips, cancellation. Cost: a few times that of slicing.
 inline constexpr int support_rounds = 6;
 [[nodiscard]] Result<Supports> make_supports(std::span<const Body> part, const Settings& settings,
                                              const SupportSettings& supports, Progress& progress);

@@ -151,3 +151,32 @@ TEST_CASE("supports that make no sense are refused") {
     CHECK(refused(s) == "supports: angle of 90 degrees: must be 0 to 89");
     CHECK(refused({}) == "supports: a material is needed");
 }
+
+TEST_CASE("tall supports are braced, the braces need no support themselves, and one alone has a broad foot") {
+    const Settings tall{{200, 160, 100}, 100, {}};
+    const auto made_for = [&](const std::vector<Body>& part) {
+        Progress progress;
+        auto made = make_supports(part, tall, in_wax(), progress);
+        REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+        CHECK(made->islands_left == 0);
+        return std::move(*made);
+    };
+    const Supports table = made_for({{"soft", box({-5000, -3000, 24000}, {5000, 3000, 25000}), ""}});
+    CHECK(table.tips > 4);
+    CHECK(table.struts >= table.tips);
+    // A foot a twentieth as wide as the pillar is long: the lowest ring of the body.
+    const Supports lone = made_for({{"soft", box({-500, -500, 32500}, {500, 500, 33000}), ""}});
+    REQUIRE(lone.tips == 1);
+    CHECK(lone.struts == 0);
+    const Box3 around = mesh::bounds(lone.bodies[0].surface_um);
+    CHECK(around.size().x == doctest::Approx((32500 - 2000 - 500) / 20.0).epsilon(0.05));
+    // A wall between two pillars bars their struts.
+    const std::vector<Body> walled{{"soft", box({-5000, -100, 0}, {5000, 100, 24000}), ""},
+                                   {"soft", box({-2000, -2000, 24000}, {2000, 2000, 25000}), ""}};
+    const Supports apart = made_for(walled);
+    REQUIRE(apart.bodies.size() == static_cast<std::size_t>(apart.tips + apart.struts));
+    for (auto strut = apart.bodies.begin() + apart.tips; strut != apart.bodies.end(); ++strut) {
+        const Box3 box = mesh::bounds(strut->surface_um);
+        CHECK((box.low.y > 0 || box.high.y < 0));
+    }
+}

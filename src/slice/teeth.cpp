@@ -5,16 +5,6 @@
 #include "slice/mask.hpp"
 
 namespace pliant::slice {
-namespace {
-
-MaterialImage* find(ComposedLayer& layer, int material) {
-    const auto found = std::find_if(layer.images.begin(), layer.images.end(),
-                                    [&](const MaterialImage& m) { return m.material == material; });
-    return found == layer.images.end() ? nullptr : &*found;
-}
-
-}  // namespace
-
 Status check(const Teeth& teeth) {
     if (teeth.first == teeth.second)
         return input_error("interlock '{}' with '{}': two different materials are needed", teeth.first, teeth.second);
