@@ -97,10 +97,10 @@ TEST_CASE("a host that ends in peace leaves no witness") {
 }
 
 TEST_CASE("the guard keeps nothing open that the program had open") {
-    const Folder folder;
+    const pliant::test::Folder folder;
     std::array<int, 2> ends{};
     REQUIRE(::pipe(ends.data()) == 0);
-    auto guard = ProcessGuard::start({folder.path / "witness", folder.path / "shown.png", 1});
+    auto guard = ProcessGuard::start({folder.path() / "witness", folder.path() / "shown.png", 1});
     REQUIRE(guard);
     ::close(ends[1]);
     char byte = 0;
