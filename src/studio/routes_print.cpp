@@ -35,7 +35,7 @@ Response take_port(Studio& studio, const Request& request) {
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
     };
-    operate::PortOptions port{text("device"), text("projector"), speed_of(request), {}};
+    operate::PortOptions port{text("device"), text("projector"), speed_of(request), {}, {}};
     const bool display = !port.projector.empty() && port.projector.find_first_not_of("0123456789") == std::string::npos;
     if (!display) {
         const Result<std::filesystem::path> folder = studio.folder().resolve(port.projector);
