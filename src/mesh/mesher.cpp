@@ -191,7 +191,6 @@ void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std
     meshes = std::move(*finer);
     meshes.front().notes.emplace_back(
         "edges are shorter than the mesh size beside walls that are much thinner than it");
-    return;
 }
 
 /// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.

@@ -97,7 +97,7 @@ std::size_t node_limit(const TriMesh& surface, double size) {
 /// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
 struct Cancelled {};
 
-/// Where CGAL is, by how often it has asked whether a point is inside. It asks about `per_node` times for each node.
+/// Where CGAL is, by how often it has asked whether a point is inside: `per_node` times for each node, as a guess.
 class Asked {
 public:
     Asked(double nodes, Progress& progress) : expected_(per_node * nodes), progress_(progress) {}

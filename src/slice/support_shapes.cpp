@@ -39,6 +39,7 @@ std::vector<Vec3> circle(const Vec3& centre, double radius_um) {
     constexpr double angle = 2 * std::numbers::pi / sides;
     const double equal_area = std::sqrt(angle / std::sin(angle)) * radius_um;
     std::vector<Vec3> around;
+    around.reserve(sides);
     for (int i = 0; i < sides; ++i)
         around.push_back(centre + equal_area * Vec3{std::cos(i * angle), std::sin(i * angle), 0});
     return around;
@@ -68,6 +69,7 @@ mesh::TriMesh closed_tube(const std::vector<std::vector<Vec3>>& rings) {
 
 mesh::TriMesh turned_solid(double x_um, double y_um, const std::vector<Ring>& rings) {
     std::vector<std::vector<Vec3>> points;
+    points.reserve(rings.size());
     for (const Ring& ring : rings) points.push_back(circle({x_um, y_um, ring.z_um}, ring.radius_um));
     return closed_tube(points);
 }
