@@ -23,7 +23,7 @@ std::string between(const std::string& text, const std::string& begin, const std
 }  // namespace
 
 TEST_CASE("every step is a frame in millimetres and the collection gives its time") {
-    const auto robot = test::bent_bar(3, 2);
+    const auto robot = report::test::bent_bar(3, 2);
     const pliant::test::Folder folder("frames");
     Progress progress;
     REQUIRE(write_frames(folder.path(), robot.simulation(), progress).has_value());
@@ -49,7 +49,7 @@ TEST_CASE("every step is a frame in millimetres and the collection gives its tim
 }
 
 TEST_CASE("contact pressure is written at the points where there is any") {
-    const auto robot = test::bent_bar(1, 1);
+    const auto robot = report::test::bent_bar(1, 1);
     Simulation s = robot.simulation();
     s.contact_pressure_Pa = [&](const sim::Step& step) {
         return std::vector<double>(robot.mesh.points.size(), 1e3 * step.index);
@@ -67,7 +67,7 @@ TEST_CASE("cancelling stops the frames") {
         [[nodiscard]] bool cancelled() const override { return true; }
     } stop;
     const pliant::test::Folder folder("frames_cancelled");
-    const auto status = write_frames(folder.path(), test::bent_bar(3, 1).simulation(), stop);
+    const auto status = write_frames(folder.path(), report::test::bent_bar(3, 1).simulation(), stop);
     REQUIRE_FALSE(status.has_value());
     CHECK(status.error().cause == Cause::cancelled);
 }

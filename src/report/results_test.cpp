@@ -14,7 +14,7 @@ using namespace pliant;
 using namespace pliant::report;
 
 TEST_CASE("the folder holds every file that the design names") {
-    const auto robot = test::bent_bar(3, 1);
+    const auto robot = report::test::bent_bar(3, 1);
     const pliant::test::Folder folder("results");
     Progress progress;
     const auto status = write_results(folder.path(), robot.simulation(), progress, {240, 150});
@@ -27,7 +27,7 @@ TEST_CASE("the folder holds every file that the design names") {
 }
 
 TEST_CASE("a rest state alone, and robots without cables or markers, are reported too") {
-    auto robot = test::bent_bar(1, 1);
+    auto robot = report::test::bent_bar(1, 1);
     robot.result.steps.pop_back();
     robot.result.steps[0].cables.clear();
     robot.result.steps[0].markers.clear();
@@ -44,13 +44,13 @@ TEST_CASE("a rest state alone, and robots without cables or markers, are reporte
 }
 
 TEST_CASE("input that does not fit together is refused with the reason") {
-    const auto refused = [](const test::Robot& robot, auto change) {
+    const auto refused = [](const report::test::Robot& robot, auto change) {
         Simulation s = robot.simulation();
         change(s);
         const auto status = check(s);
         return status ? std::string("accepted") : status.error().message;
     };
-    const auto robot = test::bent_bar(2, 1);
+    const auto robot = report::test::bent_bar(2, 1);
     CHECK(refused(robot, [](Simulation&) {}) == "accepted");
     CHECK(refused(robot, [](Simulation& s) { s.region_material = {0}; }) ==
           "report: region_material has 1 entries, the mesh 2 regions");
@@ -61,22 +61,22 @@ TEST_CASE("input that does not fit together is refused with the reason") {
     CHECK(refused(robot, [](Simulation& s) { s.materials.clear(); }) == "report: at least one material is needed");
     CHECK(refused(robot, [](Simulation& s) { s.fields = nullptr; }) == "report: no function for the fields");
 
-    auto broken = test::bent_bar(2, 1);
+    auto broken = report::test::bent_bar(2, 1);
     broken.result.steps[1].positions.pop_back();
     CHECK(refused(broken, [](Simulation&) {}).starts_with("report: step 1 has "));
-    broken = test::bent_bar(2, 1);
+    broken = report::test::bent_bar(2, 1);
     broken.result.steps[2].positions[7].y = std::nan("");
     CHECK(refused(broken, [](Simulation&) {}) == "report: step 2 has positions that are not numbers");
-    broken = test::bent_bar(2, 1);
+    broken = report::test::bent_bar(2, 1);
     broken.result.steps[2].markers.clear();
     CHECK(refused(broken, [](Simulation&) {}).starts_with("report: step 2 has other cables"));
-    broken = test::bent_bar(2, 1);
+    broken = report::test::bent_bar(2, 1);
     broken.mesh.nodes[5] = 1 << 30;
     CHECK(refused(broken, [](Simulation&) {}).starts_with("report: a tet names node "));
 }
 
 TEST_CASE("a folder that cannot be written is an error") {
-    const auto robot = test::bent_bar(1, 1);
+    const auto robot = report::test::bent_bar(1, 1);
     Progress progress;
     CHECK_FALSE(write_results("/proc/no_such_folder", robot.simulation(), progress, {240, 150}).has_value());
 }

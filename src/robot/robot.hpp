@@ -38,7 +38,7 @@ struct BoxSelector {
 /// region).
 struct SurfaceFile {
     std::filesystem::path path;
-    std::string part;  ///< of a 3MF file: the object or the material; empty: all of it
+    std::string part{};  ///< of a 3MF file: the object or the material; empty: all of it
 };
 struct MeshRegion {
     std::string name;
