@@ -39,7 +39,11 @@ async function connect(page, state) {
   await page.locator('summary', { hasText: 'virtual printer at the port' }).click();
   await page.getByTestId('port-speed').fill('200');
   await page.getByTestId('port-clock').fill('clock');
-  await page.getByTestId('take-port').click();
+  const [answer] = await Promise.all([
+    page.waitForResponse((r) => r.url().endsWith('/api/print/port')),
+    page.getByTestId('take-port').click(),
+  ]);
+  if (!answer.ok()) assert.fail(await answer.text());
   await page.waitForSelector('[data-testid=print-state]');
   await shown(page, (s) => document.querySelector('[data-testid=print-state]').textContent === s, state);
 }

@@ -84,6 +84,9 @@ function TakePort() {
       .then((r) => r.json())
       .then((p: Ports) => {
         setKnown(p);
+        // What someone is about to type is not overtaken by a proposal.
+        const typing = document.activeElement?.tagName === 'INPUT' || document.activeElement?.tagName === 'TEXTAREA';
+        if (typing) return;
         setDevice((d) => d || p.ports[0]?.device || '');
         setProjector((o) => o || (p.displays.length > 1 ? String(p.displays[p.displays.length - 1].number) : 'light'));
       })
