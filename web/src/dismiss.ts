@@ -1,9 +1,9 @@
 // A menu goes when Escape is pressed, or something else is.
 import type { RefObject } from 'preact';
-import { useEffect } from 'preact/hooks';
+import { useLayoutEffect } from 'preact/hooks';
 
 export function useDismiss(open: boolean, close: () => void, box: RefObject<HTMLElement>) {
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!open) return;
     const key = (e: KeyboardEvent) => {
       if (e.key !== 'Escape') return;

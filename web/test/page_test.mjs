@@ -198,8 +198,9 @@ test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; 
   ]);
   assert.equal(readFileSync(await png.path()).toString('latin1', 1, 4), 'PNG');
   await page.getByRole('button', { name: 'Export' }).click();
+  await page.locator('.popover').waitFor();
   await page.keyboard.press('Escape');
-  assert.equal(await page.locator('.popover').count(), 0, 'a menu goes with Escape');
+  await page.locator('.popover').waitFor({ state: 'detached' });
   assert.deepEqual(wrong, []);
 });
 
