@@ -71,71 +71,53 @@ BatchResult forces_of(const TetBatch& batch, const material::InvariantForm& law,
     return result;
 }
 
-/// What node vectors of one point add to the block of nodes a and b, by columns.
+/// The stiffness of one point as it is.
 template <bool second>
-HWY_INLINE void add_pair(const Factors<second>& k, const Point<second>& p, const Matrix& left, const Vector& ga,
-                         const Vector& gb, const Vector& fa, const Vector& fb, const Vector& ha, const Vector& hb,
-                         const Vector& ea, const Vector& eb, V (*block)[3]) {
-    const V gab = dot(ga, gb);
-    V diagonal = hn::Mul(k.same, gab);
-    V ff = k.ff;
-    if constexpr (second) {
-        diagonal = hn::MulAdd(k.second_E, hn::MulSub(p.I1, gab, dot(fa, fb)), diagonal);
-        ff = hn::MulAdd(set(2), k.second_E, ff);
-    }
-    const V straight = hn::Add(k.hh, k.twist);
-    for (int c = 0; c < 3; ++c) {
-        const V of_f = hn::MulAdd(ff, fb.v[c], hn::Mul(k.fh, hb.v[c]));
-        V of_h = hn::MulAdd(k.fh, fb.v[c], hn::Mul(straight, hb.v[c]));
-        if constexpr (second) of_h = hn::MulAdd(k.eh, eb.v[c], of_h);
-        const V of_hb = hn::Mul(k.twist, ha.v[c]);
-        for (int r = 0; r < 3; ++r) {
-            V entry = hn::MulAdd(fa.v[r], of_f, hn::MulAdd(ha.v[r], of_h, block[c][r]));
-            entry = hn::NegMulAdd(hb.v[r], of_hb, entry);
-            if constexpr (second) {
-                entry = hn::MulAdd(ea.v[r], hn::Mul(k.eh, hb.v[c]), entry);
-                const V mixed = hn::MulAdd(fb.v[r], fa.v[c], hn::Mul(gab, left.m[c][r]));
-                entry = hn::NegMulAdd(k.second_E, mixed, entry);
-            }
-            block[c][r] = r == c ? hn::Add(entry, diagonal) : entry;
-        }
-    }
-}
+struct TangentForm {
+    Point<second> p;
+    Factors<second> k;
+    Matrix left{};  ///< F F^T
 
-template <int nodes, bool second>
-void tangent_of(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        for (int q = 0; q < batch.points; ++q) {
-            Point<second> point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            point.set_invariants(law);
-            const Factors<second> factors(point, law, hn::Load(d, batch.volumes + q * batch_lanes + part));
-            Vector g[nodes], f[nodes], h[nodes], e[nodes];
-            Matrix left{};
-            if constexpr (second) left = left_cauchy(point.F);
-            for (int a = 0; a < nodes; ++a) {
-                g[a] = gradient(batch, q, a, part);
-                f[a] = times(point.F, g[a]);
-                h[a] = times(point.G, g[a]);
-                if constexpr (second) e[a] = times(point.E, g[a]);
-            }
-            double* out = blocks + part;
-            for (int b = 0; b < nodes; ++b) {
-                for (int a = 0; a <= b; ++a, out += 9 * batch_lanes) {
-                    V block[3][3];
-                    for (int k = 0; k < 9; ++k)
-                        block[k / 3][k % 3] = q == 0 ? hn::Zero(d) : hn::Load(d, out + k * batch_lanes);
-                    add_pair(factors, point, left, g[a], g[b], f[a], f[b], h[a], h[b], e[a], e[b], block);
-                    for (int k = 0; k < 9; ++k) hn::Store(block[k / 3][k % 3], d, out + k * batch_lanes);
+    struct OfNode {
+        Vector g, f, h, e;  ///< a, F a, G a, E a
+    };
+
+    HWY_INLINE TangentForm(const Point<second>& point, const material::InvariantForm& law, V volume)
+        : p(point), k(point, law, volume) {
+        if constexpr (second) left = left_cauchy(point.F);
+    }
+    [[nodiscard]] HWY_INLINE OfNode of_node(const Vector& gradient) const {
+        OfNode node{gradient, times(p.F, gradient), times(p.G, gradient), {}};
+        if constexpr (second) node.e = times(p.E, gradient);
+        return node;
+    }
+    HWY_INLINE void add_pair(const OfNode& a, const OfNode& b, V (*block)[3]) const {
+        const V product = dot(a.g, b.g);
+        V diagonal = hn::Mul(k.same, product);
+        V ff = k.ff;
+        if constexpr (second) {
+            diagonal = hn::MulAdd(k.second_E, hn::MulSub(p.I1, product, dot(a.f, b.f)), diagonal);
+            ff = hn::MulAdd(set(2), k.second_E, ff);
+        }
+        const V straight = hn::Add(k.hh, k.twist);
+        for (int c = 0; c < 3; ++c) {
+            const V of_f = hn::MulAdd(ff, b.f.v[c], hn::Mul(k.fh, b.h.v[c]));
+            V of_h = hn::MulAdd(k.fh, b.f.v[c], hn::Mul(straight, b.h.v[c]));
+            if constexpr (second) of_h = hn::MulAdd(k.eh, b.e.v[c], of_h);
+            const V of_hb = hn::Mul(k.twist, a.h.v[c]);
+            for (int r = 0; r < 3; ++r) {
+                V entry = hn::MulAdd(a.f.v[r], of_f, hn::MulAdd(a.h.v[r], of_h, block[c][r]));
+                entry = hn::NegMulAdd(b.h.v[r], of_hb, entry);
+                if constexpr (second) {
+                    entry = hn::MulAdd(a.e.v[r], hn::Mul(k.eh, b.h.v[c]), entry);
+                    const V mixed = hn::MulAdd(b.f.v[r], a.f.v[c], hn::Mul(product, left.m[c][r]));
+                    entry = hn::NegMulAdd(k.second_E, mixed, entry);
                 }
+                block[c][r] = r == c ? hn::Add(entry, diagonal) : entry;
             }
         }
     }
-}
+};
 
 BatchResult forces(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* result) {
     const bool second = law.c01_Pa != 0;
@@ -145,11 +127,7 @@ BatchResult forces(const TetBatch& batch, const material::InvariantForm& law, co
 }
 
 void tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    const bool second = law.c01_Pa != 0;
-    if (batch.nodes_per_tet == 4)
-        second ? tangent_of<4, true>(batch, law, x, blocks) : tangent_of<4, false>(batch, law, x, blocks);
-    else
-        second ? tangent_of<10, true>(batch, law, x, blocks) : tangent_of<10, false>(batch, law, x, blocks);
+    stiffness<TangentForm>(batch, law, x, blocks);
 }
 
 }  // namespace pliant::sim::HWY_NAMESPACE

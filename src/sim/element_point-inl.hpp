@@ -113,6 +113,49 @@ struct Factors {
     }
 };
 
+/// Blocks of the stiffness of each pair of nodes, summed over the points of each tet. A Form is made of a Point, its
+/// law and its volume; `Form::OfNode` keeps what it wants of a node, form.of_node(gradient) makes that, and
+/// form.add_pair(a, b, block) adds what two nodes share to their block, by columns.
+template <class Form, bool second, int nodes>
+void stiffness_of(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
+    const Tag d;
+    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
+    for (int part = 0; part < batch_lanes; part += N) {
+        V positions[nodes][3];
+        load_positions<nodes>(batch, x, part, positions);
+        for (int q = 0; q < batch.points; ++q) {
+            Point<second> point;
+            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
+            point.set_invariants(law);
+            const Form form(point, law, hn::Load(d, batch.volumes + q * batch_lanes + part));
+            typename Form::OfNode node[nodes];
+            for (int a = 0; a < nodes; ++a) node[a] = form.of_node(gradient(batch, q, a, part));
+            double* out = blocks + part;
+            for (int b = 0; b < nodes; ++b) {
+                for (int a = 0; a <= b; ++a, out += 9 * batch_lanes) {
+                    V block[3][3];
+                    for (int k = 0; k < 9; ++k)
+                        block[k / 3][k % 3] = q == 0 ? hn::Zero(d) : hn::Load(d, out + k * batch_lanes);
+                    form.add_pair(node[a], node[b], block);
+                    for (int k = 0; k < 9; ++k) hn::Store(block[k / 3][k % 3], d, out + k * batch_lanes);
+                }
+            }
+        }
+    }
+}
+
+template <template <bool second> class Form, bool second>
+void stiffness_by_nodes(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
+    batch.nodes_per_tet == 4 ? stiffness_of<Form<second>, second, 4>(batch, law, x, blocks)
+                             : stiffness_of<Form<second>, second, 10>(batch, law, x, blocks);
+}
+
+template <template <bool second> class Form>
+void stiffness(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
+    law.c01_Pa != 0 ? stiffness_by_nodes<Form, true>(batch, law, x, blocks)
+                    : stiffness_by_nodes<Form, false>(batch, law, x, blocks);
+}
+
 }  // namespace pliant::sim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

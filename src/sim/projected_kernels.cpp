@@ -81,12 +81,14 @@ HWY_INLINE Matrix positive_part(const Matrix& S) {
 }
 
 /// The stiffness of one point in the frames of U and V, times its volume.
+template <bool second>
 struct PrincipalForm {
     Matrix U, right;       ///< right: V
     Matrix A;              ///< between stretches
     V same[3], across[3];  ///< of the shears beside each axis: of ij with itself, and with ji
 
-    template <bool second>
+    using OfNode = Vector;  ///< V^T a
+
     HWY_INLINE PrincipalForm(const Point<second>& p, const material::InvariantForm& law, V volume) {
         const Eigen3 e = eigen(right_cauchy(p.F));
         right = e.vectors;
@@ -115,8 +117,37 @@ struct PrincipalForm {
         }
     }
 
+    [[nodiscard]] HWY_INLINE OfNode of_node(const Vector& gradient) const {
+        Vector result;
+        for (int i = 0; i < 3; ++i) result.v[i] = dot(gradient, {{right.m[i][0], right.m[i][1], right.m[i][2]}});
+        return result;
+    }
+    HWY_INLINE void add_pair(const OfNode& a, const OfNode& b, V (*block)[3]) const {
+        Matrix K;
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3;
+            const int k = (i + 2) % 3;
+            K.m[i][i] = hn::Mul(A.m[i][i], hn::Mul(a.v[i], b.v[i]));
+            K.m[i][i] = hn::MulAdd(same[k], hn::Mul(a.v[j], b.v[j]), K.m[i][i]);
+            K.m[i][i] = hn::MulAdd(same[j], hn::Mul(a.v[k], b.v[k]), K.m[i][i]);
+            // Rows belong to a. The shear of two directions is named by the axis beside both.
+            K.m[j][i] = hn::MulAdd(A.m[j][i], hn::Mul(a.v[i], b.v[j]), hn::Mul(across[k], hn::Mul(a.v[j], b.v[i])));
+            K.m[i][j] = hn::MulAdd(A.m[i][j], hn::Mul(a.v[j], b.v[i]), hn::Mul(across[k], hn::Mul(a.v[i], b.v[j])));
+        }
+        // U K U^T
+        Matrix half;
+        for (int j = 0; j < 3; ++j) {
+            const Vector column = times(U, {{K.m[j][0], K.m[j][1], K.m[j][2]}});
+            for (int i = 0; i < 3; ++i) half.m[j][i] = column.v[i];
+        }
+        for (int c = 0; c < 3; ++c) {
+            for (int r = 0; r < 3; ++r) {
+                for (int k = 0; k < 3; ++k) block[c][r] = hn::MulAdd(half.m[k][r], U.m[k][c], block[c][r]);
+            }
+        }
+    }
+
 private:
-    template <bool second>
     HWY_INLINE void set_stretches(const Point<second>& p, const Factors<second>& k, V along_G, const V* l) {
         V h[3], e[3];  // dJ / dl, dI2 / dl
         for (int i = 0; i < 3; ++i) {
@@ -140,72 +171,8 @@ private:
     }
 };
 
-/// Adds the block of two nodes, whose gradients V^T g are `a` and `b`, to `block`, by columns.
-HWY_INLINE void add_pair(const PrincipalForm& form, const Vector& a, const Vector& b, V (*block)[3]) {
-    Matrix K;
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        const int k = (i + 2) % 3;
-        K.m[i][i] = hn::Mul(form.A.m[i][i], hn::Mul(a.v[i], b.v[i]));
-        K.m[i][i] = hn::MulAdd(form.same[k], hn::Mul(a.v[j], b.v[j]), K.m[i][i]);
-        K.m[i][i] = hn::MulAdd(form.same[j], hn::Mul(a.v[k], b.v[k]), K.m[i][i]);
-        // Rows belong to a. The shear of two directions is named by the axis beside both.
-        K.m[j][i] =
-            hn::MulAdd(form.A.m[j][i], hn::Mul(a.v[i], b.v[j]), hn::Mul(form.across[k], hn::Mul(a.v[j], b.v[i])));
-        K.m[i][j] =
-            hn::MulAdd(form.A.m[i][j], hn::Mul(a.v[j], b.v[i]), hn::Mul(form.across[k], hn::Mul(a.v[i], b.v[j])));
-    }
-    // U K U^T
-    Matrix half;
-    for (int j = 0; j < 3; ++j) {
-        const Vector column = times(form.U, {{K.m[j][0], K.m[j][1], K.m[j][2]}});
-        for (int i = 0; i < 3; ++i) half.m[j][i] = column.v[i];
-    }
-    for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) {
-            for (int k = 0; k < 3; ++k) block[c][r] = hn::MulAdd(half.m[k][r], form.U.m[k][c], block[c][r]);
-        }
-    }
-}
-
-template <int nodes, bool second>
-void projected_of(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        for (int q = 0; q < batch.points; ++q) {
-            Point<second> point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            point.set_invariants(law);
-            const PrincipalForm form(point, law, hn::Load(d, batch.volumes + q * batch_lanes + part));
-            Vector g[nodes];
-            for (int a = 0; a < nodes; ++a) {
-                const Vector given = gradient(batch, q, a, part);
-                for (int i = 0; i < 3; ++i)
-                    g[a].v[i] = dot(given, {{form.right.m[i][0], form.right.m[i][1], form.right.m[i][2]}});
-            }
-            double* out = blocks + part;
-            for (int b = 0; b < nodes; ++b) {
-                for (int a = 0; a <= b; ++a, out += 9 * batch_lanes) {
-                    V block[3][3];
-                    for (int k = 0; k < 9; ++k)
-                        block[k / 3][k % 3] = q == 0 ? hn::Zero(d) : hn::Load(d, out + k * batch_lanes);
-                    add_pair(form, g[a], g[b], block);
-                    for (int k = 0; k < 9; ++k) hn::Store(block[k / 3][k % 3], d, out + k * batch_lanes);
-                }
-            }
-        }
-    }
-}
-
 void projected(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    const bool second = law.c01_Pa != 0;
-    if (batch.nodes_per_tet == 4)
-        second ? projected_of<4, true>(batch, law, x, blocks) : projected_of<4, false>(batch, law, x, blocks);
-    else
-        second ? projected_of<10, true>(batch, law, x, blocks) : projected_of<10, false>(batch, law, x, blocks);
+    stiffness<PrincipalForm>(batch, law, x, blocks);
 }
 
 }  // namespace pliant::sim::HWY_NAMESPACE
