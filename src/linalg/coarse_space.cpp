@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "linalg/rigid_motions.hpp"
@@ -22,16 +22,6 @@ Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry
     return Eigen::Map<Block36>(values.data() + 18 * entry);
 }
 
-/// Places of the items of each group, in order: start (groups + 1) and items.
-void list_members(const std::vector<int>& group, int groups, std::vector<int>& start, std::vector<int>& members) {
-    start.assign(static_cast<std::size_t>(groups) + 1, 0);
-    for (const int g : group) ++start[g + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    members.resize(group.size());
-    std::vector<int> next(start.begin(), start.end() - 1);
-    for (std::size_t i = 0; i < group.size(); ++i) members[next[group[i]]++] = static_cast<int>(i);
-}
-
 /// A set of groups that forgets everything at once.
 class Seen {
 public:
@@ -45,8 +35,8 @@ private:
 
 }  // namespace
 
-CoarseSpace::CoarseSpace(const BlockRows& matrix) : groups_(aggregate(matrix)) {
-    list_members(groups_.of_node, groups_.count, member_start_, member_);
+CoarseSpace::CoarseSpace(const BlockRows& matrix)
+    : groups_(aggregate(matrix)), members_(members_of(groups_.of_node, groups_.count)) {
     find_groups(matrix);
     find_pattern();
     const auto nodes = static_cast<std::size_t>(matrix.rows());
@@ -80,12 +70,12 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
         std::sort(product_group_.begin() + product_start_.back(), product_group_.end());
         product_start_.push_back(static_cast<int>(product_group_.size()));
     }
-    std::vector<int> entries;
-    list_members(group_, groups_.count, use_start_, entries);
-    use_.resize(entries.size());
-    for (std::size_t u = 0; u < entries.size(); ++u) {
-        const auto row = std::upper_bound(start_.begin(), start_.end(), entries[u]) - start_.begin() - 1;
-        use_[u] = {static_cast<int>(row), entries[u]};
+    Members uses = members_of(group_, groups_.count);
+    use_start_ = std::move(uses.start);
+    use_.reserve(uses.item.size());
+    for (const int entry : uses.item) {
+        const auto row = std::upper_bound(start_.begin(), start_.end(), entry) - start_.begin() - 1;
+        use_.push_back({static_cast<int>(row), entry});
     }
 }
 
@@ -230,8 +220,8 @@ void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
 }
 
 std::span<const int> CoarseSpace::members(std::size_t group) const {
-    const auto first = static_cast<std::size_t>(member_start_[group]);
-    return std::span(member_).subspan(first, static_cast<std::size_t>(member_start_[group + 1]) - first);
+    const auto first = static_cast<std::size_t>(members_.start[group]);
+    return std::span(members_.item).subspan(first, static_cast<std::size_t>(members_.start[group + 1]) - first);
 }
 
 void CoarseSpace::turn(std::span<const double> positions) {

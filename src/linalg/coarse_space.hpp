@@ -56,7 +56,7 @@ private:
     };
 
     Aggregates groups_;
-    std::vector<int> member_start_, member_;  ///< nodes of each group
+    Members members_;  ///< nodes of each group
     // P and A P by rows of nodes, in blocks of 3 by 6, column by column.
     std::vector<int> start_, group_;                  ///< of P
     std::vector<int> product_start_, product_group_;  ///< of A P
