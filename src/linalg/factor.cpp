@@ -113,40 +113,43 @@ bool Factor<Real>::eliminate_branch(const FrontLayout::Branch& branch, std::span
     return true;
 }
 
+/// The right-hand sides on their way through the tree: down all branches at once, down the trunk, and back. What a
+/// branch has for the trunk is summed up beside it, and taken in when all have come, in order.
 template <class Real>
 class Factor<Real>::Sweep {
 public:
     Sweep(const Factor& factor, int count)
         : factor_(factor),
           e_(factor.analysis_->e),
+          branches_(factor.layout_.branches),
           block_(factor.block_),
           count_(count),
           size_(factor.size()),
-          all_(factor.scratch_.lend(size_ * static_cast<std::size_t>(count))) {}
+          all_(factor.scratch_.lend(size_ * static_cast<std::size_t>(count))),
+          handed_(branches_.size()) {}
 
-    void take(const double* x) {
+    void solve(double* x) {
         permute([&](std::size_t given, Real& in_order) { in_order = static_cast<Real>(x[given]); });
-    }
-    void give(double* x) {
+        for_branches([&](std::size_t k) { go_down_branch(k); });
+        for (std::size_t k = 0; k < branches_.size(); ++k)
+            for_handed(k, all_.data(), [](Real sum, Real& all) { all += sum; });
+        Front front;
+        const std::vector<int>& trunk = factor_.layout_.trunk;
+        for (const int s : trunk) go_down(s, front, e_.row_start[s + 1], nullptr);
+        for (auto s = trunk.rbegin(); s != trunk.rend(); ++s) go_up(*s, front);
+        for_branches([&](std::size_t k) {
+            Front own;
+            for (int s = branches_[k].last - 1; s >= branches_[k].first; --s) go_up(s, own);
+        });
         permute([&](std::size_t given, Real& in_order) { x[given] = static_cast<double>(in_order); });
-    }
-    void go_down(int s) {
-        const Panel<Real> p = factor_.panel(s);
-        gather(s, p);
-        solve_lower(p, count_, own_.data(), below_.data());
-        put_back(s, p);
-        for_rows(s, [](Real part, Real& all) { all -= part; });
-    }
-    void go_up(int s) {
-        const Panel<Real> p = factor_.panel(s);
-        gather(s, p);
-        std::fill(below_.begin(), below_.end(), Real(0));
-        for_rows(s, [](Real& part, Real all) { part = all; });
-        solve_upper(p, count_, own_.data(), below_.data());
-        put_back(s, p);
     }
 
 private:
+    /// What belongs to one supernode.
+    struct Front {
+        std::vector<Real> own, below;
+    };
+
     template <class Move>
     void permute(const Move& move) {
         for (int c = 0; c < count_; ++c) {
@@ -157,44 +160,88 @@ private:
             }
         }
     }
-    /// What belongs to the columns of s; makes room for what belongs to the rows below.
-    void gather(int s, const Panel<Real>& p) {
-        own_.resize(static_cast<std::size_t>(p.columns * count_));
-        below_.resize(factor_.leading(s) * static_cast<std::size_t>(count_));
-        for (int c = 0; c < count_; ++c)
-            std::copy_n(all_.data() + c * size_ + e_.first[s] * block_, p.columns, own_.data() + c * p.columns);
+    template <class Work>
+    void for_branches(const Work& work) {
+        parallel_for(branches_.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) work(k);
+        });
     }
-    void put_back(int s, const Panel<Real>& p) {
-        for (int c = 0; c < count_; ++c)
-            std::copy_n(own_.data() + c * p.columns, p.columns, all_.data() + c * size_ + e_.first[s] * block_);
+    void go_down_branch(std::size_t k) {
+        const FrontLayout::Branch& branch = branches_[k];
+        const auto sums = factor_.scratch_.lend(size_ * static_cast<std::size_t>(count_));
+        handed_[k].resize(static_cast<std::size_t>(e_.rows_below(branch.last - 1) * block_ * count_));
+        for_handed(k, sums.data(), [](Real, Real& sum) { sum = 0; });
+        Front front;
+        for (int s = branch.first; s < branch.last; ++s) {
+            const auto rows = e_.row.begin() + e_.row_start[s];
+            const auto beyond = std::lower_bound(rows, e_.row.begin() + e_.row_start[s + 1], e_.first[branch.last]);
+            go_down(s, front, static_cast<int>(beyond - e_.row.begin()), sums.data());
+        }
+        for_handed(k, sums.data(), [](Real& handed, Real sum) { handed = sum; });
     }
+    /// What branch k hands over, beside the same rows of `full`.
     template <class Use>
-    void for_rows(int s, const Use& use) {
+    void for_handed(std::size_t k, Real* full, const Use& use) {
+        const int root = branches_[k].last - 1;
+        for_rows(e_.row_start[root], e_.row_start[root + 1], handed_[k].data(),
+                 static_cast<std::size_t>(e_.rows_below(root) * block_), full, use);
+    }
+    /// Rows from `beyond` on are outside of the branch and go to `sums`.
+    void go_down(int s, Front& front, int beyond, Real* sums) {
+        const Panel<Real> p = factor_.panel(s);
+        gather(s, p, front);
+        solve_lower(p, count_, front.own.data(), front.below.data());
+        put_back(s, p, front);
+        const auto subtract = [](Real part, Real& all) { all -= part; };
+        const int start = e_.row_start[s], end = e_.row_start[s + 1];
+        for_rows(start, beyond, front.below.data(), factor_.leading(s), all_.data(), subtract);
+        for_rows(beyond, end, front.below.data() + (beyond - start) * block_, factor_.leading(s), sums, subtract);
+    }
+    void go_up(int s, Front& front) {
+        const Panel<Real> p = factor_.panel(s);
+        gather(s, p, front);
+        std::fill(front.below.begin(), front.below.end(), Real(0));
+        for_rows(e_.row_start[s], e_.row_start[s + 1], front.below.data(), factor_.leading(s), all_.data(),
+                 [](Real& part, Real all) { part = all; });
+        solve_upper(p, count_, front.own.data(), front.below.data());
+        put_back(s, p, front);
+    }
+    /// What belongs to the columns of s; makes room for what belongs to the rows below.
+    void gather(int s, const Panel<Real>& p, Front& front) {
+        front.own.resize(static_cast<std::size_t>(p.columns * count_));
+        front.below.resize(factor_.leading(s) * static_cast<std::size_t>(count_));
+        for (int c = 0; c < count_; ++c)
+            std::copy_n(all_.data() + c * size_ + e_.first[s] * block_, p.columns, front.own.data() + c * p.columns);
+    }
+    void put_back(int s, const Panel<Real>& p, const Front& front) {
+        for (int c = 0; c < count_; ++c)
+            std::copy_n(front.own.data() + c * p.columns, p.columns, all_.data() + c * size_ + e_.first[s] * block_);
+    }
+    /// Rows `from` .. `to` of the elimination: those of `part`, one after the other, beside their places in `full`.
+    /// Right-hand sides are `stride` apart in `part`.
+    template <class Use>
+    void for_rows(int from, int to, Real* part, std::size_t stride, Real* full, const Use& use) {
         for (int c = 0; c < count_; ++c) {
-            Real* part = below_.data() + c * factor_.leading(s);
-            Real* all = all_.data() + c * size_;
-            for (int k = e_.row_start[s]; k < e_.row_start[s + 1]; ++k) {
-                for (int u = 0; u < block_; ++u) use(*part++, all[e_.row[k] * block_ + u]);
+            Real* mine = part + c * stride;
+            Real* all = full + c * size_;
+            for (int k = from; k < to; ++k) {
+                for (int u = 0; u < block_; ++u) use(*mine++, all[e_.row[k] * block_ + u]);
             }
         }
     }
 
     const Factor& factor_;
     const Elimination& e_;
+    const std::vector<FrontLayout::Branch>& branches_;
     const int block_, count_;
     const std::size_t size_;
-    typename ArrayPool<Real>::Loan all_;  ///< (count, size) in the order of elimination
-    std::vector<Real> own_, below_;       ///< of one supernode
+    typename ArrayPool<Real>::Loan all_;     ///< (count, size) in the order of elimination
+    std::vector<std::vector<Real>> handed_;  ///< by each branch to the trunk: (count, rows below its last supernode)
 };
 
 template <class Real>
 void Factor<Real>::solve(double* right_side, int count) const {
-    Sweep sweep(*this, count);
-    sweep.take(right_side);
-    const int supernodes = analysis_->e.supernodes();
-    for (int s = 0; s < supernodes; ++s) sweep.go_down(s);
-    for (int s = supernodes - 1; s >= 0; --s) sweep.go_up(s);
-    sweep.give(right_side);
+    Sweep(*this, count).solve(right_side);
 }
 
 template <class Real>

@@ -27,6 +27,8 @@ constexpr int tile_columns = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
 constexpr int product_depth = 256;
 /// Work for which another core is called, in multiply-adds.
 constexpr double work_to_share = 4e6;
+/// Numbers of a factor, read once, for which another core is called.
+constexpr int reading_to_share = 100000;
 
 enum class To { store, subtract };
 
@@ -141,6 +143,15 @@ void share(int begin, int end, double work_of_each, const Work& work) {
                  [&](std::size_t b, std::size_t e) { work(begin + static_cast<int>(b), begin + static_cast<int>(e)); });
 }
 
+/// The same for items that are read once, `entries` numbers each.
+template <class Work>
+void share_reading(int begin, int end, int entries, const Work& work) {
+    if (end <= begin) return;
+    const auto grain = static_cast<std::size_t>(std::max(reading_to_share / std::max(entries, 1), 4) / 4 * 4);
+    parallel_for(static_cast<std::size_t>(end - begin), grain,
+                 [&](std::size_t b, std::size_t e) { work(begin + static_cast<int>(b), begin + static_cast<int>(e)); });
+}
+
 template <class Real>
 bool factorise_panel(const Panel<Real>& panel) {
     constexpr int P = packet<Real>;
@@ -248,15 +259,17 @@ void solve_lower_of(const Panel<Real>& panel, Real* x, Real* y) {
     }
     const int begin = panel.first_below() / P;
     const auto below = static_cast<std::size_t>(whole_packets<Real>(panel.below));
-    multiply_packets<count>(panel, panel.columns, x, n, begin, panel.rows() / P, [&](auto d, int r, int c, auto sum) {
-        hn::StoreU(sum, d, y + static_cast<std::size_t>(c) * below + static_cast<std::size_t>(r - begin * P));
+    share_reading(begin, panel.rows() / P, P * panel.columns, [&](int from, int to) {
+        multiply_packets<count>(panel, panel.columns, x, n, from, to, [&](auto d, int r, int c, auto sum) {
+            hn::StoreU(sum, d, y + static_cast<std::size_t>(c) * below + static_cast<std::size_t>(r - begin * P));
+        });
     });
 }
 
-/// x (columns before `depth`) -= L^T y over the packets begin .. end; y belongs to packet `begin` on.
+/// x (columns from `first` to `last`) -= L^T y over the packets begin .. end; y belongs to packet `begin` on.
 template <int count, class Real>
-HWY_INLINE void subtract_transposed(const Panel<Real>& panel, int depth, const Real* y, std::size_t y_stride, int begin,
-                                    int end, Real* x) {
+HWY_INLINE void subtract_transposed(const Panel<Real>& panel, int first, int last, const Real* y, std::size_t y_stride,
+                                    int begin, int end, Real* x) {
     const hn::CappedTag<Real, packet<Real>> d;
     using V = hn::Vec<decltype(d)>;
     constexpr int P = packet<Real>;
@@ -283,9 +296,9 @@ HWY_INLINE void subtract_transposed(const Panel<Real>& panel, int depth, const R
                 x[static_cast<std::size_t>(c) * panel.columns + k + q] -= hn::GetLane(hn::SumOfLanes(d, sum[q][c]));
         }
     };
-    int k = 0;
-    for (; k + together <= depth; k += together) run(std::integral_constant<int, together>{}, k);
-    for (; k < depth; ++k) run(std::integral_constant<int, 1>{}, k);
+    int k = first;
+    for (; k + together <= last; k += together) run(std::integral_constant<int, together>{}, k);
+    for (; k < last; ++k) run(std::integral_constant<int, 1>{}, k);
 }
 
 template <int count, class Real>
@@ -293,7 +306,9 @@ void solve_upper_of(const Panel<Real>& panel, Real* x, const Real* y) {
     constexpr int P = packet<Real>;
     const auto n = static_cast<std::size_t>(panel.columns);
     const auto below = static_cast<std::size_t>(whole_packets<Real>(panel.below));
-    subtract_transposed<count>(panel, panel.columns, y, below, panel.first_below() / P, panel.rows() / P, x);
+    const int begin = panel.first_below() / P, end = panel.rows() / P;
+    share_reading(0, panel.columns, P * (end - begin),
+                  [&](int from, int to) { subtract_transposed<count>(panel, from, to, y, below, begin, end, x); });
     for (int first = (panel.columns - 1) / P * P; first >= 0; first -= P) {
         const int last = std::min(first + P, panel.columns);
         HWY_ALIGN Real solved[count][P] = {};
@@ -305,7 +320,8 @@ void solve_upper_of(const Panel<Real>& panel, Real* x, const Real* y) {
                 xc[j] = solved[c][j - first] = value / *panel.at(j, j);
             }
         }
-        subtract_transposed<count>(panel, first, solved[0], static_cast<std::size_t>(P), first / P, first / P + 1, x);
+        subtract_transposed<count>(panel, 0, first, solved[0], static_cast<std::size_t>(P), first / P, first / P + 1,
+                                   x);
     }
 }
 
