@@ -9,6 +9,9 @@
 namespace pliant::linalg {
 namespace {
 
+/// Numbers of an update for which another core is called.
+constexpr std::size_t additions_to_share = 50000;
+
 /// Unknowns of the panel: its own fill whole packets, so those below begin with the next one.
 template <class Real>
 int panel_row(const Panel<Real>& panel, int unknown) {
@@ -60,15 +63,20 @@ void Factor<Real>::add_to_panel(int child, const Real* update, const std::vector
             place.push_back(static_cast<std::size_t>(p.at(panel_row(p, part.to * b + r), 0) - p.values));
     }
     const int rows = static_cast<int>(place.size());
+    std::vector<std::pair<int, int>> columns;  // of the child, and of the panel
     for (const Stretch& part : parts) {
         if (part.to >= analysis_->e.columns(s)) break;
-        for (int c = 0; c < part.length * b; ++c) {
-            const int first = part.from * b + c;
+        for (int c = 0; c < part.length * b; ++c) columns.emplace_back(part.from * b + c, part.to * b + c);
+    }
+    const std::size_t grain = additions_to_share / static_cast<std::size_t>(rows + 1) + 1;
+    parallel_for(columns.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto [first, to] = columns[k];
             const Real* source = update + static_cast<std::size_t>(first) * leading_dimension;
-            Real* column = p.at(0, part.to * b + c);
+            Real* column = p.at(0, to);
             for (int r = first; r < rows; ++r) column[place[r]] += source[r];
         }
-    }
+    });
 }
 
 /// The other columns, which its parent passes on.

@@ -26,7 +26,7 @@ constexpr int tile_columns = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
 /// Products are cut here, so that what they read stays in the cache.
 constexpr int product_depth = 256;
 /// Work for which another core is called, in multiply-adds.
-constexpr double work_to_share = 4e6;
+constexpr double work_to_share = 1e6;
 /// Numbers of a factor, read once, for which another core is called.
 constexpr int reading_to_share = 100000;
 
