@@ -69,7 +69,7 @@ public:
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
 
     /// Of the tangent while nothing touches, and what is known of it: its nodes are coupled as those of the Laplacian.
-    [[nodiscard]] const TangentLayout& tangent_layout() const;
+    [[nodiscard]] const std::shared_ptr<const TangentLayout>& tangent_layout() const;
     [[nodiscard]] const std::shared_ptr<const linalg::Analysis>& analysis() const;
     /// Multiply-adds that its factorisation took.
     [[nodiscard]] double work() const;

@@ -6,7 +6,7 @@ namespace pliant::sim {
 
 struct FactoredLaplacian::State {
     const Model* model;
-    TangentLayout layout;
+    std::shared_ptr<const TangentLayout> layout;
     linalg::Cholesky factor;
 };
 
@@ -38,8 +38,8 @@ private:
 
 FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     const Model& model = system.model();
-    TangentLayout layout = system.lay_out_tangent();
-    linalg::SymmetricPattern scalar = layout.pattern;
+    auto layout = std::make_shared<const TangentLayout>(system.lay_out_tangent());
+    linalg::SymmetricPattern scalar = layout->pattern;
     scalar.block = 1;
     std::vector<double> values(scalar.entries(), 0.0);
     model.elements().add_laplacian(model.free_index(), scalar, values);
@@ -52,7 +52,7 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
 FactoredLaplacian::FactoredLaplacian(FactoredLaplacian&&) noexcept = default;
 FactoredLaplacian::~FactoredLaplacian() = default;
 
-const TangentLayout& FactoredLaplacian::tangent_layout() const {
+const std::shared_ptr<const TangentLayout>& FactoredLaplacian::tangent_layout() const {
     return state_->layout;
 }
 

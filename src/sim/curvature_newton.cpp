@@ -19,7 +19,7 @@ public:
           laplacian_(&laplacian),
           layout_(laplacian.tangent_layout()),
           analysis_(laplacian.analysis()),
-          two_levels_(!system.has_skew() && two_levels_are_quicker(layout_.pattern, laplacian.work())),
+          two_levels_(!system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work())),
           inverse_(make_inverse()) {}
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
@@ -74,8 +74,8 @@ public:
 private:
     /// The skew part wants the inverse of the very tangent.
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
-        if (two_levels_) return make_two_level_inverse(layout_.pattern);
-        if (!analysis_) analysis_ = linalg::analyse(layout_.pattern);
+        if (two_levels_) return make_two_level_inverse(layout_->pattern);
+        if (!analysis_) analysis_ = linalg::analyse(layout_->pattern);
         return make_direct_inverse(analysis_, system_->has_skew());
     }
 
@@ -89,8 +89,8 @@ private:
             usable_ = false;
         }
         // Only solving showed that the tangent is indefinite.
-        while (outcome == Outcome::indefinite && !reused_ &&
-               project(share_ == 0 ? smallest_share_of_projection : 4 * share_)) {
+        while (outcome == Outcome::indefinite && !reused_ && share_ < 1 &&
+               project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0))) {
             columns = right;
             outcome = inverse_->solve(columns);
         }
@@ -148,7 +148,7 @@ private:
             grown = true;
         }
         if (!grown) return;
-        layout_ = system_->lay_out_tangent(touching_);
+        layout_ = std::make_shared<const TangentLayout>(system_->lay_out_tangent(touching_));
         analysis_ = nullptr;
         inverse_ = make_inverse();
         // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
@@ -160,15 +160,15 @@ private:
         for (const int i : clique) {
             for (const int j : clique) {
                 if (j < 0 || i < j) continue;
-                if (!layout_.pattern.holds(i, j)) return false;
+                if (!layout_->pattern.holds(i, j)) return false;
             }
         }
         return true;
     }
 
     void assemble(bool project, std::vector<double>& values) const {
-        values.assign(layout_.pattern.entries(), 0.0);
-        system_->add_tangent(*at_.state, *at_.controls, layout_, values, project);
+        values.assign(layout_->pattern.entries(), 0.0);
+        system_->add_tangent(*at_.state, *at_.controls, *layout_, values, project);
     }
 
     static constexpr double smallest_share_of_projection = 1.0 / 16;
@@ -181,7 +181,7 @@ private:
 
     const Equilibrium* system_;
     const FactoredLaplacian* laplacian_;
-    TangentLayout layout_;
+    std::shared_ptr<const TangentLayout> layout_;
     std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, once it was needed
     bool two_levels_;                                   ///< as long as they are quick enough
     std::unique_ptr<TangentInverse> inverse_;
