@@ -1,7 +1,9 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
-//   build/release/bench/pliant_speed [frames|cold|fingers|size [TETS]]      all, or one table; sizes up to TETS
+//   build/release/bench/pliant_speed [frames|cold|fingers|size [TETS [PNG]]]   all, or one table; sizes up to TETS, and
+//                                                                             a plot of them on one core and on two
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,9 +12,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "core/files.hpp"
 #include "problems.hpp"
+#include "report/plot.hpp"
 #include "sim/calculix.hpp"
 #include "sim/simulate.hpp"
 
@@ -174,26 +179,71 @@ void fingers() {
     apart([&] { quadratic_finger(folder); });
 }
 
-void size_of(int along, int across, double tolerance) {
-    const auto model = Model::create(bench::two_material_bend(0.45, 1, along, across));
-    const Trajectory found = solve(*model, {.steps = 1, .tolerance = tolerance});
-    const double tets = static_cast<double>(model->mesh().tet_count());
-    const double seconds = found.setup_s + found.solve_s;
-    fmt::print("| {} | {:.2f} | {:.1f} | {:.0f} | {:.0e} | {:.3f} | {:.0f} |\n", model->mesh().tet_count(), seconds,
-               1e6 * seconds / tets, iterations(found), tolerance, 1e3 * tip(found).z, peak_MB());
+struct Cells {
+    int along, across;
+    [[nodiscard]] double tets() const { return 6.0 * along * across * across; }
+};
+
+struct ColdStart {
+    double seconds, iterations, tip_z_mm, peak_MB;
+};
+
+/// The bend from rest, in a process of its own that has so many of this one's cores; nothing if it failed there.
+std::optional<ColdStart> cold_start(const Cells& cells, double tolerance, int cores) {
+    int ends[2];
+    if (pipe(ends) != 0) return std::nullopt;
+    const bool done = apart([&] {
+        cpu_set_t mine, some;
+        sched_getaffinity(0, sizeof(mine), &mine);
+        CPU_ZERO(&some);
+        for (int cpu = 0; cpu < CPU_SETSIZE && CPU_COUNT(&some) < cores; ++cpu) {
+            if (CPU_ISSET(cpu, &mine)) CPU_SET(cpu, &some);
+        }
+        sched_setaffinity(0, sizeof(some), &some);
+        const auto model = Model::create(bench::two_material_bend(0.45, 1, cells.along, cells.across));
+        const Trajectory found = solve(*model, {.steps = 1, .tolerance = tolerance});
+        const ColdStart result{found.setup_s + found.solve_s, iterations(found), 1e3 * tip(found).z, peak_MB()};
+        if (!found.converged || write(ends[1], &result, sizeof(result)) != sizeof(result)) std::_Exit(1);
+    });
+    ColdStart result{};
+    const bool told = done && read(ends[0], &result, sizeof(result)) == sizeof(result);
+    close(ends[0]);
+    close(ends[1]);
+    return told ? std::optional(result) : std::nullopt;
 }
 
-void sizes(double most) {
+/// Largest meshes up to `most` tets; a plot of those at 1e-4 where `picture` names a file.
+void sizes(double most, const std::string& picture) {
     fmt::print(
-        "| tets | s, cold | us a tet | iterations | residual asked | tip z, mm | MB "
-        "|\n|---|---|---|---|---|---|---|\n");
-    struct Cells {
-        int along, across;
-    };
+        "| tets | residual asked | s on one core | s on two | us a tet, one core | iterations | tip z, mm | MB |\n"
+        "|---|---|---|---|---|---|---|---|\n");
+    report::Series one{"one core", {}, false}, two{"two cores", {}, false}, even{"in proportion to tets", {}, false};
     for (const Cells& c : {Cells{48, 5}, {72, 8}, {100, 10}, {128, 13}, {160, 16}, {200, 20}, {256, 26}}) {
-        if (6.0 * c.along * c.across * c.across > most) break;
-        for (const double tolerance : {1e-3, 1e-4}) apart([&] { size_of(c.along, c.across, tolerance); });
+        if (c.tets() > most) break;
+        for (const double tolerance : {1e-3, 1e-4}) {
+            const auto alone = cold_start(c, tolerance, 1), both = cold_start(c, tolerance, 2);
+            if (!alone || !both) {
+                fmt::print("| {:.0f} | {:.0e} | did not converge |\n", c.tets(), tolerance);
+                continue;
+            }
+            fmt::print("| {:.0f} | {:.0e} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.3f} | {:.0f} |\n", c.tets(),
+                       tolerance, alone->seconds, both->seconds, 1e6 * alone->seconds / c.tets(), alone->iterations,
+                       alone->tip_z_mm, alone->peak_MB);
+            if (tolerance != 1e-4) continue;
+            one.points.push_back({c.tets(), alone->seconds});
+            two.points.push_back({c.tets(), both->seconds});
+            even.points.push_back({c.tets(), one.points.front().y * c.tets() / one.points.front().x});
+        }
     }
+    if (picture.empty()) return;
+    const auto png = report::plot_png({.title = "Two-material bend from rest, residual 1e-4",
+                                       .x_label = "linear tets",
+                                       .y_label = "seconds",
+                                       .series = {one, two, even},
+                                       .log_x = true,
+                                       .log_y = true});
+    if (png && write_file(picture, *png)) return;
+    fmt::print(stderr, "{} could not be written\n", picture);
 }
 
 }  // namespace
@@ -203,5 +253,5 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "frames") frames();
     if (only.empty() || only == "cold") cold();
     if (only.empty() || only == "fingers") fingers();
-    if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5);
+    if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5, argc > 3 ? argv[3] : "");
 }
