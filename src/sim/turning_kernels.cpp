@@ -47,23 +47,72 @@ HWY_INLINE Matrix inverse(const Matrix& F) {
     return result;
 }
 
+/// Polynomials of a matrix: by Cayley and Hamilton c[0] I + c[1] A + c[2] A^2 holds all of them, so that a series takes
+/// sums of numbers and no product of matrices.
+class Polynomials {
+public:
+    struct Coefficients {
+        V c[3];
+    };
+
+    HWY_INLINE explicit Polynomials(const Matrix& A) : A_(A), square_(product(A, A)) {
+        trace_ = trace(A);
+        second_ = hn::Mul(set(0.5), hn::MulSub(trace_, trace_, trace(square_)));
+        const Matrix G = cofactor(A);
+        determinant_ =
+            hn::MulAdd(A.m[0][2], G.m[0][2], hn::MulAdd(A.m[0][1], G.m[0][1], hn::Mul(A.m[0][0], G.m[0][0])));
+    }
+    /// scale p A + constant, by A^3 = trace A^2 - second A + determinant I.
+    [[nodiscard]] HWY_INLINE Coefficients times_A_plus(const Coefficients& p, double scale, double constant) const {
+        const V high = hn::Mul(set(scale), p.c[2]);
+        return {{hn::MulAdd(high, determinant_, set(constant)), hn::MulSub(set(scale), p.c[0], hn::Mul(high, second_)),
+                 hn::MulAdd(set(scale), p.c[1], hn::Mul(high, trace_))}};
+    }
+    [[nodiscard]] HWY_INLINE Coefficients squared(const Coefficients& p) const {
+        const V fourth = hn::Mul(p.c[2], p.c[2]);
+        const V third = hn::MulAdd(fourth, trace_, hn::Mul(hn::Add(p.c[1], p.c[1]), p.c[2]));
+        const V twice = hn::Add(p.c[0], p.c[0]);
+        V second = hn::MulAdd(p.c[1], p.c[1], hn::Mul(twice, p.c[2]));
+        second = hn::MulAdd(third, trace_, hn::NegMulAdd(fourth, second_, second));
+        V first = hn::MulAdd(fourth, determinant_, hn::Mul(twice, p.c[1]));
+        first = hn::NegMulAdd(third, second_, first);
+        return {{hn::MulAdd(third, determinant_, hn::Mul(p.c[0], p.c[0])), first, second}};
+    }
+    [[nodiscard]] HWY_INLINE Matrix of(const Coefficients& p) const {
+        Matrix result;
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) {
+                const V low = i == j ? p.c[0] : hn::Zero(Tag());
+                result.m[j][i] = hn::MulAdd(p.c[2], square_.m[j][i], hn::MulAdd(p.c[1], A_.m[j][i], low));
+            }
+        }
+        return result;
+    }
+
+private:
+    static HWY_INLINE V trace(const Matrix& M) { return hn::Add(hn::Add(M.m[0][0], M.m[1][1]), M.m[2][2]); }
+    Matrix A_, square_;
+    V trace_, second_, determinant_;
+};
+
 /// Taylor's series of M / 8, squared three times: twelve digits up to a norm of 1, four up to 4.
 HWY_INLINE Matrix exponential(const Matrix& M) {
     constexpr int squarings = 3;
     constexpr int terms = 7;
-    const Matrix A = combine(1.0 / (1 << squarings), M, 0, M);
-    Matrix sum = identity(1);
-    for (int k = terms; k > 0; --k) sum = combine(1, identity(1), 1.0 / k, product(A, sum));
-    for (int k = 0; k < squarings; ++k) sum = product(sum, sum);
-    return sum;
+    const Polynomials of_A(combine(1.0 / (1 << squarings), M, 0, M));
+    Polynomials::Coefficients sum{{set(1), set(1.0 / terms), hn::Zero(Tag())}};
+    for (int k = terms - 1; k > 0; --k) sum = of_A.times_A_plus(sum, 1.0 / k, 1);
+    for (int k = 0; k < squarings; ++k) sum = of_A.squared(sum);
+    return of_A.of(sum);
 }
 
 /// -log(I - M) by its series, which is cut after M^6 / 6: what one step turned, of less than half a radian or so.
 HWY_INLINE Matrix logarithm(const Matrix& M) {
     constexpr int terms = 6;
-    Matrix sum = identity(1.0 / terms);
-    for (int k = terms - 1; k > 0; --k) sum = combine(1, identity(1.0 / k), 1, product(M, sum));
-    return product(M, sum);
+    const Polynomials of_M(M);
+    Polynomials::Coefficients sum{{set(1.0 / (terms - 1)), set(1.0 / terms), hn::Zero(Tag())}};
+    for (int k = terms - 2; k >= 0; --k) sum = of_M.times_A_plus(sum, 1, k > 0 ? 1.0 / k : 0);
+    return of_M.of(sum);
 }
 
 template <int nodes>
