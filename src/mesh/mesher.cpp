@@ -13,16 +13,16 @@
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
+#include "mesh/touching_bodies.hpp"
 #include "mesh/walls.hpp"
 #include "mesh/winding_mesher.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-/// What is meshed in one go: all solids together, or one piece of a surface.
+/// What is meshed in one go: all solids together, bodies that touch surfaces, or one piece of a surface.
 struct Part {
-    TetMesh mesh;            ///< regions are bodies
-    bool from_file = false;  ///< not joined to what it touches
+    TetMesh mesh;  ///< regions are bodies
 };
 
 /// True if a node of `one` lies in `other` or within `margin` of it; then `body` is the region there.
@@ -40,7 +40,7 @@ bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& 
     return false;
 }
 
-/// Surfaces of many faces are not joined to their neighbours: a mesh where they touch would fall apart unnoticed.
+/// What was not seen to touch must not: a mesh there would fall apart unnoticed.
 Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGeometry> bodies, double margin) {
     const int own = fresh.mesh.region.front();
     int other = own;
@@ -51,8 +51,8 @@ Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGe
     const std::string& name = bodies[static_cast<std::size_t>(own)].name;
     if (other == own) return input_error("body \"{}\": two shells of its surface touch or overlap", name);
     return input_error(
-        "body \"{}\" touches or overlaps body \"{}\"; surfaces of many faces must stand apart (shapes, STEP files and "
-        "closed surfaces of up to 1000 flat faces may touch)",
+        "body \"{}\" comes within a hundredth of the mesh size of body \"{}\" or overlaps it, less than a mesh of that "
+        "size can tell; take a smaller size, or draw them to touch",
         name, bodies[static_cast<std::size_t>(other)].name);
 }
 
@@ -86,12 +86,12 @@ double rounding(std::span<const BodyGeometry> bodies) {
 }
 
 Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
-                               const SizeField& field, double join_within) {
+                               const SizeField& field, double join_within, const std::vector<bool>& left_out) {
     std::vector<kernel::NamedSolid> solids;
     std::vector<int> body_of_solid;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto* solid = std::get_if<Solid>(&bodies[b].shape);
-        if (solid == nullptr) continue;
+        if (solid == nullptr || left_out[b]) continue;
         solids.push_back({bodies[b].name, *solid});
         body_of_solid.push_back(static_cast<int>(b));
     }
@@ -101,7 +101,7 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
         kernel::mesh_solids(solids, settings.size, settings.order, size_at, std::max(join_within, rounding(bodies)));
     if (!mesh) return tl::unexpected(mesh.error());
     for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
-    return Part{std::move(*mesh), false};
+    return Part{std::move(*mesh)};
 }
 
 double surface_area(const TriMesh& surface) {
@@ -227,9 +227,32 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
     for (TetMesh& mesh : *meshes) {
         mesh.region.assign(mesh.region.size(), static_cast<int>(b));
         for (std::string& note : mesh.notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
-        parts.push_back({settings.order == 2 ? to_quadratic(mesh) : std::move(mesh), true});
+        parts.push_back({settings.order == 2 ? to_quadratic(mesh) : std::move(mesh)});
     }
     return parts;
+}
+
+/// Bodies that touch, some of them surfaces, in one mesh.
+Result<Part> mesh_group(std::span<const BodyGeometry> bodies, const TouchingGroup& group, const MeshSettings& settings,
+                        const SizeField& field, Progress& progress) {
+    std::vector<std::string> names;
+    for (const std::size_t b : group.bodies) names.push_back(fmt::format("body \"{}\"", bodies[b].name));
+    const SizeOfSurface size_at = [&](std::size_t s, const Vec3& p) { return field.at(group.bodies[s], p); };
+    Result<JointMesh> joint =
+        mesh_together(group.surfaces, names, settings.size, size_at, settings.angle_deg, progress);
+    if (!joint) return tl::unexpected(joint.error());
+    TetMesh& mesh = joint->mesh;
+    std::string list;
+    for (std::size_t s = 0; s < names.size(); ++s) {
+        const std::string damage = describe(joint->damage[s]);
+        list += fmt::format("{}{} {:.6g}{}", s == 0 ? "" : ", ", names[s], volume(mesh, static_cast<int>(s)),
+                            damage.empty() ? "" : fmt::format(" (damaged: {})", damage));
+    }
+    mesh.notes.insert(
+        mesh.notes.begin(),
+        "bodies that touch were meshed together from their winding numbers; check their volumes: " + list);
+    for (int& region : mesh.region) region = static_cast<int>(group.bodies[static_cast<std::size_t>(region)]);
+    return Part{settings.order == 2 ? to_quadratic(mesh) : std::move(mesh)};
 }
 
 TetMesh joined(const std::vector<Part>& parts, int order) {
@@ -252,26 +275,52 @@ Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& 
     return {};
 }
 
+/// Bodies as they are meshed: those of a group in one go, surfaces one by one, all other solids together.
+struct Drawing {
+    std::span<const BodyGeometry> bodies;
+    std::vector<TouchingGroup> groups;
+    std::vector<bool> grouped;  ///< (bodies)
+};
+
+Result<Drawing> group_bodies(std::span<const BodyGeometry> bodies, double size) {
+    Result<std::vector<TouchingGroup>> groups = touching_groups(bodies, size);
+    if (!groups) return tl::unexpected(groups.error());
+    Drawing drawing{bodies, std::move(*groups), std::vector<bool>(bodies.size(), false)};
+    for (const TouchingGroup& group : drawing.groups) {
+        for (const std::size_t b : group.bodies) drawing.grouped[b] = true;
+    }
+    return drawing;
+}
+
 /// Solids that stand at most `join_within` apart are joined.
-Result<TetMesh> mesh_once(std::span<const BodyGeometry> bodies, const MeshSettings& settings, const SizeField& field,
+Result<TetMesh> mesh_once(const Drawing& drawing, const MeshSettings& settings, const SizeField& field,
                           Progress& progress, double join_within = 0) {
+    const std::span<const BodyGeometry> bodies = drawing.bodies;
     progress.advance("mesh", 0);
-    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within);
+    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within, drawing.grouped);
     if (!solids) return tl::unexpected(solids.error());
     std::vector<Part> parts;
     if (solids->mesh.tet_count() > 0) parts.push_back(std::move(*solids));
+    const auto take = [&](Part part) -> Status {
+        for (const Part& before : parts) {
+            if (Status apart = check_apart(part, before, bodies, 0.01 * settings.size); !apart) return apart;
+        }
+        parts.push_back(std::move(part));
+        return {};
+    };
+    for (const TouchingGroup& group : drawing.groups) {
+        Result<Part> part = mesh_group(bodies, group, settings, field, progress);
+        if (!part) return tl::unexpected(part.error());
+        if (Status taken = take(std::move(*part)); !taken) return tl::unexpected(taken.error());
+    }
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (!std::holds_alternative<TriMesh>(bodies[b].shape)) continue;
+        if (!std::holds_alternative<TriMesh>(bodies[b].shape) || drawing.grouped[b]) continue;
         if (progress.cancelled()) return cancelled();
         progress.advance("mesh", static_cast<double>(b) / static_cast<double>(bodies.size()));
         Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings, field, progress);
         if (!fresh) return tl::unexpected(fresh.error());
         for (Part& part : *fresh) {
-            for (const Part& before : parts) {
-                if (Status apart = check_apart(part, before, bodies, 0.01 * settings.size); !apart)
-                    return tl::unexpected(apart.error());
-            }
-            parts.push_back(std::move(part));
+            if (Status taken = take(std::move(part)); !taken) return tl::unexpected(taken.error());
         }
     }
     TetMesh mesh = joined(parts, settings.order);
@@ -303,19 +352,19 @@ std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const s
 }
 
 /// The mesh, made anew with bodies joined where a narrow gap keeps them apart.
-Result<TetMesh> close_gaps(std::span<const BodyGeometry> bodies, const MeshSettings& settings, const SizeField& field,
-                           TetMesh mesh, Progress& progress) {
+Result<TetMesh> close_gaps(const Drawing& drawing, const MeshSettings& settings, const SizeField& field, TetMesh mesh,
+                           Progress& progress) {
     if (!(settings.close_gaps > 0)) return mesh;
     const std::vector<NarrowGap> gaps = narrow_gaps(mesh, settings.close_gaps);
     if (gaps.empty()) return mesh;
     constexpr double room = 1.05;  // for rounding
     double widest = 0;
     for (const NarrowGap& gap : gaps) widest = std::max(widest, gap.width);
-    Result<TetMesh> closed = mesh_once(bodies, settings, field, progress, room * widest);
+    Result<TetMesh> closed = mesh_once(drawing, settings, field, progress, room * widest);
     if (!closed && closed.error().cause != Cause::failed) return closed;
     const std::vector<NarrowGap> left = closed ? narrow_gaps(*closed, settings.close_gaps) : gaps;
     if (closed) mesh = std::move(*closed);
-    const std::vector<std::string> notes = gap_notes(bodies, gaps, left);
+    const std::vector<std::string> notes = gap_notes(drawing.bodies, gaps, left);
     mesh.notes.insert(mesh.notes.end(), notes.begin(), notes.end());
     return mesh;
 }
@@ -333,15 +382,14 @@ double expected_tets(const TetMesh& mesh, const SizeField& field) {
 }
 
 /// Meshes once to see how thick the walls are, and lets the sizes follow.
-Status follow_walls(std::span<const BodyGeometry> bodies, const MeshSettings& settings, SizeField& field,
-                    Progress& progress) {
+Status follow_walls(const Drawing& drawing, const MeshSettings& settings, SizeField& field, Progress& progress) {
     if (settings.through_wall < 1) return {};
     MeshSettings coarse = settings;
     coarse.order = 1;
-    const Result<TetMesh> first = mesh_once(bodies, coarse, field, progress);
+    const Result<TetMesh> first = mesh_once(drawing, coarse, field, progress);
     if (!first) return tl::unexpected(first.error());
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (!bodies[b].air) field.add_walls(walls_of(*first, b), settings.through_wall);
+    for (std::size_t b = 0; b < drawing.bodies.size(); ++b) {
+        if (!drawing.bodies[b].air) field.add_walls(walls_of(*first, b), settings.through_wall);
     }
     constexpr double most = 20e6;
     const double tets = expected_tets(*first, field);
@@ -405,9 +453,12 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSetti
     if (Status status = check_settings(drawn, settings); !status) return tl::unexpected(status.error());
     const std::vector<BodyGeometry> bodies = with_solids(drawn, std::max(settings.close_gaps, 0.01 * settings.size));
     SizeField field(bodies, settings);
-    if (Status status = follow_walls(bodies, settings, field, progress); !status) return tl::unexpected(status.error());
-    Result<TetMesh> mesh = mesh_once(bodies, settings, field, progress);
-    if (mesh) mesh = close_gaps(bodies, settings, field, std::move(*mesh), progress);
+    const Result<Drawing> drawing = group_bodies(bodies, settings.size);
+    if (!drawing) return tl::unexpected(drawing.error());
+    if (Status status = follow_walls(*drawing, settings, field, progress); !status)
+        return tl::unexpected(status.error());
+    Result<TetMesh> mesh = mesh_once(*drawing, settings, field, progress);
+    if (mesh) mesh = close_gaps(*drawing, settings, field, std::move(*mesh), progress);
     if (!mesh) return mesh;
     if (field.too_thin())
         mesh->notes.push_back(

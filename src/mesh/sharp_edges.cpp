@@ -1,6 +1,7 @@
 #include "mesh/sharp_edges.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,26 +12,52 @@
 namespace pliant::mesh {
 namespace {
 
-/// Points of the surface, in order.
-using Chain = std::vector<int>;
+/// Points, in order, and the first surface that has them.
+struct Chain {
+    std::vector<int> points;
+    int surface;
+};
 
-constexpr double inside = 0.5;
 /// Between edges that do not meet, as a share of the mesh size.
 constexpr double least_room = 0.1;
 
+/// One number for each point in space, whatever surface it is of.
+class Welder {
+public:
+    /// Points of a drawing that are the same differ by the last digits of 32 bits at most.
+    explicit Welder(double width) : width_(width) {}
+
+    int number(const Vec3& p) {
+        std::array<long, 3> cell{};
+        for (std::size_t k = 0; k < 3; ++k) cell[k] = std::lround(p[k] / width_);
+        const auto [entry, fresh] = numbers_.try_emplace(cell, static_cast<int>(points_.size()));
+        if (fresh) points_.push_back(p);
+        return entry->second;
+    }
+    [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
+
+private:
+    double width_;
+    std::map<std::array<long, 3>, int> numbers_;
+    std::vector<Vec3> points_;
+};
+
 class EdgeFinder {
 public:
-    EdgeFinder(const TriangleTree& tree, double size, double angle_deg)
-        : tree_(tree), size_(size), least_cosine_(std::cos(angle_deg * std::numbers::pi / 180)) {}
+    EdgeFinder(const LabelledSpace& space, double size, double angle_deg)
+        : space_(space),
+          size_(size),
+          least_cosine_(std::cos(angle_deg * std::numbers::pi / 180)),
+          welder_(weld_share * whole(space).diagonal() + std::numeric_limits<double>::min()) {}
 
     /// Chains of sharp edges that bound material, broken where three or more meet and at sharp bends.
     std::vector<Chain> find() {
-        collect();
+        for (std::size_t s = 0; s < space_.trees().size(); ++s) collect(static_cast<int>(s));
         std::vector<Chain> lines;
         for (const auto& [node, ends] : next_) {
-            if (ends.size() != 2) {
-                for (const int end : ends) walk(node, end, lines);
-            }
+            const bool through = ends.size() == 2 && surface_of(node, ends[0]) == surface_of(node, ends[1]);
+            if (through) continue;
+            for (const int end : ends) walk(node, end, lines);
         }
         for (const auto& [node, ends] : next_) {  // what is left are closed loops
             for (const int end : ends) walk(node, end, lines);
@@ -38,71 +65,100 @@ public:
         return lines;
     }
 
+    [[nodiscard]] const std::vector<Vec3>& points() const { return welder_.points(); }
+
 private:
-    void collect() {
+    static constexpr double weld_share = 1e-7;  // of the size of all
+
+    static Box3 whole(const LabelledSpace& space) {
+        Box3 box;
+        for (std::size_t s = 0; s < space.trees().size(); ++s) {
+            if (space.box(s).empty()) continue;
+            box.add(space.box(s).low);
+            box.add(space.box(s).high);
+        }
+        return box;
+    }
+
+    void collect(int surface) {
         std::map<std::pair<int, int>, std::vector<int>> triangles_of;
-        const TriMesh& surface = tree_.surface();
-        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const TriMesh& mesh = space_.trees()[static_cast<std::size_t>(surface)].surface();
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto [low, high] = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
+                const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
                 triangles_of[{low, high}].push_back(static_cast<int>(t));
             }
         }
         for (const auto& [edge, triangles] : triangles_of) {
-            if (triangles.size() != 2 || dot(normal(triangles[0]), normal(triangles[1])) > least_cosine_) continue;
-            if (!bounds_material(edge.first, edge.second)) continue;
-            next_[edge.first].push_back(edge.second);
-            next_[edge.second].push_back(edge.first);
+            if (triangles.size() != 2 || dot(normal(mesh, triangles[0]), normal(mesh, triangles[1])) > least_cosine_)
+                continue;
+            const Vec3& a = mesh.points[static_cast<std::size_t>(edge.first)];
+            const Vec3& b = mesh.points[static_cast<std::size_t>(edge.second)];
+            if (labels_meet(a, b)) add(welder_.number(a), welder_.number(b), surface);
         }
     }
 
-    [[nodiscard]] Vec3 normal(int triangle) const {
-        const auto& [a, b, c] = tree_.surface().triangles[static_cast<std::size_t>(triangle)];
+    void add(int a, int b, int surface) {
+        if (a == b || !surface_of_.try_emplace(std::minmax(a, b), surface).second) return;
+        next_[a].push_back(b);
+        next_[b].push_back(a);
+    }
+
+    [[nodiscard]] int surface_of(int a, int b) const { return surface_of_.at(std::minmax(a, b)); }
+    [[nodiscard]] static Vec3 normal(const TriMesh& mesh, int triangle) {
+        const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
+        const auto at = [&](int node) { return mesh.points[static_cast<std::size_t>(node)]; };
         const Vec3 n = cross(at(b) - at(a), at(c) - at(a));
         return n / norm(n);
     }
-    [[nodiscard]] const Vec3& at(int node) const { return tree_.surface().points[static_cast<std::size_t>(node)]; }
+    [[nodiscard]] const Vec3& at(int node) const { return points()[static_cast<std::size_t>(node)]; }
 
-    /// Both material and none close to the middle of the edge.
-    [[nodiscard]] bool bounds_material(int a, int b) const {
-        const Vec3 along = at(b) - at(a);
-        const Vec3 middle = 0.5 * (at(a) + at(b));
+    /// More than one label close to the middle of the edge.
+    [[nodiscard]] bool labels_meet(const Vec3& a, const Vec3& b) const {
+        const Vec3 along = b - a;
+        const Vec3 middle = 0.5 * (a + b);
         const double radius = 0.02 * std::min(size_, norm(along));
         const Vec3 other = std::fabs(along.x) < 0.6 * norm(along) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
         Vec3 u = cross(along, other);
         u = u / norm(u);
         const Vec3 v = cross(along, u) / norm(along);
-        int held = 0;
         constexpr int directions = 16;
+        int first = 0;
         for (int i = 0; i < directions; ++i) {
             const double turn = 2 * std::numbers::pi * (i + 0.37) / directions;
-            held += tree_.winding_number(middle + radius * (std::cos(turn) * u + std::sin(turn) * v)) > inside ? 1 : 0;
+            const int label = space_.label(middle + radius * (std::cos(turn) * u + std::sin(turn) * v));
+            if (i == 0) first = label;
+            if (label != first) return true;
         }
-        return held > 0 && held < directions;
+        return false;
     }
 
     /// Goes from `from` over `to` to the end of the chain, unless that was done from the other end.
     void walk(int from, int to, std::vector<Chain>& lines) {
         if (!done_.insert(std::minmax(from, to)).second) return;
         const int start = from;
-        Chain line = {from, to};
+        const int surface = surface_of(from, to);
+        Chain line{{from, to}, surface};
         while (to != start && next_[to].size() == 2) {
             const int onward = next_[to][0] == from ? next_[to][1] : next_[to][0];
             const Vec3 before = at(to) - at(from);
             const Vec3 after = at(onward) - at(to);
             if (dot(before, after) < least_cosine_ * norm(before) * norm(after)) break;  // a corner
+            if (surface_of(to, onward) != surface) break;
             if (!done_.insert(std::minmax(to, onward)).second) break;
             from = to;
             to = onward;
-            line.push_back(to);
+            line.points.push_back(to);
         }
         lines.push_back(std::move(line));
     }
 
-    const TriangleTree& tree_;
+    const LabelledSpace& space_;
     double size_;
     double least_cosine_;
+    Welder welder_;
     std::map<int, std::vector<int>> next_;
+    std::map<std::pair<int, int>, int> surface_of_;  ///< of each edge the first that has it
     std::set<std::pair<int, int>> done_;
 };
 
@@ -140,9 +196,10 @@ public:
         : chains_(chains), room_(room) {
         for (std::size_t c = 0; c < chains.size(); ++c) {
             double along = 0;
-            for (std::size_t i = 0; i + 1 < chains[c].size(); ++i) {
-                const Vec3& a = points[static_cast<std::size_t>(chains[c][i])];
-                const Vec3& b = points[static_cast<std::size_t>(chains[c][i + 1])];
+            const std::vector<int>& chain = chains[c].points;
+            for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+                const Vec3& a = points[static_cast<std::size_t>(chain[i])];
+                const Vec3& b = points[static_cast<std::size_t>(chain[i + 1])];
                 const double end = along + norm(b - a);
                 segments_.push_back({static_cast<int>(c), static_cast<int>(i), a, b, along, end,
                                      std::min(a.x, b.x) - room, std::max(a.x, b.x) + room});
@@ -163,8 +220,9 @@ public:
             std::erase_if(open, [&](std::size_t o) { return segments_[o].high < segments_[i].low; });
             for (const std::size_t o : open) {
                 if (!collide(segments_[i], segments_[o])) continue;
-                segments_[i].dropped = true;
-                segments_[o].dropped = true;
+                const int mine = surface(segments_[i]), its = surface(segments_[o]);
+                segments_[i].dropped = segments_[i].dropped || mine >= its;
+                segments_[o].dropped = segments_[o].dropped || its >= mine;
             }
             open.push_back(i);
         }
@@ -172,6 +230,7 @@ public:
     }
 
 private:
+    [[nodiscard]] int surface(const Segment& s) const { return chains_[static_cast<std::size_t>(s.chain)].surface; }
     [[nodiscard]] bool collide(const Segment& a, const Segment& b) const {
         for (std::size_t k = 1; k < 3; ++k) {
             if (std::min(a.from[k], a.to[k]) > std::max(b.from[k], b.to[k]) + room_ ||
@@ -183,8 +242,8 @@ private:
 
     /// How far it is from one to the other along the chains, by way of at most one common end.
     [[nodiscard]] double path_between(const Segment& a, const Segment& b) const {
-        const Chain& one = chains_[static_cast<std::size_t>(a.chain)];
-        const Chain& other = chains_[static_cast<std::size_t>(b.chain)];
+        const std::vector<int>& one = chains_[static_cast<std::size_t>(a.chain)].points;
+        const std::vector<int>& other = chains_[static_cast<std::size_t>(b.chain)].points;
         const double length_a = length_[static_cast<std::size_t>(a.chain)];
         const double length_b = length_[static_cast<std::size_t>(b.chain)];
         double least = std::numeric_limits<double>::infinity();
@@ -207,16 +266,16 @@ private:
 
 }  // namespace
 
-SharpEdges sharp_edges(const TriangleTree& tree, double size, double angle_deg) {
-    const std::vector<Vec3>& points = tree.surface().points;
-    const std::vector<Chain> chains = EdgeFinder(tree, size, angle_deg).find();
+SharpEdges sharp_edges(const LabelledSpace& space, double size, double angle_deg) {
+    EdgeFinder edge_finder(space, size, angle_deg);
+    const std::vector<Chain> chains = edge_finder.find();
     SharpEdges edges;
     std::vector<Vec3> chain;
     const auto end_chain = [&] {
         if (chain.size() > 1) edges.chains.push_back(chain);
         chain.clear();
     };
-    CollisionFinder finder(points, chains, least_room * size);
+    CollisionFinder finder(edge_finder.points(), chains, least_room * size);
     for (const Segment& segment : finder.find()) {
         if (segment.index == 0 || segment.dropped) end_chain();
         edges.dropped += segment.dropped ? 1 : 0;

@@ -1,10 +1,10 @@
-// The sharp edges of a surface, for a mesher that must be told of them.
+// The sharp edges of surfaces, for a mesher that must be told of them.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "mesh/triangle_tree.hpp"
+#include "mesh/labelled_space.hpp"
 
 namespace pliant::mesh {
 
@@ -13,9 +13,10 @@ struct SharpEdges {
     std::size_t dropped = 0;                ///< edges that were too near to others
 };
 
-/// Edges of two triangles that are sharper than `angle_deg` and bound material (by the winding number), in chains that
-/// are broken where three or more meet and at sharp bends. Edges that cross another one, or come nearer to it than a
-/// tenth of `size` without meeting it, are left out: a mesher that keeps them would never come to an end.
-[[nodiscard]] SharpEdges sharp_edges(const TriangleTree& tree, double size, double angle_deg);
+/// Edges of two triangles of a surface that are sharper than `angle_deg` and lie where labels meet, in chains that are
+/// broken where three or more meet and at sharp bends. What several surfaces have in common counts once. Edges that
+/// cross another one, or come nearer to it than a tenth of `size` without meeting it, are left out (if the two are of
+/// different surfaces, that of the later one): a mesher that keeps them would never come to an end.
+[[nodiscard]] SharpEdges sharp_edges(const LabelledSpace& space, double size, double angle_deg);
 
 }  // namespace pliant::mesh

@@ -12,17 +12,18 @@
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/labelled_space.hpp"
 #include "mesh/sharp_edges.hpp"
-#include "mesh/surface_orientation.hpp"
 #include "mesh/tet_improver.hpp"
-#include "mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -33,25 +34,25 @@ using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
-constexpr double inside = 0.5;
-/// Somewhere inside the surface must wind this often: a sheet reaches a half on its very face.
+/// Somewhere inside a surface must wind this often: a sheet reaches a half on its very face.
 constexpr double surely_inside = 0.6;
 
 Kernel::Point_3 cgal(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-/// The share of a box in which the surface winds at least `least` times, by points spread evenly over it (Roberts' R3
-/// sequence; no plane holds many of them, where a sheet could lie).
-double share_inside(const TriangleTree& tree, const Box3& box, double least) {
+/// The share of a box for which `holds` is true, by points spread evenly over it (Roberts' R3 sequence; no plane holds
+/// many of them, where a sheet could lie).
+template <class Holds>
+double share_of(const Box3& box, const Holds& holds) {
     constexpr int count = 60000;
-    constexpr double g = 1.22074408460575947536;  // x^4 = x + 1
+    constexpr double g = 1.22074408460475947536;  // x^4 = x + 1
     int held = 0;
     for (int i = 1; i <= count; ++i) {
         const auto along = [&](double step) { return std::fmod(0.5 + i * step, 1.0); };
         const Vec3 d = box.size();
         const Vec3 p = box.low + Vec3{d.x * along(1 / g), d.y * along(1 / (g * g)), d.z * along(1 / (g * g * g))};
-        held += tree.winding_number(p) > least ? 1 : 0;
+        held += holds(p) ? 1 : 0;
     }
     return static_cast<double>(held) / count;
 }
@@ -64,7 +65,6 @@ Box3 grown(const Box3& box) {
 
 TetMesh collect(const Complex& complex, const Vec3& offset) {
     TetMesh mesh;
-    mesh.region_names = {"0"};
     std::unordered_map<Triangulation::Vertex_handle, int> index;
     for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
         std::array<int, 4> nodes{};
@@ -78,7 +78,7 @@ TetMesh collect(const Complex& complex, const Vec3& offset) {
         const auto at = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(nodes[k])]; };
         if (signed_tet_volume(at(0), at(1), at(2), at(3)) < 0) std::swap(nodes[1], nodes[2]);
         mesh.nodes.insert(mesh.nodes.end(), nodes.begin(), nodes.end());
-        mesh.region.push_back(0);
+        mesh.region.push_back(complex.subdomain_index(cell) - 1);
     }
     return mesh;
 }
@@ -107,7 +107,7 @@ public:
         constexpr long step = 1 << 14;
         // How many are needed is a guess: the bar nears its end ever more slowly.
         if (++count_ % step == 0)
-            progress_.advance("mesh a damaged surface", 1 - std::exp(-2 * static_cast<double>(count_) / expected_));
+            progress_.advance("mesh surfaces", 1 - std::exp(-2 * static_cast<double>(count_) / expected_));
     }
 
 private:
@@ -124,41 +124,175 @@ struct Demands {
     double facet_angle_deg;
 };
 
-/// Around the origin; nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of
-/// circumradius r is up to sqrt(3) r long, that of a cell up to 1.63 r.
-std::optional<Complex> mesh_around_origin(const TriangleTree& tree, const Box3& box, const Demands& demands,
-                                          double size, Asked& asked) {
+/// Edge lengths as CGAL asks for them, `share` of what is wanted: of cells by their region, of facets and curves by the
+/// least of what is beside them, which for curves is anything.
+class Sizes {
+public:
+    using FT = double;
+    Sizes(const SizeOfSurface& size_at, std::size_t surfaces, double share)
+        : size_at_(&size_at), surfaces_(surfaces), share_(share) {}
+
+    FT operator()(const Kernel::Point_3& p, int dimension, const Domain::Index& index) const {
+        const Vec3 at{p.x(), p.y(), p.z()};
+        if (const auto* region = dimension == 3 ? boost::get<Domain::Subdomain_index>(&index) : nullptr)
+            return share_ * (*size_at_)(static_cast<std::size_t>(*region) - 1, at);
+        if (const auto* patch = dimension == 2 ? boost::get<Domain::Surface_patch_index>(&index) : nullptr) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const int region : {patch->first, patch->second}) {
+                if (region > 0) least = std::min(least, (*size_at_)(static_cast<std::size_t>(region) - 1, at));
+            }
+            return share_ * least;
+        }
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t s = 0; s < surfaces_; ++s) least = std::min(least, (*size_at_)(s, at));
+        return share_ * least;
+    }
+
+private:
+    const SizeOfSurface* size_at_;
+    std::size_t surfaces_;
+    double share_;
+};
+
+/// Surfaces around the origin, and what is wanted of their mesh.
+struct Task {
+    const LabelledSpace& space;
+    Box3 box;
+    std::size_t node_limit;
+    double size;
+    const SizeOfSurface& size_at;
+    Asked& asked;
+};
+
+/// Nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of circumradius r is up to
+/// sqrt(3) r long, that of a cell up to 1.63 r.
+std::optional<Complex> mesh_around_origin(const Task& task, const Demands& demands) {
     namespace params = CGAL::parameters;
     CGAL::get_default_random() = CGAL::Random(0);
-    const double radius = 0.6 * box.diagonal();
+    const double radius = 0.6 * task.box.diagonal();
     constexpr double exact = 1e-3;  // of the size: how well points lie on the surface; each digit costs three questions
-    Domain domain = Domain::create_implicit_mesh_domain(
+    Domain domain(
         [&](const Kernel::Point_3& p) {
-            asked.count();
-            return inside - tree.winding_number({p.x(), p.y(), p.z()});
+            task.asked.count();
+            return task.space.label({p.x(), p.y(), p.z()});
         },
-        Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * size / radius);
+        Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * task.size / radius);
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
         for (const Vec3& p : chain) line.push_back(cgal(p));
     }
     domain.add_features(lines.begin(), lines.end());
-    const Criteria criteria(params::edge_size = size, params::facet_angle = demands.facet_angle_deg,
-                            params::facet_size = 0.65 * size, params::facet_distance = demands.distance * size,
-                            params::cell_radius_edge_ratio = 2, params::cell_size = 0.75 * size);
+    const std::size_t surfaces = task.space.trees().size();
+    const auto sizes = [&](double share) { return Sizes(task.size_at, surfaces, share); };
+    const Criteria criteria(params::edge_size = sizes(1), params::facet_angle = demands.facet_angle_deg,
+                            params::facet_size = sizes(0.65), params::facet_distance = demands.distance * task.size,
+                            params::cell_radius_edge_ratio = 2, params::cell_size = sizes(0.75));
     CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
-    Complex complex = CGAL::make_mesh_3<Complex>(
-        domain, criteria, params::no_perturb(), params::no_exude(),
-        params::mesh_3_options(params::maximal_number_of_vertices = node_limit(tree.surface(), size),
-                               params::pointer_to_error_code = &code));
+    Complex complex =
+        CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude(),
+                                   params::mesh_3_options(params::maximal_number_of_vertices = task.node_limit,
+                                                          params::pointer_to_error_code = &code));
     if (code != CGAL::CGAL_MESH_3_NO_ERROR) return std::nullopt;
     CGAL::perturb_mesh_3(complex, domain, params::sliver_bound = 12);
     CGAL::exude_mesh_3(complex, params::sliver_bound = 12);
     return complex;
 }
 
-std::string damage_note(const SurfaceDamage& damage, double volume) {
+/// Surfaces turned outwards, around the origin.
+struct Centred {
+    std::vector<TriMesh> surfaces;
+    std::vector<SurfaceDamage> damage;
+    Vec3 middle;  ///< where the origin was
+};
+
+Centred centre(std::span<const TriMesh> surfaces) {
+    Centred result;
+    Box3 whole;
+    for (const TriMesh& surface : surfaces) {
+        for (const Vec3& p : surface.points) whole.add(p);
+    }
+    if (!whole.empty()) result.middle = whole.center();
+    for (const TriMesh& surface : surfaces) {
+        TriMesh& moved = result.surfaces.emplace_back(surface);
+        for (Vec3& p : moved.points) p -= result.middle;
+        result.damage.push_back(orient(moved));
+    }
+    return result;
+}
+
+/// Of each region, by sampling.
+Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::span<const std::string> names) {
+    std::vector<double> volumes;
+    for (std::size_t s = 0; s < space.trees().size(); ++s) {
+        const TriangleTree& tree = space.trees()[s];
+        const Box3 box = grown(space.box(s));
+        const auto encloses = [&](const Vec3& p) { return tree.winding_number(p) > surely_inside; };
+        if (tree.surface().triangles.empty() || share_of(box, encloses) == 0)
+            return input_error("{} encloses nothing: it is an open sheet, or more hole than wall", names[s]);
+        const auto owns = [&](const Vec3& p) { return space.label(p) == static_cast<int>(s) + 1; };
+        const Vec3 d = box.size();
+        volumes.push_back(share_of(box, owns) * d.x * d.y * d.z);
+    }
+    return volumes;
+}
+
+Status check_volumes(const TetMesh& mesh, const std::vector<double>& expected, std::span<const std::string> names) {
+    for (std::size_t s = 0; s < expected.size(); ++s) {
+        const double meshed = volume(mesh, static_cast<int>(s));
+        if (std::fabs(meshed - expected[s]) <= 0.1 * expected[s]) continue;
+        return failure("the mesh of {} has a volume of {:.6g} instead of about {:.6g}; try another mesh size", names[s],
+                       meshed, expected[s]);
+    }
+    return {};
+}
+
+Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> names, double size,
+                               const SizeOfSurface& size_at, double angle_deg, Progress& progress) {
+    const LabelledSpace space(std::move(centred.surfaces));
+    const Result<std::vector<double>> volumes = expected_volumes(space, names);
+    if (!volumes) return tl::unexpected(volumes.error());
+    double whole = 0;
+    std::size_t nodes = 0;
+    Box3 box;
+    for (std::size_t s = 0; s < space.trees().size(); ++s) {
+        whole += (*volumes)[s];
+        nodes += node_limit(space.trees()[s].surface(), size);
+        box.add(space.box(s).low);
+        box.add(space.box(s).high);
+    }
+    Status few = kernel::check_tet_count(whole, whole / size, size);
+    if (!few) return tl::unexpected(few.error());
+    try {
+        const SharpEdges edges = sharp_edges(space, size, angle_deg);
+        Asked asked(1 + static_cast<double>(nodes) / 6, progress);
+        const SizeOfSurface size_here = [&](std::size_t s, const Vec3& p) { return size_at(s, p + centred.middle); };
+        const Task task{space, grown(box), nodes, size, size_here, asked};
+        std::optional<Complex> complex = mesh_around_origin(task, {edges.chains, 0.05, 25});
+        const bool rounded = !complex;
+        if (rounded) complex = mesh_around_origin(task, {{}, 0.15, 20});
+        if (!complex)
+            return failure("the mesh of {} does not come to an end; try a smaller mesh size", fmt::join(names, ", "));
+        JointMesh result{collect(*complex, centred.middle), std::move(centred.damage)};
+        improve_tets(result.mesh, {.feature_deg = angle_deg});
+        if (Status status = check_volumes(result.mesh, *volumes, names); !status) return tl::unexpected(status.error());
+        if (rounded)
+            result.mesh.notes.emplace_back(
+                "its sharp edges are rounded off: with them the mesh does not come to an end");
+        else if (edges.dropped > 0)
+            result.mesh.notes.push_back(
+                fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
+        return result;
+    } catch (const Cancelled&) {
+        return cancelled();
+    } catch (const std::exception& error) {
+        return failure("CGAL says: {}", error.what());
+    }
+}
+
+}  // namespace
+
+std::string describe(const SurfaceDamage& damage) {
     std::string text;
     const auto add = [&](std::size_t count, std::string_view what) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -169,54 +303,26 @@ std::string damage_note(const SurfaceDamage& damage, double volume) {
     add(damage.repeated, "repeated triangles");
     add(damage.flat, "flat triangles");
     add(damage.inside_out ? 1 : 0, "surface turned inside out");
-    const std::string is = text.empty() ? "" : fmt::format("is damaged ({}) and ", text);
-    return fmt::format("the surface {}was meshed from its winding number; check its volume: {:.6g}", is, volume);
+    return text;
 }
 
-}  // namespace
+Result<JointMesh> mesh_together(std::span<const TriMesh> surfaces, std::span<const std::string> names, double size,
+                                const SizeOfSurface& size_at, double angle_deg, Progress& progress) {
+    return mesh_centred(centre(surfaces), names, size, size_at, angle_deg, progress);
+}
 
 Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angle_deg, Progress& progress) {
-    TriMesh centred = surface;
-    const Box3 whole = bounds(surface);
-    const Vec3 middle = 0.5 * (whole.low + whole.high);
-    for (Vec3& p : centred.points) p -= middle;
-    const SurfaceDamage damage = orient(centred);
-    const Box3 box = grown(bounds(centred));
-    const TriangleTree tree(std::move(centred));
-    if (tree.surface().triangles.empty() || share_inside(tree, box, surely_inside) == 0)
-        return input_error("the surface encloses nothing: it is an open sheet, or more hole than wall");
-    const Vec3 d = box.size();
-    const double volume = share_inside(tree, box, inside) * d.x * d.y * d.z;
-    Status few = kernel::check_tet_count(volume, volume / size, size);
-    if (!few) return tl::unexpected(few.error());
-    try {
-        const SharpEdges edges = sharp_edges(tree, size, angle_deg);
-        Asked asked(1 + static_cast<double>(node_limit(tree.surface(), size)) / 6, progress);
-        std::optional<Complex> complex = mesh_around_origin(tree, box, {edges.chains, 0.05, 25}, size, asked);
-        const bool rounded = !complex;
-        if (rounded) complex = mesh_around_origin(tree, box, {{}, 0.15, 20}, size, asked);
-        if (!complex)
-            return failure("the mesh of the damaged surface does not come to an end; try a smaller mesh size");
-        TetMesh mesh = collect(*complex, middle);
-        improve_tets(mesh, {.feature_deg = angle_deg});
-        const double meshed = mesh::volume(mesh);
-        if (!(std::fabs(meshed - volume) < 0.1 * volume))
-            return failure(
-                "the mesh of the damaged surface has a volume of {:.6g} instead of about {:.6g}; try another "
-                "mesh size",
-                meshed, volume);
-        mesh.notes.push_back(damage_note(damage, meshed));
-        if (rounded)
-            mesh.notes.emplace_back("its sharp edges are rounded off: with them the mesh does not come to an end");
-        else if (edges.dropped > 0)
-            mesh.notes.push_back(
-                fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
-        return mesh;
-    } catch (const Cancelled&) {
-        return cancelled();
-    } catch (const std::exception& error) {
-        return failure("CGAL says: {}", error.what());
-    }
+    const std::string name = "the surface";
+    Result<JointMesh> joint = mesh_together(
+        {&surface, 1}, {&name, 1}, size, [size](std::size_t, const Vec3&) { return size; }, angle_deg, progress);
+    if (!joint) return tl::unexpected(joint.error());
+    const std::string damage = describe(joint->damage.front());
+    joint->mesh.region_names = {"0"};
+    joint->mesh.notes.insert(
+        joint->mesh.notes.begin(),
+        fmt::format("the surface {}was meshed from its winding number; check its volume: {:.6g}",
+                    damage.empty() ? "" : fmt::format("is damaged ({}) and ", damage), volume(joint->mesh)));
+    return std::move(joint->mesh);
 }
 
 }  // namespace pliant::mesh

@@ -1,8 +1,15 @@
-// Meshes what a damaged surface means: where it winds around a point more than half a time, there is material.
+// Meshes what surfaces mean, damaged, touching or cutting through each other: where one winds around a point more than
+// half a time, there is its material.
 #pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
+#include "mesh/surface_orientation.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "mesh/tri_mesh.hpp"
 
@@ -15,5 +22,22 @@ namespace pliant::mesh {
 /// one of more than 20 million tets. The same input gives the same mesh. Through CGAL's Mesh_3.
 [[nodiscard]] Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angle_deg,
                                               Progress& progress);
+
+/// Wanted edge length in surface i at a point.
+using SizeOfSurface = std::function<double(std::size_t, const Vec3&)>;
+
+/// The same of several surfaces that may touch and overlap: region i is surface i, neighbours share the nodes of their
+/// common face, and where surfaces overlap the last of them has it. `names`: what messages call each surface. `size`:
+/// the largest that `size_at` gives.
+struct JointMesh {
+    TetMesh mesh;
+    std::vector<SurfaceDamage> damage;  ///< of each surface
+};
+[[nodiscard]] Result<JointMesh> mesh_together(std::span<const TriMesh> surfaces, std::span<const std::string> names,
+                                              double size, const SizeOfSurface& size_at, double angle_deg,
+                                              Progress& progress);
+
+/// "3 open edges, 1 flat triangles"; empty where there is none.
+[[nodiscard]] std::string describe(const SurfaceDamage& damage);
 
 }  // namespace pliant::mesh

@@ -105,14 +105,14 @@ TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesh
     for (Vec3& p : along.points) p = {20 * p.x, 8 + 4 * p.y, 4 * p.z};
     for (Vec3& p : across.points) p = {8 + 4 * p.x, 20 * p.y, 4 * p.z};
     const TriMesh cross = joined(along, across);
-    const SharpEdges edges = sharp_edges(TriangleTree(cross), 2, 30);
+    const SharpEdges edges = sharp_edges(LabelledSpace({cross}), 2, 30);
     CHECK(edges.dropped >= 8);
     CHECK_FALSE(edges.chains.empty());
     const Result<TetMesh> mesh = mesh_by_winding(cross, 2, 30, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(volume(*mesh) == doctest::Approx(2 * 320 - 64).epsilon(0.02));
     CHECK(report_on(*mesh).min_dihedral_deg > 5);
-    const SharpEdges clean = sharp_edges(TriangleTree(cube()), 2, 30);
+    const SharpEdges clean = sharp_edges(LabelledSpace({cube()}), 2, 30);
     CHECK(clean.dropped == 0);
     CHECK(clean.chains.size() == 12);
 }
