@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesh/triangle_tree.hpp"
+#include "mesh/winding_grid.hpp"
 
 namespace pliant::mesh {
 
@@ -15,12 +15,10 @@ public:
     /// 0: none; i + 1: surface i.
     [[nodiscard]] int label(const Vec3& point) const;
 
-    [[nodiscard]] const std::vector<TriangleTree>& trees() const { return trees_; }
-    [[nodiscard]] const Box3& box(std::size_t surface) const { return boxes_[surface]; }
+    [[nodiscard]] const std::vector<WindingGrid>& surfaces() const { return surfaces_; }
 
 private:
-    std::vector<TriangleTree> trees_;
-    std::vector<Box3> boxes_;
+    std::vector<WindingGrid> surfaces_;
 };
 
 }  // namespace pliant::mesh

@@ -52,7 +52,7 @@ public:
 
     /// Chains of sharp edges that bound material, broken where three or more meet and at sharp bends.
     std::vector<Chain> find() {
-        for (std::size_t s = 0; s < space_.trees().size(); ++s) collect(static_cast<int>(s));
+        for (std::size_t s = 0; s < space_.surfaces().size(); ++s) collect(static_cast<int>(s));
         std::vector<Chain> lines;
         for (const auto& [node, ends] : next_) {
             const bool through = ends.size() == 2 && surface_of(node, ends[0]) == surface_of(node, ends[1]);
@@ -72,17 +72,17 @@ private:
 
     static Box3 whole(const LabelledSpace& space) {
         Box3 box;
-        for (std::size_t s = 0; s < space.trees().size(); ++s) {
-            if (space.box(s).empty()) continue;
-            box.add(space.box(s).low);
-            box.add(space.box(s).high);
+        for (const WindingGrid& surface : space.surfaces()) {
+            if (surface.box().empty()) continue;
+            box.add(surface.box().low);
+            box.add(surface.box().high);
         }
         return box;
     }
 
     void collect(int surface) {
         std::map<std::pair<int, int>, std::vector<int>> triangles_of;
-        const TriMesh& mesh = space_.trees()[static_cast<std::size_t>(surface)].surface();
+        const TriMesh& mesh = space_.surfaces()[static_cast<std::size_t>(surface)].surface();
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);

@@ -183,7 +183,7 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
         for (const Vec3& p : chain) line.push_back(cgal(p));
     }
     domain.add_features(lines.begin(), lines.end());
-    const std::size_t surfaces = task.space.trees().size();
+    const std::size_t surfaces = task.space.surfaces().size();
     const auto sizes = [&](double share) { return Sizes(task.size_at, surfaces, share); };
     const Criteria criteria(params::edge_size = sizes(1), params::facet_angle = demands.facet_angle_deg,
                             params::facet_size = sizes(0.65), params::facet_distance = demands.distance * task.size,
@@ -224,11 +224,11 @@ Centred centre(std::span<const TriMesh> surfaces) {
 /// Of each region, by sampling.
 Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::span<const std::string> names) {
     std::vector<double> volumes;
-    for (std::size_t s = 0; s < space.trees().size(); ++s) {
-        const TriangleTree& tree = space.trees()[s];
-        const Box3 box = grown(space.box(s));
-        const auto encloses = [&](const Vec3& p) { return tree.winding_number(p) > surely_inside; };
-        if (tree.surface().triangles.empty() || share_of(box, encloses) == 0)
+    for (std::size_t s = 0; s < space.surfaces().size(); ++s) {
+        const WindingGrid& surface = space.surfaces()[s];
+        const Box3 box = grown(surface.box());
+        const auto encloses = [&](const Vec3& p) { return surface.winding_number(p) > surely_inside; };
+        if (surface.surface().triangles.empty() || share_of(box, encloses) == 0)
             return input_error("{} encloses nothing: it is an open sheet, or more hole than wall", names[s]);
         const auto owns = [&](const Vec3& p) { return space.label(p) == static_cast<int>(s) + 1; };
         const Vec3 d = box.size();
@@ -255,11 +255,12 @@ Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> nam
     double whole = 0;
     std::size_t nodes = 0;
     Box3 box;
-    for (std::size_t s = 0; s < space.trees().size(); ++s) {
+    for (std::size_t s = 0; s < space.surfaces().size(); ++s) {
+        const WindingGrid& surface = space.surfaces()[s];
         whole += (*volumes)[s];
-        nodes += node_limit(space.trees()[s].surface(), size);
-        box.add(space.box(s).low);
-        box.add(space.box(s).high);
+        nodes += node_limit(surface.surface(), size);
+        box.add(surface.box().low);
+        box.add(surface.box().high);
     }
     Status few = kernel::check_tet_count(whole, whole / size, size);
     if (!few) return tl::unexpected(few.error());
