@@ -1,10 +1,10 @@
 // The formats beside VTK: each written and read again, each read from what other programs write, and damaged.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_format.hpp"
 #include "mesh/tet_writer.hpp"
@@ -121,8 +121,7 @@ TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shar
 }
 
 TEST_CASE("files are written by their extension and read by their content") {
-    const auto folder = std::filesystem::temp_directory_path() / fmt::format("pliant_formats_{}", getpid());
-    std::filesystem::create_directories(folder);
+    const pliant::test::Folder folder("formats");
     for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp"}) {
         REQUIRE(write_tet_mesh(folder / name, curved_tets()));
         std::filesystem::rename(folder / name, folder / "nameless");
@@ -136,7 +135,6 @@ TEST_CASE("files are written by their extension and read by their content") {
         REQUIRE(mesh);
         CHECK(mesh->region_names == std::vector<std::string>{"-4"});
     }
-    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("formats are told by their first words") {
