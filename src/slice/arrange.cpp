@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "slice/place.hpp"
+
 namespace pliant::slice {
 namespace {
 
@@ -18,18 +20,6 @@ void turn_pair(double& a, double& b, double degrees) {
     const double x = a;
     a = c * x - s * b;
     b = s * x + c * b;
-}
-
-Result<Box3> bounds_of_all(const std::vector<Body>& bodies) {
-    Box3 box;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const auto own = bounds(bodies[i], describe(bodies[i], i));
-        if (!own) return own;
-        if (own->empty()) continue;
-        box.add(own->low);
-        box.add(own->high);
-    }
-    return box;
 }
 
 int fitting(double room, double size, double spacing) {
