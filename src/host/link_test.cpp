@@ -4,11 +4,13 @@
 
 #include <cstdlib>
 
+#include "core/test_text.hpp"
 #include "host/test_devices.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
 using namespace pliant::host::test;
+using pliant::test::holds;
 
 namespace {
 
@@ -43,10 +45,6 @@ struct Bench {
         return n;
     }
 };
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 }  // namespace
 

@@ -5,22 +5,22 @@
 
 #include "core/files.hpp"
 #include "core/test_folder.hpp"
+#include "core/test_text.hpp"
+#include "mesh/test_tets.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_format.hpp"
 #include "mesh/tet_writer.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::replaced;
 
 namespace {
 
-/// Two tets that share a face, in regions whose names no format likes.
+/// Regions whose names no format likes, and a number that takes all digits.
 TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 1};
-    mesh.region_names = {"soft foam, 50%", "grip"};
+    TetMesh mesh = mesh::test::two_tets("soft foam, 50%", "grip");
+    mesh.points[3].z = 0.1;
     return mesh;
 }
 
@@ -45,11 +45,6 @@ void check_same(const Result<TetMesh>& back, const TetMesh& mesh) {
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
         CHECK(back->points[back->nodes[i]] == mesh.points[mesh.nodes[i]]);
     CHECK(back->notes.empty());
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    return text.replace(text.find(from), from.size(), to);
 }
 
 const std::string tetgen_nodes = "# a cube's corner\n4 3 1 0\n0 0 0 0 7\n1 1 0 0 7\n2 0 1 0 7\n3 0 0 1 7\n";

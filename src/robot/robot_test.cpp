@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/test_folder.hpp"
+#include "core/test_text.hpp"
 #include "mesh/tet_writer.hpp"
 #include "robot/test_run.hpp"
 
@@ -60,10 +61,7 @@ steps = 3
 )";
 
 std::string with(const std::string& line, const std::string& replacement) {
-    std::string text = good;
-    const std::size_t at = text.find(line);
-    REQUIRE_MESSAGE(at != std::string::npos, line);
-    return text.replace(at, line.size(), replacement);
+    return pliant::test::replaced(good, line, replacement);
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/test_text.hpp"
 #include "twin/twin.hpp"
 
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
+using pliant::test::holds;
 
 namespace {
 
@@ -37,10 +39,6 @@ struct Peer {
 Options with(Options options, std::vector<Fault> faults) {
     options.faults = std::move(faults);
     return options;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/test_text.hpp"
 #include "machine/firmware.hpp"
 
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
+using pliant::test::holds;
 
 namespace {
 
@@ -34,10 +36,6 @@ struct Bench {
         send("G28 Y", 100);
     }
 };
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 }  // namespace
 
