@@ -210,10 +210,7 @@ void add_project(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");
-    command->callback([options, &status] {
-        const Status result = run_project(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run_project(*options); });
 }
 
 }  // namespace pliant::app
