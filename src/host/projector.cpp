@@ -42,6 +42,7 @@ struct File {
 Result<pid_t> start(const std::filesystem::path& program, std::vector<std::string> words, int output) {
     words.insert(words.begin(), program.string());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;
