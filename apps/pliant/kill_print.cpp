@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
+#include <unistd.h>  // environ
 
 #include <atomic>
 #include <chrono>
@@ -29,8 +29,6 @@
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
-
-extern char** environ;
 
 namespace {
 
