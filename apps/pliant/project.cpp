@@ -66,7 +66,9 @@ Status list_displays() {
 }
 
 Status release(const Options& options) {
-    const Result<bool> released = host::release_display(std::atoi(options.where.c_str()));
+    const std::optional<int> display = host::display_number(options.where);
+    if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
+    const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
     if (!options.output.quiet) fmt::print("{}\n", *released ? "given back" : "nothing held it");
     return {};

@@ -100,13 +100,6 @@ Status start_screen(const std::filesystem::path& program, const std::vector<std:
     return failure("{}", said.empty() ? "pliant-screen does not start" : said);
 }
 
-std::optional<int> display_number(const std::string& where) {
-    int number = -1;
-    const auto [end, error] = std::from_chars(where.data(), where.data() + where.size(), number);
-    if (error != std::errc() || end != where.data() + where.size() || number < 0) return std::nullopt;
-    return number;
-}
-
 std::string display_socket(int number) {
     const char* display = std::getenv("DISPLAY");
     return screen_socket_name(fmt::format("display {} of {}", number, display == nullptr ? "KMSDRM" : display));
@@ -240,6 +233,13 @@ Result<std::vector<PanelInfo>> list_displays(const std::filesystem::path& progra
         panels.push_back(panel);
     }
     return panels;
+}
+
+std::optional<int> display_number(const std::string& where) {
+    int number = -1;
+    const auto [end, error] = std::from_chars(where.data(), where.data() + where.size(), number);
+    if (error != std::errc() || end != where.data() + where.size() || number < 0) return std::nullopt;
+    return number;
 }
 
 Result<bool> release_display(int display) {
