@@ -24,12 +24,6 @@ struct Shell {
     }
 };
 
-void append(TriMesh& mesh, const TriMesh& other) {
-    const int offset = static_cast<int>(mesh.points.size());
-    mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
-    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + offset, b + offset, c + offset});
-}
-
 /// The smallest shell around shell `s`, or -1.
 int parent_of(const std::vector<Shell>& shells, std::size_t s) {
     int parent = -1;
@@ -71,6 +65,12 @@ std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
         shells[entry->second].push_back(t);
     }
     return shells;
+}
+
+void append(TriMesh& surface, const TriMesh& other) {
+    const int offset = static_cast<int>(surface.points.size());
+    surface.points.insert(surface.points.end(), other.points.begin(), other.points.end());
+    for (const auto& [a, b, c] : other.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
 }
 
 TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles) {
