@@ -72,6 +72,18 @@ TEST_CASE("a refused line is sent again from there, with or without the whole an
     }
 }
 
+TEST_CASE("numbers that count no lines are garbage") {
+    for (const char* number : {"9223372036854775807", "99999999999999999999", "2147483648", "-3"}) {
+        CAPTURE(number);
+        Bench b(
+            Once{"X3*", fmt::format("Error:checksum mismatch, Last Line: {}\nResend: {}\nok\nok\n", number, number)});
+        CHECK(b.error_of_print() == "");
+        CHECK(b.link.resends() == 0);
+    }
+    Bench b(Once{"N0 M400", "Resend: 0\nok\n"});
+    CHECK_FALSE(b.link.last_line());
+}
+
 TEST_CASE("a lost ok is found out by repeating the line; the answer counts as its ok") {
     bool lost = false;
     bool repeated = false;
