@@ -9,8 +9,7 @@ using namespace pliant;
 namespace {
 
 sim::Trajectory run(const std::vector<std::string>& assignments) {
-    return robot::testing::run_to_the_end(
-        robot::testing::build(robot::load_robot("examples/cable_gripper/gripper.toml", assignments)));
+    return robot::testing::run_file("examples/cable_gripper/gripper.toml", assignments);
 }
 
 }  // namespace

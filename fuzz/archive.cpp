@@ -1,24 +1,15 @@
-// Whole jobs: libzip reads files only, so the input takes the way over one.
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-
+// Whole jobs: libzip reads files only.
+#include "file.hpp"
 #include "input.hpp"
 #include "job/job.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto path = std::filesystem::temp_directory_path() / ("pliant_fuzz_" + std::to_string(getpid()) + ".zip");
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
-    const auto archive = pliant::job::Archive::open(path);
-    if (archive) {
-        for (const auto& layer : archive->manifest().layers) {
-            for (const auto& image : layer.images) (void)archive->image(image.file);
-        }
-        (void)archive->file("printer.toml");
+    const TemporaryFile file(as_text(data, size), ".zip");
+    const auto archive = pliant::job::Archive::open(file.path());
+    if (!archive) return 0;
+    for (const auto& layer : archive->manifest().layers) {
+        for (const auto& image : layer.images) (void)archive->image(image.file);
     }
-    std::filesystem::remove(path);
+    (void)archive->file("printer.toml");
     return 0;
 }

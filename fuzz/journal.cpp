@@ -7,17 +7,11 @@
 #include "host/journal_facts.hpp"
 #include "host/resume_point.hpp"
 #include "input.hpp"
-#include "machine/printer.hpp"
+#include "tower.hpp"
 
 namespace {
 
 using namespace pliant;
-
-const machine::Printer& printer() {
-    static const auto loaded = machine::load_printer("examples/printers/tower.toml");
-    if (!loaded) __builtin_trap();  // run from the root of the repository
-    return *loaded;
-}
 
 /// Records as they would be if every checksum were right, so that the fuzzer gets past it: "kind key=value ..." a line.
 std::string with_checksums(std::string_view text) {
@@ -52,8 +46,8 @@ void go_on(const host::JournalText& text) {
     const auto open = host::close_open_light(*facts, nullptr, {1.0, false});
     if (!open) return;
     for (const long last_line : {0L, facts->go ? facts->go->line + 2 : 5L}) {
-        const auto standing = host::standing_of(*facts, script, printer(), last_line, {});
-        if (standing) (void)host::recovery_of(*facts, script, printer(), *standing);
+        const auto standing = host::standing_of(*facts, script, tower(), last_line, {});
+        if (standing) (void)host::recovery_of(*facts, script, tower(), *standing);
     }
 }
 

@@ -4,20 +4,10 @@
 #include <algorithm>
 
 #include "input.hpp"
-#include "machine/printer.hpp"
-
-namespace {
-
-const pliant::machine::Printer& printer() {
-    static const auto loaded = pliant::machine::load_printer("examples/printers/tower.toml");
-    if (!loaded) __builtin_trap();  // run from the root of the repository
-    return *loaded;
-}
-
-}  // namespace
+#include "tower.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    pliant::twin::Twin twin(printer());
+    pliant::twin::Twin twin(tower());
     for (std::size_t at = 0; at < size; at += 64) {
         twin.receive(as_text(data + at, std::min<std::size_t>(64, size - at)));
         twin.advance_to(twin.now() + 10);

@@ -160,10 +160,7 @@ void add_ratio(CLI::App& parent, int& status) {
         ->capture_default_str();
     add_files(*command, *c);
     command->footer("Example: pliant calibrate ratio --ratios 1,2,3.75,6,8 -o ratio");
-    command->callback([c, &status] {
-        const Status result = run_ratio(*c);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [c] { return run_ratio(*c); });
 }
 
 void add_tensile(CLI::App& parent, int& status) {
@@ -181,10 +178,9 @@ void add_tensile(CLI::App& parent, int& status) {
     command->add_option("--name", c->name, "of the material (default: of the file)");
     add_files(*command, *c);
     command->footer("Example: pliant calibrate tensile pull.csv --law yeoh --max-stretch 3 -o fit");
-    command->callback([c, &status] {
+    on_call(*command, status, [c] {
         if (c->name.empty()) c->name = fs::path(c->file).stem().string();
-        const Status result = run_tensile(*c);
-        status = result ? exit_done : report(result.error());
+        return run_tensile(*c);
     });
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "core/error.hpp"
 #include "core/progress.hpp"
@@ -40,6 +41,20 @@ void add_output_options(CLI::App& command, Output& output, bool with_json);
 
 /// Prints the error to stderr and gives the exit status that belongs to it.
 int report(const Error& error);
+
+/// What `command` does when it is given: `work` gives a Status, or a Result with the exit status.
+template <class Work>
+void on_call(CLI::App& command, int& status, Work work) {
+    command.callback([work, &status] {
+        const auto result = work();
+        if (!result)
+            status = report(result.error());
+        else if constexpr (std::is_same_v<decltype(result), const Result<int>>)
+            status = *result;
+        else
+            status = exit_done;
+    });
+}
 
 /// A bar on a terminal's stderr for work that takes over a second; Ctrl-C cancels.
 [[nodiscard]] std::unique_ptr<Progress> terminal_progress(const Output& output);

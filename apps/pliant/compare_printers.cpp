@@ -46,10 +46,7 @@ void add_compare_printers(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->page, "file for the page (.html)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant compare-printers examples/printers/*.toml -o printers.html");
-    command->callback([options, &status] {
-        const Status result = compare(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return compare(*options); });
 }
 
 }  // namespace pliant::app

@@ -231,6 +231,17 @@ struct ControlBench {
         const twin::Report r = report();
         CHECK_MESSAGE(r.passed, twin::report_text(r));
     }
+    void must_finish(const host::StartOptions& options = {}) {
+        start(options);
+        INFO(last_error());
+        CHECK(snapshot().finished);
+        must_be_whole();
+    }
+    /// At its n-th deed, in the middle of a print.
+    void must_die(long deed) {
+        life->dies_at = deed;
+        REQUIRE_FALSE(start());
+    }
     [[nodiscard]] int lights() const { return twin->log().exposures; }
     [[nodiscard]] std::filesystem::path journal() const { return folder.path() / "halves.zip.journal"; }
 };

@@ -14,10 +14,7 @@ using namespace pliant::app;
 
 TEST_CASE("a print under control comes out as the plain one, and keeps a journal") {
     ControlBench b;
-    b.start();
-    CHECK(b.snapshot().finished);
-    INFO(b.last_error());
-    b.must_be_whole();
+    b.must_finish();
     CHECK(b.lights() == 10);
 }
 
@@ -257,17 +254,13 @@ TEST_CASE("a suspended print is parked, and goes on where it was") {
         CHECK_FALSE(b.twin->interlock().hooked_vat());
         REQUIRE(b.snapshot().can_resume);
         CHECK_FALSE(b.control->home({}));  // nothing by hand while a print waits
-        b.start({true, {}});
-        INFO(b.last_error());
-        CHECK(b.snapshot().finished);
-        b.must_be_whole();
+        b.must_finish({true, {}});
     }
 }
 
 TEST_CASE("an interrupted print can be put away for good") {
     ControlBench b;
-    b.life->dies_at = 300;
-    REQUIRE_FALSE(b.start());
+    b.must_die(300);
     b.new_host();
     REQUIRE(b.control->connect());
     b.control->serve_until_idle();
@@ -425,10 +418,7 @@ TEST_CASE("a host that dies while the door is open is followed by one that waits
     CHECK(b.last_error() == "the door is open: shut it");
     CHECK(b.twin->log().violations.empty());
     b.twin->advance_to(b.twin->now() + 100);
-    b.start({true, {}});
-    INFO(b.last_error());
-    CHECK(b.snapshot().finished);
-    b.must_be_whole();
+    b.must_finish({true, {}});
 }
 
 TEST_CASE("with an open door a suspended print stays where it is, a cancelled one parks once the door is shut") {
@@ -447,10 +437,7 @@ TEST_CASE("with an open door a suspended print stays where it is, a cancelled on
         if (cancel) continue;
         b.life->at_look = {};
         b.twin->advance_to(b.twin->now() + 60);
-        b.start({true, {}});
-        INFO(b.last_error());
-        CHECK(b.snapshot().finished);
-        b.must_be_whole();
+        b.must_finish({true, {}});
     }
 }
 
@@ -642,8 +629,7 @@ TEST_CASE("a second host on the same job is refused, and so is starting an inter
     Person person(b, completion_above(0.3), [&] {
         CHECK(host::Journal::open(b.journal(), false).error().message.find("another host") != std::string::npos);
     });
-    b.life->dies_at = 400;
-    REQUIRE_FALSE(b.start());
+    b.must_die(400);
     CHECK(person.acted);
     b.new_host();
     b.start();
@@ -653,22 +639,18 @@ TEST_CASE("a second host on the same job is refused, and so is starting an inter
 
 TEST_CASE("another program that has spoken to the controller in between is noticed") {
     ControlBench b;
-    b.life->dies_at = 400;
-    REQUIRE_FALSE(b.start());
+    b.must_die(400);
     b.twin->receive("M110 N500\n");
     b.twin->advance_to(b.twin->now() + 30);
     b.new_host();
     b.start({true, {}});
     CHECK(b.last_error().find("another program has spoken") != std::string::npos);
-    b.start({true, {std::nullopt, true}});
-    CHECK(b.snapshot().finished);
-    b.must_be_whole();
+    b.must_finish({true, {std::nullopt, true}});
 }
 
 TEST_CASE("another program whose line numbers are higher proves nothing") {
     ControlBench b;
-    b.life->dies_at = 400;
-    REQUIRE_FALSE(b.start());
+    b.must_die(400);
     b.twin->receive("M110 N90000000\n");
     b.twin->advance_to(b.twin->now() + 30);
     b.new_host();
@@ -709,10 +691,7 @@ TEST_CASE("every fault of the wire is survived under control too") {
             CAPTURE(static_cast<int>(kind));
             CAPTURE(n);
             ControlBench b({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}});
-            b.start();
-            INFO(b.last_error());
-            CHECK(b.snapshot().finished);
-            b.must_be_whole();
+            b.must_finish();
         }
     }
 }
@@ -732,8 +711,7 @@ TEST_CASE("every kind of machine is resumed after its host was killed") {
                 CAPTURE(n);
                 CAPTURE(reset);
                 ControlBench b({}, name, 3);
-                b.life->dies_at = n;
-                REQUIRE_FALSE(b.start());
+                b.must_die(n);
                 if (reset) b.twin->reset();
                 b.new_host();
                 if (!b.snapshot().can_resume) continue;
@@ -779,10 +757,7 @@ TEST_CASE("a full disk stops the print dark and still, with the pump off; it goe
         CHECK_FALSE(b.twin->interlock().pump_runs());
         CHECK(b.twin->log().violations.empty());
         b.life->at_look = {};
-        b.start({true, {}});
-        INFO(b.last_error());
-        CHECK(b.snapshot().finished);
-        b.must_be_whole();
+        b.must_finish({true, {}});
     }
 }
 
@@ -815,9 +790,6 @@ TEST_CASE("a cable that is pulled stops the print dark; plugged in again it goes
         CHECK_FALSE(b.projector->lit);
         b.life->unplugged = false;
         b.life->at_look = {};
-        b.start({true, {}});
-        INFO(b.last_error());
-        CHECK(b.snapshot().finished);
-        b.must_be_whole();
+        b.must_finish({true, {}});
     }
 }

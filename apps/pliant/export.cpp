@@ -37,10 +37,7 @@ void add_export(CLI::App& app, int& status) {
         ->required();
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant export gripper.zip --as sl1 -o stacks");
-    command->callback([options, &status] {
-        const Status result = run(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run(*options); });
 }
 
 }  // namespace pliant::app

@@ -68,10 +68,7 @@ void add_firmware(CLI::App& app, int& status) {
     command->add_option("printer", options->printer, "printer file (TOML)")->required();
     command->add_option("-o,--output", options->save, "file for the list (config.ini of Marlin)");
     command->footer("Example: pliant firmware examples/printers/tower8.toml -o config.ini");
-    command->callback([options, &status] {
-        const Status result = run_firmware(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run_firmware(*options); });
 }
 
 }  // namespace pliant::app

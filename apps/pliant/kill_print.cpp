@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
+#include <unistd.h>  // environ
 
 #include <atomic>
 #include <chrono>
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "halves.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
@@ -28,8 +29,6 @@
 #include "plan/plan.hpp"
 #include "twin/inspect.hpp"
 #include "twin/serve.hpp"
-
-extern char** environ;
 
 namespace {
 
@@ -282,8 +281,8 @@ void tell(const Count& count) {
 
 int run(const Wanted& wanted) {
     constexpr int tell_every = 20;
-    std::string pattern = (fs::temp_directory_path() / "pliant_kill_XXXXXX").string();
-    const fs::path folder = ::mkdtemp(pattern.data());
+    const pliant::test::Folder own("kill");
+    const fs::path& folder = own.path();
     const Job job = make_job(folder);
     std::mt19937 random(wanted.seed);
     Count count;
@@ -304,7 +303,6 @@ int run(const Wanted& wanted) {
         std::fflush(stdout);
     }
     tell(count);
-    fs::remove_all(folder);
     return count.wrong == 0 ? 0 : 1;
 }
 

@@ -39,10 +39,7 @@ void add_materials(CLI::App& app, int& status) {
     command->add_option("names", options->names, "show these with constants and sources");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant materials ecoflex-00-30");
-    command->callback([options, &status] {
-        const Status result = list(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return list(*options); });
 }
 
 }  // namespace pliant::app

@@ -164,10 +164,7 @@ void add_mesh(CLI::App& app, int& status) {
     command->footer(
         "Example: pliant mesh examples/cable_gripper/gripper.toml -o gripper.vtk\n"
         "         pliant mesh gripper.vtk -o gripper.msh --from mm --to m");
-    command->callback([options, &status] {
-        const Status result = run(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run(*options); });
 }
 
 }  // namespace pliant::app

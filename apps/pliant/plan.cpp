@@ -51,10 +51,7 @@ void add_plan(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->picture_file, "file for a picture of the plan (.png)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant plan gripper.zip -o plan.png");
-    command->callback([options, &status] {
-        const Status result = make_plan(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return make_plan(*options); });
 }
 
 }  // namespace pliant::app

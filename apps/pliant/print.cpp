@@ -173,10 +173,9 @@ void add_print(CLI::App& app, int& status) {
         "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume goes on.\n"
         "Example: pliant print gripper.zip --port /dev/ttyACM0 --projector pictures\n"
         "         pliant print gripper.zip --twin");
-    command->callback([options, speed, &status] {
+    on_call(*command, status, [options, speed] {
         options->given_speed = speed->count() > 0;
-        const Result<int> result = print(*options);
-        status = result ? *result : report(result.error());
+        return print(*options);
     });
 }
 

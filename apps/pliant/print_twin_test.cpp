@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/test_text.hpp"
 #include "halves.hpp"
 #include "operate/programs.hpp"
 #include "plan/check.hpp"
@@ -13,6 +14,7 @@
 #include "twin_bench.hpp"
 
 using namespace pliant;
+using pliant::test::holds;
 
 namespace {
 
@@ -78,10 +80,6 @@ private:
     int under_way_ = 0;
     int most_ = 0;
 };
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 }  // namespace
 

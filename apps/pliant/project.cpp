@@ -66,7 +66,9 @@ Status list_displays() {
 }
 
 Status release(const Options& options) {
-    const Result<bool> released = host::release_display(std::atoi(options.where.c_str()));
+    const std::optional<int> display = host::display_number(options.where);
+    if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
+    const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
     if (!options.output.quiet) fmt::print("{}\n", *released ? "given back" : "nothing held it");
     return {};
@@ -210,10 +212,7 @@ void add_project(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");
-    command->callback([options, &status] {
-        const Status result = run_project(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run_project(*options); });
 }
 
 }  // namespace pliant::app

@@ -180,10 +180,7 @@ void add_simulate(CLI::App& app, int& status) {
         ->allow_extra_args(false);
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant simulate examples/cable_gripper/gripper.toml -o out --set mesh.order=1");
-    command->callback([options, &status] {
-        const Result<int> result = simulate(*options);
-        status = result ? *result : report(result.error());
-    });
+    on_call(*command, status, [options] { return simulate(*options); });
 }
 
 }  // namespace pliant::app

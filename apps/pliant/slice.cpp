@@ -133,10 +133,7 @@ void add_slice(CLI::App& app, int& status) {
     command->footer(
         "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "
         "gripper.zip");
-    command->callback([options, &status] {
-        const Status result = slice(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return slice(*options); });
 }
 
 }  // namespace pliant::app

@@ -94,6 +94,52 @@ host::LinkOptions patient() {
     return options;
 }
 
+/// Moves the platform to random heights and keeps the account of what the machine must have done by then.
+class Mover {
+public:
+    Mover(const machine::Printer& printer, twin::Twin& twin, host::Link& link, unsigned seed)
+        : printer_(printer), twin_(twin), link_(link), random_(seed) {}
+
+    [[nodiscard]] Status begin() {
+        Status status = link_.connect();
+        for (const char* line : {"M84 S0", "G90", "G28 Z", "G28 X"}) {
+            if (status) status = link_.send(line);
+        }
+        if (status) status = link_.fence();
+        at_ = twin_.interlock().position();
+        path_ = twin_.log().path;
+        moves_ = twin_.log().moves;
+        return status;
+    }
+    [[nodiscard]] Status move() {
+        machine::Position to = at_;
+        to[Axis::platform] = 100000 + static_cast<int>(random_() % 290000);
+        if (to == at_) return {};
+        const double speed_mm_s = printer_.axis(Axis::platform).speed_mm_s;
+        const Status status = link_.send(machine::write_move(printer_, at_, to, speed_mm_s));
+        at_ = to;
+        path_ = twin::path_after(path_, to);
+        ++moves_;
+        return status;
+    }
+    [[nodiscard]] long moves() const { return moves_; }
+    /// After a fence: the machine has gone the same way, and nowhere that it must not.
+    [[nodiscard]] bool path_is_right() const { return twin_.log().path == path_; }
+    [[nodiscard]] bool well() const { return path_is_right() && twin_.log().violations.empty(); }
+    [[nodiscard]] bool exact() const {
+        return well() && twin_.interlock().position() == at_ && twin_.log().moves == moves_;
+    }
+
+private:
+    const machine::Printer& printer_;
+    twin::Twin& twin_;
+    host::Link& link_;
+    std::mt19937 random_;
+    machine::Position at_;
+    std::uint64_t path_ = 0;
+    long moves_ = 0;
+};
+
 /// Random heights of the platform, one line each; true if all is well.
 bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, bool advanced_ok) {
     twin::Options twin_options;
@@ -102,29 +148,13 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
     NoisyWire wire(twin, noise, seed);
     app::TwinClock clock(twin);
     host::Link link(wire, clock, patient());
+    Mover mover(printer, twin, link, seed);
     const auto begin = std::chrono::steady_clock::now();
-    Status status = link.connect();
-    for (const char* line : {"M84 S0", "G90", "G28 Z", "G28 X"}) {
-        if (status) status = link.send(line);
-    }
-    if (status) status = link.fence();
-    std::mt19937 random(seed);
-    machine::Position at = twin.interlock().position();
-    std::uint64_t path = twin.log().path;
-    long moves = twin.log().moves;
-    for (long i = 0; status && i < lines; ++i) {
-        machine::Position to = at;
-        to[Axis::platform] = 100000 + static_cast<int>(random() % 290000);
-        if (to == at) continue;
-        status = link.send(machine::write_move(printer, at, to, printer.axis(Axis::platform).speed_mm_s));
-        at = to;
-        path = twin::path_after(path, to);
-        ++moves;
-    }
+    Status status = mover.begin();
+    for (long i = 0; status && i < lines; ++i) status = mover.move();
     if (status) status = link.fence();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const bool exact = twin.interlock().position() == at && twin.log().path == path && twin.log().moves == moves &&
-                       twin.log().violations.empty();
+    const bool exact = mover.exact();
     fmt::print("{} lines{}: {} bits flipped, {} bytes lost, {} oks lost; {} bad lines, {} resent, {:.1f} s: {}\n",
                lines, advanced_ok ? " (ADVANCED_OK)" : "", wire.damage().flipped, wire.damage().lost,
                wire.damage().lost_oks, twin.log().bad_lines, link.resends(), seconds,
@@ -132,8 +162,8 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
                : exact ? "each carried out once, end position exact"
                        : "WRONG");
     if (!exact && status)
-        fmt::print("  {} moves of {}, path {}, {} violations\n", twin.log().moves, moves,
-                   twin.log().path == path ? "right" : "other", twin.log().violations.size());
+        fmt::print("  {} moves of {}, path {}, {} violations\n", twin.log().moves, mover.moves(),
+                   mover.path_is_right() ? "right" : "other", twin.log().violations.size());
     return status && exact;
 }
 
@@ -154,29 +184,16 @@ Session soak_session(const machine::Printer& printer, long lines, unsigned seed,
     host::LinkOptions options = patient();
     if (!judged) options.most_refused = 1e9;
     host::Link link(wire, clock, options);
+    Mover mover(printer, twin, link, seed);
     Session session;
-    Status status = link.connect();
-    for (const char* line : {"M84 S0", "G90", "G28 Z", "G28 X"}) {
-        if (status) status = link.send(line);
-    }
-    if (status) status = link.fence();
-    std::mt19937 random(seed);
-    machine::Position at = twin.interlock().position();
-    std::uint64_t path = twin.log().path;
-    while (status && session.lines < lines && twin.log().path == path && twin.log().violations.empty()) {
-        for (int i = 0; status && i < together; ++i) {
-            machine::Position to = at;
-            to[Axis::platform] = 100000 + static_cast<int>(random() % 290000);
-            if (to == at) continue;
-            status = link.send(machine::write_move(printer, at, to, printer.axis(Axis::platform).speed_mm_s));
-            at = to;
-            path = twin::path_after(path, to);
-        }
+    Status status = mover.begin();
+    while (status && session.lines < lines && mover.well()) {
+        for (int i = 0; status && i < together; ++i) status = mover.move();
         if (status) status = link.fence();
         session.lines = link.lines_sent();
     }
     session.stopped = !status && status.error().message.find("the wire damages") == 0;
-    session.wrong = !session.stopped && (!status || twin.log().path != path || !twin.log().violations.empty());
+    session.wrong = !session.stopped && (!status || !mover.well());
     if (session.stopped) session.wrong = !twin.log().violations.empty();
     if (!status) session.why = status.error().message;
     return session;

@@ -74,10 +74,7 @@ void add_studio(CLI::App& app, int& status) {
                         "address to listen on; any but loopback needs the token that is printed");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant studio examples/cable_gripper/gripper.toml");
-    command->callback([options, &status] {
-        const Result<int> result = run_studio(*options);
-        status = result ? *result : report(result.error());
-    });
+    on_call(*command, status, [options] { return run_studio(*options); });
 }
 
 }  // namespace pliant::app

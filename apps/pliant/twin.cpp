@@ -157,10 +157,7 @@ void add_twin(CLI::App& app, int& status) {
     command->add_flag("--trace", options->trace, "print what goes over the wire to standard error");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant twin --printer examples/printers/tower.toml --pty /tmp/printer --speed 100");
-    command->callback([options, &status] {
-        const Status result = run_twin(*options);
-        status = result ? exit_done : report(result.error());
-    });
+    on_call(*command, status, [options] { return run_twin(*options); });
 }
 
 }  // namespace pliant::app

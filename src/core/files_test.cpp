@@ -1,35 +1,28 @@
 #include "core/files.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
+
+#include "core/test_folder.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;
 
-namespace {
-struct Scratch {
-    fs::path path = fs::temp_directory_path() / ("pliant_files_test_" + std::to_string(getpid()));
-    Scratch() { fs::create_directories(path); }
-    ~Scratch() { fs::remove_all(path); }
-};
-}  // namespace
-
 TEST_CASE("a file is written whole and read back") {
-    const Scratch scratch;
-    const fs::path file = scratch.path / "a.bin";
+    const test::Folder scratch("files");
+    const fs::path file = scratch / "a.bin";
     const std::string bytes("a\0b\n", 4);
     REQUIRE(write_file(file, bytes));
     CHECK(*read_file(file) == bytes);
     CHECK_FALSE(fs::exists(file.string() + ".partial"));
     CHECK(read_file(file, 3).error().message.find("more than") != std::string::npos);
-    CHECK(read_file(scratch.path).error().message.find("folder") != std::string::npos);
-    CHECK(read_file(scratch.path / "none").error().message.find("no such file") != std::string::npos);
-    CHECK_FALSE(write_file(scratch.path / "no" / "folder", bytes));
+    CHECK(read_file(scratch.path()).error().message.find("folder") != std::string::npos);
+    CHECK(read_file(scratch / "none").error().message.find("no such file") != std::string::npos);
+    CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
 TEST_CASE("a folder appears whole or not at all, and foreign folders are left alone") {
-    const Scratch scratch;
-    const fs::path folder = scratch.path / "out";
+    const test::Folder scratch("files");
+    const fs::path folder = scratch / "out";
     const auto good = [](const fs::path& aside) { return write_file(aside / "summary.json", "{}"); };
     REQUIRE(write_folder(folder, "summary.json", good));
     REQUIRE(fs::exists(folder / "summary.json"));
@@ -38,7 +31,7 @@ TEST_CASE("a folder appears whole or not at all, and foreign folders are left al
     CHECK(fs::exists(folder / "summary.json"));
     CHECK_FALSE(fs::exists(folder.string() + ".partial"));
 
-    const fs::path foreign = scratch.path / "foreign";
+    const fs::path foreign = scratch / "foreign";
     fs::create_directories(foreign);
     REQUIRE(write_file(foreign / "thesis.txt", "years of work"));
     CHECK(write_folder(foreign, "summary.json", good).error().cause == Cause::input);

@@ -109,6 +109,9 @@ ApiAnswer answer(const Status& status) {
     return refusal(status.error().cause == Cause::input ? 400 : 409, status.error().message);
 }
 
+/// 100 m, as in printer files: micrometres of such places, and of the way between two, are ints.
+constexpr double farthest_mm = 1e5;
+
 struct Request {
     Control& control;
     json body;
@@ -122,6 +125,11 @@ struct Request {
         if (found == body.end() || !found->is_number()) return std::nullopt;
         const double value = found->get<double>();
         return std::isfinite(value) && std::abs(value) < 1e9 ? std::optional(value) : std::nullopt;
+    }
+    /// A number of something: whole, and not beyond what an int holds.
+    [[nodiscard]] std::optional<int> whole(const char* key) const {
+        const auto value = number(key);
+        return value && *value == std::trunc(*value) ? std::optional(static_cast<int>(*value)) : std::nullopt;
     }
     [[nodiscard]] bool flag(const char* key) const {
         const auto found = body.find(key);
@@ -165,15 +173,16 @@ ApiAnswer post_job(const Request& r) {
 }
 
 ApiAnswer post_exposure(const Request& r) {
-    const auto material = r.number("material"), seconds = r.number("seconds");
+    const auto material = r.whole("material");
+    const auto seconds = r.number("seconds");
     if (!material || !seconds) return needs(R"("material" (from 0) and "seconds")");
-    return answer(r.control.set_exposure(static_cast<int>(*material), *seconds));
+    return answer(r.control.set_exposure(*material, *seconds));
 }
 
 ApiAnswer post_skip(const Request& r) {
-    const auto layer = r.number("layer");
+    const auto layer = r.whole("layer");
     if (!layer) return needs(R"("layer" (from 0))");
-    return answer(r.control.skip_layer(static_cast<int>(*layer)));
+    return answer(r.control.skip_layer(*layer));
 }
 
 ApiAnswer get_connection(const Request& r) {
@@ -206,6 +215,7 @@ ApiAnswer jog(const Request& r) {
     for (const Axis axis : machine::all_axes) {
         const auto mm = r.number(std::string(machine::axis_name(axis)).c_str());
         if (!mm) continue;
+        if (std::abs(*mm) > farthest_mm) return refusal(400, fmt::format("{:g} mm: no machine is so large", *mm));
         const int um = static_cast<int>(std::lround(*mm * 1000));
         return answer(r.flag("absolute") ? r.control.move_to(axis, um, feed_mm_s) : r.control.jog(axis, um, feed_mm_s));
     }
@@ -230,9 +240,9 @@ ApiAnswer post_axes(const Request& r) {
 }
 
 ApiAnswer post_vat(const Request& r) {
-    const auto slot = r.number("slot");
+    const auto slot = r.whole("slot");
     if (!slot) return needs(R"("slot" (0: put the vat away))");
-    return answer(r.control.bring_vat(static_cast<int>(*slot)));
+    return answer(r.control.bring_vat(*slot));
 }
 
 ApiAnswer post_clean(const Request& r) {

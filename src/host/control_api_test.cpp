@@ -76,6 +76,20 @@ TEST_CASE("paths, methods and bodies that are wrong are told apart") {
     CHECK(b.post("/api/printer/vat", {{"slot", "two"}}).status == 400);
     CHECK(b.post("/api/printer/axes", {{"command", "home"}, {"axes", {"nose"}}}).status == 400);
     CHECK(b.post("/api/job/exposure", {{"material", 1e300}, {"seconds", 1}}).status == 400);
+    CHECK(b.post("/api/job/exposure", {{"material", 0.5}, {"seconds", 1}}).status == 400);
+    CHECK(b.post("/api/printer/vat", {{"slot", 2.5}}).status == 400);
+    CHECK(b.post("/api/job/skip", {{"layer", 2.5}}).status == 400);
+}
+
+TEST_CASE("a way that no whole micrometres of an int can hold is refused, not taken for a short one") {
+    Bench b;
+    REQUIRE(b.post("/api/connection", {{"command", "connect"}}).status == 204);
+    b.control.serve_until_idle();
+    for (const double mm : {4294967.396, -4294967.296, 1.1e5}) {
+        const ApiAnswer answer = b.post("/api/printer/axes", {{"command", "jog"}, {"platform", mm}});
+        CHECK(answer.status == 400);
+        CHECK(answer.json.find("no machine is so large") != std::string::npos);
+    }
 }
 
 TEST_CASE("what cannot be had now is a conflict, with the reason") {

@@ -22,6 +22,8 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
+#include "core/test_folder.hpp"
+
 using namespace pliant;
 using namespace pliant::host;
 
@@ -161,8 +163,8 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
     if (cannot_start(session)) return;
     const Server& x = session.server;
     CHECK(x.all(255));
-    const auto path = std::filesystem::temp_directory_path() / ("pliant_light" + std::to_string(::getpid()) + ".zip");
-    const job::Archive job = make_job(path);
+    const pliant::test::Folder folder("light");
+    const job::Archive job = make_job(folder / "light.zip");
     {
         auto projector = ScreenProjector::open("0", options());
         REQUIRE_MESSAGE(projector, (projector ? "" : projector.error().message));
@@ -187,7 +189,6 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
     CHECK(release_display(0).value());
     CHECK(comes([&] { return x.all(255); }));
     CHECK_FALSE(release_display(0).value());
-    std::filesystem::remove(path);
 }
 
 TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 Hz, by the frames presented") {

@@ -2,11 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
@@ -27,9 +24,9 @@ TEST_CASE("a line is named by its signal and its device") {
 }
 
 TEST_CASE("a pin's file: released when opened, pulled and released again, the other way round if asked for") {
-    std::string name = (std::filesystem::temp_directory_path() / "pliant_pin_XXXXXX").string();
-    const int file = ::mkstemp(name.data());
-    REQUIRE(file >= 0);
+    const pliant::test::Folder folder("pin");
+    const std::string name = (folder / "value").string();
+    REQUIRE(write_file(name, ""));
     for (const bool high : {true, false}) {
         const std::string stop = high ? "1\n" : "0\n", run = high ? "0\n" : "1\n";
         const auto line = open_emergency_line({Signal::file, name, 0, high}).value();
@@ -40,7 +37,6 @@ TEST_CASE("a pin's file: released when opened, pulled and released again, the ot
         CHECK(line->release());
         CHECK(read_file(name).value() == run);
     }
-    std::filesystem::remove(name);
 }
 
 TEST_CASE("what cannot be pulled is refused before anything moves; without a line there is none") {

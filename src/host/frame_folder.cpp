@@ -29,7 +29,7 @@ FrameFolder::FrameFolder(FrameFolder&& other) noexcept
       height_px_(other.height_px_),
       shown_(other.shown_),
       lit_(std::exchange(other.lit_, nullptr)),
-      pacer_(other.pacer_) {}
+      pacer_(std::move(other.pacer_)) {}
 
 FrameFolder::~FrameFolder() {
     if (lit_ != nullptr) (void)put_out();

@@ -14,7 +14,8 @@ constexpr std::size_t longest_command = 80;  // leaves room for N, number and ch
 constexpr double watch_every_s = 0.02;
 constexpr double echo_timeout_s = 4;  // the echo of a fence; `busy` comes every 2 s before it
 constexpr std::size_t longest_answer = 4096;
-constexpr double recent_lines = 200;  // over which the wire is judged
+constexpr double recent_lines = 200;      // over which the wire is judged
+constexpr long most_number = 2147483647;  // a firmware counts lines in 32 bits
 
 bool begins(std::string_view text, std::string_view with) {
     return text.substr(0, with.size()) == with;
@@ -30,13 +31,13 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// A number that is the whole text. Bytes get lost on the way here too: half a number is none.
+/// A number that is the whole text and may count lines. Bytes get lost on the way here too: half a number is none.
 std::optional<long> whole_number(std::string_view text) {
     text = trim(text);
     long value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || value < 0) return std::nullopt;
-    return value;
+    const bool whole = code == std::errc() && end == text.data() + text.size();
+    return whole && value >= 0 && value <= most_number ? std::optional(value) : std::nullopt;
 }
 
 /// A line with a line end at both ends. If the one between two lines were lost or damaged, they would become one, and
@@ -105,7 +106,7 @@ Result<long> Link::last_line() {
             if (!heard) return tl::unexpected(heard.error());
             if (*heard) end = clock_.now() + options_.boot_s;  // a busy one answers when it has a place for the line
         }
-        if (!wanted_) continue;
+        if (!wanted_ || *wanted_ < 1) continue;
         const long last = *wanted_ - 1;
         wanted_.reset();
         ignore_ok_ = false;

@@ -4,11 +4,13 @@
 
 #include <cstdlib>
 
+#include "core/test_text.hpp"
 #include "host/test_devices.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
 using namespace pliant::host::test;
+using pliant::test::holds;
 
 namespace {
 
@@ -44,10 +46,6 @@ struct Bench {
     }
 };
 
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("lines are numbered and checksummed from M110 on") {
@@ -72,6 +70,18 @@ TEST_CASE("a refused line is sent again from there, with or without the whole an
         CHECK(b.times_written("X3*") == 2);
         CHECK(b.link.resends() >= 1);
     }
+}
+
+TEST_CASE("numbers that count no lines are garbage") {
+    for (const char* number : {"9223372036854775807", "99999999999999999999", "2147483648", "-3"}) {
+        CAPTURE(number);
+        Bench b(
+            Once{"X3*", fmt::format("Error:checksum mismatch, Last Line: {}\nResend: {}\nok\nok\n", number, number)});
+        CHECK(b.error_of_print() == "");
+        CHECK(b.link.resends() == 0);
+    }
+    Bench b(Once{"N0 M400", "Resend: 0\nok\n"});
+    CHECK_FALSE(b.link.last_line());
 }
 
 TEST_CASE("a lost ok is found out by repeating the line; the answer counts as its ok") {

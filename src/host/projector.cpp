@@ -42,6 +42,7 @@ struct File {
 Result<pid_t> start(const std::filesystem::path& program, std::vector<std::string> words, int output) {
     words.insert(words.begin(), program.string());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;
@@ -97,13 +98,6 @@ Status start_screen(const std::filesystem::path& program, const std::vector<std:
     while (!said.empty() && said.back() == '\n') said.pop_back();
     if (said == "ready") return {};
     return failure("{}", said.empty() ? "pliant-screen does not start" : said);
-}
-
-std::optional<int> display_number(const std::string& where) {
-    int number = -1;
-    const auto [end, error] = std::from_chars(where.data(), where.data() + where.size(), number);
-    if (error != std::errc() || end != where.data() + where.size() || number < 0) return std::nullopt;
-    return number;
 }
 
 std::string display_socket(int number) {
@@ -239,6 +233,13 @@ Result<std::vector<PanelInfo>> list_displays(const std::filesystem::path& progra
         panels.push_back(panel);
     }
     return panels;
+}
+
+std::optional<int> display_number(const std::string& where) {
+    int number = -1;
+    const auto [end, error] = std::from_chars(where.data(), where.data() + where.size(), number);
+    if (error != std::errc() || end != where.data() + where.size() || number < 0) return std::nullopt;
+    return number;
 }
 
 Result<bool> release_display(int display) {

@@ -65,4 +65,7 @@ private:
 /// Ends the process that keeps a display black, and any light with it. False: there is none.
 [[nodiscard]] Result<bool> release_display(int display);
 
+/// The display that `where` names, a number from 0 on; nullopt: it names a folder.
+[[nodiscard]] std::optional<int> display_number(const std::string& where);
+
 }  // namespace pliant::host

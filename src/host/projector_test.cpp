@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "job/png.hpp"
 
 using namespace pliant;
@@ -27,13 +28,11 @@ job::Image noise(int seed) {
     return image;
 }
 
+/// The panel's folder: the projector makes it.
 struct Folder {
-    std::filesystem::path path;
-    explicit Folder(const std::string& name)
-        : path(std::filesystem::temp_directory_path() / ("pliant_" + name + std::to_string(::getpid()))) {
-        std::filesystem::remove_all(path);
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
+    explicit Folder(const std::string& name) : place(name) {}
+    pliant::test::Folder place;
+    std::filesystem::path path = place / "panel";
 
     [[nodiscard]] bool lit() const { return std::filesystem::exists(path / "shown.png"); }
     [[nodiscard]] job::Image image(const std::string& name) const {

@@ -48,7 +48,7 @@ private:
         return status;
     }
 
-    void tell(Message message) {
+    void tell(const Message& message) {
         if (host_.is_open() && !host_.send(message)) host_.close();
     }
 

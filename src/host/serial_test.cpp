@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/test_folder.hpp"
+
 using namespace pliant;
 using namespace pliant::host;
 
@@ -72,8 +74,7 @@ TEST_CASE("two hosts on one port are refused, and the next may have it") {
 }
 
 TEST_CASE("ports are listed by the boards behind them") {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pliant_ports_XXXXXX").string();
-    const std::filesystem::path folder = ::mkdtemp(pattern.data());
+    const pliant::test::Folder folder("ports");
     std::filesystem::create_directories(folder / "usb" / "1-1" / "1-1:1.0");
     std::ofstream(folder / "usb" / "1-1" / "product") << "Arduino Mega 2560\n";
     std::filesystem::create_directories(folder / "tty" / "ttyACM0");
@@ -86,5 +87,4 @@ TEST_CASE("ports are listed by the boards behind them") {
     REQUIRE(ports.size() == 1);
     CHECK(ports[0].device == "/dev/ttyACM0");
     CHECK(ports[0].name == "Arduino Mega 2560");
-    std::filesystem::remove_all(folder);
 }

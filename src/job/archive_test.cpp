@@ -1,10 +1,10 @@
 #include <doctest/doctest.h>
 #include <zip.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "job/job.hpp"
 #include "job/manifest.hpp"
 #include "zip/zip_file.hpp"
@@ -15,24 +15,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own, gone at the end.
-class Folder {
-public:
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "pliant_job_XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    ~Folder() { fs::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
+struct Folder : pliant::test::Folder {
     [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path()), fs::directory_iterator()));
     }
-
-private:
-    fs::path path_;
 };
 
 const Image image_a{8, 4, std::vector<std::uint8_t>(32, 255)};

@@ -2,9 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "job/make_job.hpp"
 #include "job/png.hpp"
 #include "slice/test_shapes.hpp"
@@ -16,16 +15,6 @@ using slice::test::box;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct TemporaryFolder {
-    fs::path path;
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "pliant_export_XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~TemporaryFolder() { fs::remove_all(path); }
-};
 
 JobSettings settings() {
     JobSettings s{
@@ -61,9 +50,9 @@ long lit(const Result<std::string>& png) {
 }  // namespace
 
 TEST_CASE("every format has every layer of every material, blank ones too") {
-    const TemporaryFolder folder;
-    const Archive archive = make(folder.path / "two.zip");
-    const auto sl1 = export_job(archive, Format::sl1, folder.path / "a");
+    const pliant::test::Folder folder("export");
+    const Archive archive = make(folder / "two.zip");
+    const auto sl1 = export_job(archive, Format::sl1, folder / "a");
     REQUIRE_MESSAGE(sl1.has_value(), (sl1 ? "" : sl1.error().message));
     REQUIRE(sl1->size() == 2);
     CHECK(sl1->at(1).filename() == "two_rigid.sl1");
@@ -76,26 +65,26 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(zip->read("config.ini", 1 << 20)->find("usedMaterial = 0.000900\n") != std::string::npos);  // ml
     CHECK(zip->read("prusaslicer.ini", 1 << 20)->find("display_width = 6.4\n") != std::string::npos);
 
-    const auto nano = export_job(archive, Format::nanodlp, folder.path / "b");
+    const auto nano = export_job(archive, Format::nanodlp, folder / "b");
     zip = ZipReader::open(nano.value().at(0));
     CHECK(zip->entry_count() == 15);
     CHECK(lit(zip->read("1.png", 1 << 20)) == 400);
     CHECK(lit(zip->read("10.png", 1 << 20)) == 0);
     CHECK(zip->read("plate.json", 1 << 20)->find("\"LayersCount\": 10") != std::string::npos);
-    CHECK(ZipReader::open(export_job(archive, Format::zip, folder.path / "b").value().at(1))->entry_count() == 10);
+    CHECK(ZipReader::open(export_job(archive, Format::zip, folder / "b").value().at(1))->entry_count() == 10);
 
-    const auto vats = export_job(archive, Format::vats, folder.path / "c");
+    const auto vats = export_job(archive, Format::vats, folder / "c");
     REQUIRE(vats.has_value());
-    CHECK(lit(read_file(folder.path / "c/vat_a/vata_layer_0000.png")) == 400);
-    CHECK(lit(read_file(folder.path / "c/vat_b/vatb_layer_0009.png")) == 300);
+    CHECK(lit(read_file(folder / "c/vat_a/vata_layer_0000.png")) == 400);
+    CHECK(lit(read_file(folder / "c/vat_b/vatb_layer_0009.png")) == 300);
     CHECK(format_from("png").error().message == "format \"png\": must be sl1, nanodlp, zip or vats");
 }
 
 TEST_CASE("layers of many heights go only where each layer stands alone") {
-    const TemporaryFolder folder;
+    const pliant::test::Folder folder("export");
     JobSettings s = settings();
     s.slicing.tops_um = {50, 150};
-    const fs::path path = folder.path / "many.zip";
+    const fs::path path = folder / "many.zip";
     auto writer = Writer::create(path);
     Progress progress;
     const auto made =
@@ -104,31 +93,31 @@ TEST_CASE("layers of many heights go only where each layer stands alone") {
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     REQUIRE(writer->finish(made->manifest).has_value());
     const Archive archive = Archive::open(path).value();
-    const auto refused = export_job(archive, Format::sl1, folder.path / "a");
+    const auto refused = export_job(archive, Format::sl1, folder / "a");
     REQUIRE(!refused.has_value());
     CHECK(refused.error().message ==
           "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
-    CHECK(export_job(archive, Format::vats, folder.path / "b").has_value());
+    CHECK(export_job(archive, Format::vats, folder / "b").has_value());
 }
 
 TEST_CASE("equal jobs give equal bytes") {
-    const TemporaryFolder folder;
-    const Archive archive = make(folder.path / "two.zip");
-    const auto first = read_file(export_job(archive, Format::nanodlp, folder.path / "a").value()[0]);
-    CHECK(first.value() == read_file(export_job(archive, Format::nanodlp, folder.path / "b").value()[0]).value());
+    const pliant::test::Folder folder("export");
+    const Archive archive = make(folder / "two.zip");
+    const auto first = read_file(export_job(archive, Format::nanodlp, folder / "a").value()[0]);
+    CHECK(first.value() == read_file(export_job(archive, Format::nanodlp, folder / "b").value()[0]).value());
 }
 
 TEST_CASE("what was exported comes back as a job, from zip files and from folders") {
-    const TemporaryFolder folder;
-    const Archive archive = make(folder.path / "two.zip");
-    (void)export_job(archive, Format::sl1, folder.path / "a");
-    (void)export_job(archive, Format::vats, folder.path / "c");
-    CHECK(is_image_stack(folder.path / "a/two_soft.sl1"));
-    CHECK(!is_image_stack(folder.path / "two.zip"));
+    const pliant::test::Folder folder("export");
+    const Archive archive = make(folder / "two.zip");
+    (void)export_job(archive, Format::sl1, folder / "a");
+    (void)export_job(archive, Format::vats, folder / "c");
+    CHECK(is_image_stack(folder / "a/two_soft.sl1"));
+    CHECK(!is_image_stack(folder / "two.zip"));
     std::vector<MaterialStack> stacks;
-    stacks.push_back({"soft", ImageStack::open(folder.path / "a/two_soft.sl1").value()});
-    stacks.push_back({"rigid", ImageStack::open(folder.path / "c/vat_b").value()});
-    auto writer = Writer::create(folder.path / "back.zip");
+    stacks.push_back({"soft", ImageStack::open(folder / "a/two_soft.sl1").value()});
+    stacks.push_back({"rigid", ImageStack::open(folder / "c/vat_b").value()});
+    auto writer = Writer::create(folder / "back.zip");
     Progress progress;
     const auto made = stacks_to_job(stacks, settings(), *writer, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
@@ -144,15 +133,15 @@ TEST_CASE("what was exported comes back as a job, from zip files and from folder
 }
 
 TEST_CASE("pixels that two stacks light go to one of them, and it is said") {
-    const TemporaryFolder folder;
-    fs::create_directories(folder.path / "x");
+    const pliant::test::Folder folder("export");
+    fs::create_directories(folder / "x");
     slice::RunImage image(64, 48);
     image.append(10, 0, 50, 255);
-    REQUIRE(write_file(folder.path / "x/l1.png", encode_png(image)).has_value());
+    REQUIRE(write_file(folder / "x/l1.png", encode_png(image)).has_value());
     std::vector<MaterialStack> stacks;
-    stacks.push_back({"soft", ImageStack::open(folder.path / "x").value()});
-    stacks.push_back({"rigid", ImageStack::open(folder.path / "x").value()});
-    auto writer = Writer::create(folder.path / "job.zip");
+    stacks.push_back({"soft", ImageStack::open(folder / "x").value()});
+    stacks.push_back({"rigid", ImageStack::open(folder / "x").value()});
+    auto writer = Writer::create(folder / "job.zip");
     Progress progress;
     const auto made = stacks_to_job(stacks, settings(), *writer, progress);
     REQUIRE(made.has_value());
@@ -163,20 +152,20 @@ TEST_CASE("pixels that two stacks light go to one of them, and it is said") {
 }
 
 TEST_CASE("stacks with gaps, without images and of other sizes are refused") {
-    const TemporaryFolder folder;
-    CHECK(ImageStack::open(folder.path).error().message.find("holds no layer images") != std::string::npos);
+    const pliant::test::Folder folder("export");
+    CHECK(ImageStack::open(folder.path()).error().message.find("holds no layer images") != std::string::npos);
     const std::string png = encode_png(slice::RunImage(30, 20));
-    (void)write_file(folder.path / "a1.png", png);
-    (void)write_file(folder.path / "a3.png", png);
-    CHECK(ImageStack::open(folder.path).error().message.find("a3.png follows a1.png") != std::string::npos);
-    (void)write_file(folder.path / "a2.png", png.substr(0, 60));
-    auto stack = ImageStack::open(folder.path);
+    (void)write_file(folder / "a1.png", png);
+    (void)write_file(folder / "a3.png", png);
+    CHECK(ImageStack::open(folder.path()).error().message.find("a3.png follows a1.png") != std::string::npos);
+    (void)write_file(folder / "a2.png", png.substr(0, 60));
+    auto stack = ImageStack::open(folder.path());
     REQUIRE(stack.has_value());
     CHECK(stack->layer_count() == 3);
     CHECK(!stack->image(1).has_value());
     std::vector<MaterialStack> stacks;
     stacks.push_back({"soft", std::move(*stack)});
-    auto writer = Writer::create(folder.path / "job.zip");
+    auto writer = Writer::create(folder / "job.zip");
     Progress progress;
     CHECK(stacks_to_job(stacks, settings(), *writer, progress).error().message ==
           "images of 'soft' have 30 x 20 pixels, the projector 64 x 48");

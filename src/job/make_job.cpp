@@ -201,9 +201,10 @@ void note_findings(const slice::Findings& findings, const std::vector<slice::Thi
     note_volume(manifest);
 }
 
-/// Findings with their pictures.
+/// Findings as warnings, and with their pictures.
 Status keep_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                      const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer) {
+    note_findings(findings, thin, settings, manifest);
     const slice::Raster& raster = settings.slicing.raster;
     manifest.findings = listed(findings, thin, raster);
     return add_pictures(manifest.findings, raster, source.layer, writer);
@@ -319,9 +320,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     job.summary = tally.summary();
     measure(bodies, *slicer, job.summary, job.manifest.materials);
     job.manifest.warnings = job.summary.warnings;
-    const slice::Findings findings = inspector.finish();
-    note_findings(findings, thin, settings, job.manifest);
-    if (auto status = keep_findings(findings, thin, source, settings, job.manifest, writer); !status)
+    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
     return job;
 }
@@ -365,9 +364,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
                             stacks[i].material, lost_px[i] * voxel_mm3));
     }
     job.summary.layer_count = source.count;
-    const slice::Findings findings = inspector.finish();
-    note_findings(findings, thin, settings, job.manifest);
-    if (auto status = keep_findings(findings, thin, source, settings, job.manifest, writer); !status)
+    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
     return job;
 }

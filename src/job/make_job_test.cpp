@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "job/verify.hpp"
 #include "slice/test_shapes.hpp"
 
@@ -28,21 +28,11 @@ const std::vector<slice::Body> halves{{"soft one", box({-1000, -1000, 0}, {50, 1
                                       {"soft/one", box({50, -1000, 0}, {1000, 1000, 1000}), ""},
                                       {"soft one", box({-1000, -1000, 500}, {-500, 1000, 700}), ""}};
 
-struct TemporaryFolder {
-    fs::path path;
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "pliant_job_XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~TemporaryFolder() { fs::remove_all(path); }
-};
-
 }  // namespace
 
 TEST_CASE("two materials become a job with the right layers, areas and volumes") {
-    const TemporaryFolder folder;
-    const fs::path path = folder.path / "job.zip";
+    const pliant::test::Folder folder("job");
+    const fs::path path = folder / "job.zip";
     auto writer = Writer::create(path);
     REQUIRE(writer.has_value());
     Progress progress;
@@ -81,22 +71,22 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
 }
 
 TEST_CASE("the archive is the same every time") {
-    const TemporaryFolder folder;
+    const pliant::test::Folder folder("job");
     std::vector<std::string> bytes;
     for (const char* name : {"a.zip", "b.zip"}) {
-        auto writer = Writer::create(folder.path / name);
+        auto writer = Writer::create(folder / name);
         Progress progress;
         const auto made = slice_to_job(halves, settings(), *writer, progress);
         REQUIRE(made.has_value());
         REQUIRE(writer->finish(made->manifest).has_value());
-        bytes.push_back(read_file(folder.path / name).value());
+        bytes.push_back(read_file(folder / name).value());
     }
     CHECK(bytes[0] == bytes[1]);
 }
 
 TEST_CASE("a material without settings, a bad body and cancellation stop the job") {
-    const TemporaryFolder folder;
-    auto writer = Writer::create(folder.path / "a.zip");
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "a.zip");
     Progress progress;
     JobSettings incomplete = settings();
     incomplete.materials.resize(1);
@@ -110,8 +100,8 @@ TEST_CASE("a material without settings, a bad body and cancellation stop the job
 }
 
 TEST_CASE("features narrower than asked for are named with material, layers and place") {
-    const TemporaryFolder folder;
-    auto writer = Writer::create(folder.path / "job.zip");
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "job.zip");
     REQUIRE(writer.has_value());
     JobSettings asked = settings();
     asked.least_feature_um = 600;
@@ -127,8 +117,8 @@ TEST_CASE("features narrower than asked for are named with material, layers and 
 }
 
 TEST_CASE("exposures of layers, heights, shared light and findings reach the manifest") {
-    const TemporaryFolder folder;
-    const fs::path path = folder.path / "job.zip";
+    const pliant::test::Folder folder("job");
+    const fs::path path = folder / "job.zip";
     auto writer = Writer::create(path);
     REQUIRE(writer.has_value());
     Progress progress;

@@ -4,8 +4,11 @@
 
 #include <cmath>
 
+#include "core/test_text.hpp"
+
 using namespace pliant;
 using namespace pliant::job;
+using pliant::test::replaced;
 
 namespace {
 
@@ -35,12 +38,6 @@ std::string refused_json(const std::string& json) {
     REQUIRE(!manifest.has_value());
     CHECK(manifest.error().message.find("job.zip: manifest.json: ") == 0);
     return manifest.error().message;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
 }
 
 }  // namespace

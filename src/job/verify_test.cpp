@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
+#include "core/test_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::job;
@@ -12,9 +12,8 @@ namespace {
 
 /// A job of one layer with two images of 10 pixels, the second from `column` on, and areas as given.
 std::string verdict(int column, double area_mm2, bool corrected = false, double shared_mm2 = 0) {
-    std::string folder = (fs::temp_directory_path() / "pliant_verify_XXXXXX").string();
-    REQUIRE(mkdtemp(folder.data()) != nullptr);
-    const fs::path path = fs::path(folder) / "job.zip";
+    const pliant::test::Folder folder("verify");
+    const fs::path path = folder / "job.zip";
     slice::RunImage a(64, 48), b(64, 48);
     a.append(5, 10, 20, 255);
     b.append(5, column, column + 10, 255);
@@ -27,7 +26,6 @@ std::string verdict(int column, double area_mm2, bool corrected = false, double 
     const auto archive = Archive::open(path);
     REQUIRE(archive.has_value());
     const Status status = verify_images(*archive, corrected, "job.zip");
-    fs::remove_all(folder);
     return status ? "" : status.error().message;
 }
 

@@ -16,24 +16,29 @@ struct Graph {
     std::vector<int> other;
 };
 
-/// Both triangles without the diagonal, as METIS wants a graph.
-Graph neighbours(const SymmetricPattern& pattern) {
+/// The graph of the pairs (node, other) that `visit` gives to a function; it is called twice and must give the same.
+template <class Visit>
+Graph graph_of(int nodes, const Visit& visit) {
     Graph graph;
-    graph.start.assign(static_cast<std::size_t>(pattern.nodes) + 1, 0);
-    const auto visit = [&](const auto& use) {
-        for (int j = 0; j < pattern.nodes; ++j) {
-            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
-                use(j, pattern.node_row[k]);
-                use(pattern.node_row[k], j);
-            }
-        }
-    };
+    graph.start.assign(static_cast<std::size_t>(nodes) + 1, 0);
     visit([&](int i, int) { ++graph.start[i + 1]; });
     std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
     graph.other.resize(graph.start.back());
     std::vector<int> next(graph.start.begin(), graph.start.end() - 1);
     visit([&](int i, int j) { graph.other[next[i]++] = j; });
     return graph;
+}
+
+/// Both triangles without the diagonal, as METIS wants a graph.
+Graph neighbours(const SymmetricPattern& pattern) {
+    return graph_of(pattern.nodes, [&](const auto& use) {
+        for (int j = 0; j < pattern.nodes; ++j) {
+            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
+                use(j, pattern.node_row[k]);
+                use(pattern.node_row[k], j);
+            }
+        }
+    });
 }
 
 /// Where each node comes in the order of a nested dissection.
@@ -53,22 +58,14 @@ std::vector<int> dissect(const SymmetricPattern& pattern) {
 
 /// The rows i < j of each column j in another order; `position` says where each node goes.
 Graph upper_part(const SymmetricPattern& pattern, const std::vector<int>& position) {
-    Graph upper;
-    upper.start.assign(position.size() + 1, 0);
-    const auto visit = [&](const auto& use) {
+    return graph_of(pattern.nodes, [&](const auto& use) {
         for (int j = 0; j < pattern.nodes; ++j) {
             for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
                 const auto [low, high] = std::minmax(position[j], position[pattern.node_row[k]]);
-                use(low, high);
+                use(high, low);
             }
         }
-    };
-    visit([&](int, int high) { ++upper.start[high + 1]; });
-    std::partial_sum(upper.start.begin(), upper.start.end(), upper.start.begin());
-    upper.other.resize(upper.start.back());
-    std::vector<int> next(upper.start.begin(), upper.start.end() - 1);
-    visit([&](int low, int high) { upper.other[next[high]++] = low; });
-    return upper;
+    });
 }
 
 /// Liu's elimination tree, with the paths compressed.

@@ -1,6 +1,7 @@
 #include "linalg/factor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <utility>
 
@@ -37,12 +38,13 @@ std::size_t Factor<Real>::leading(int s) const {
 template <class Real>
 template <int b>
 void Factor<Real>::add_sources(int s, std::span<const double> values) const {
+    constexpr std::array<int, 2> strides = {1, b};
     const Panel<Real> p = panel(s);
     for (int k = analysis_->source_start[s]; k < analysis_->source_start[s + 1]; ++k) {
         const Source& source = analysis_->sources[k];
         const double* value = values.data() + static_cast<std::size_t>(source.pair) * b * b;
-        const int down = source.transpose ? b : 1;
-        const int across = source.transpose ? 1 : b;
+        const int down = strides[source.transpose];
+        const int across = strides[!source.transpose];
         const int row = panel_row(p, source.row * b);
         for (int c = 0; c < b; ++c) {
             for (int r = 0; r < b; ++r)

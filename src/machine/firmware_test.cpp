@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "core/files.hpp"
+#include "core/test_text.hpp"
 
 using namespace pliant;
 using namespace pliant::machine;
+using pliant::test::replaced;
 
 namespace {
 
@@ -29,9 +31,8 @@ const std::string good_board =
     "echo:; Max Acceleration (units/s2):\necho:  M201 X50.00 Y1.00 Z100.00 A200.00\nok\n"
     "Reporting endstop status\nx_min: open\ny_min: TRIGGERED\nz_max: open\ni_min: open\nok\necho:M113 S2\nok\n";
 
-std::vector<std::string> problems(std::string text, const std::string& what = "", const std::string& with = "") {
-    if (!what.empty()) text.replace(text.find(what), what.size(), with);
-    return check_board(parse_board_report(text), load("tower8"));
+std::vector<std::string> problems(const std::string& text, const std::string& what = "", const std::string& with = "") {
+    return check_board(parse_board_report(what.empty() ? text : replaced(text, what, with)), load("tower8"));
 }
 
 }  // namespace

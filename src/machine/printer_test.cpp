@@ -5,9 +5,12 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "core/test_text.hpp"
 
 using namespace pliant;
 using namespace pliant::machine;
+using pliant::test::holds;
+using pliant::test::replaced;
 
 namespace {
 
@@ -25,10 +28,6 @@ std::string message_with(const std::string& from, const std::string& to) {
     text.replace(at, from.size(), to);
     const auto printer = parse_printer(text, "p.toml");
     return printer ? "" : printer.error().message;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace
@@ -93,9 +92,9 @@ TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
 
 TEST_CASE("the image's place, greys and mask are read, and nonsense is refused") {
     const auto with = [](const std::string& lines) {
-        std::string text = read_file("examples/printers/tower.toml").value();
+        const std::string text = read_file("examples/printers/tower.toml").value();
         const std::string key = "mirror_x = false";
-        return parse_printer(text.replace(text.find(key), key.size(), key + "\n" + lines), "p.toml");
+        return parse_printer(replaced(text, key, key + "\n" + lines), "p.toml");
     };
     const auto printer =
         with("rotation = -0.5\noffset = [\"0.2 mm\", \"-35 um\"]\ngrey = [0, 0.6, 1]\nmask = \"lens.png\"");

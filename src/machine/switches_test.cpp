@@ -5,11 +5,14 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "core/test_text.hpp"
 #include "machine/firmware.hpp"
 #include "machine/follow.hpp"
 
 using namespace pliant;
 using namespace pliant::machine;
+using pliant::test::holds;
+using pliant::test::replaced;
 
 namespace {
 
@@ -21,10 +24,6 @@ Result<Printer> tower_with(const std::string& text) {
 std::string wrong(const std::string& text) {
     const auto printer = tower_with(text);
     return printer ? "" : printer.error().message;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 /// Homed, as after G28, then the platform where it is asked for.
@@ -68,27 +67,23 @@ TEST_CASE("a wrong switch, door, fan or emergency line is named with its remedy"
     CHECK(wrong("\n[[limit_switch]]\naxis = \"tower\"\nend = \"max\"\ninverted = true\n").empty());
     CHECK(holds(wrong("\n[[fan]]\non = \"M106 P1 S255\"\noff = \"M107 P1\"\n"), "another fan or of the pump"));
     CHECK(holds(wrong("\n[fans]\non = \"M106 P3\"\noff = \"M107 P3\"\n"), "older form"));
-    std::string text = read_file("examples/printers/tower.toml").value();
+    const std::string text = read_file("examples/printers/tower.toml").value();
     const std::string last = "[[limit_switch]]\naxis = \"tower\"\nend = \"min\"\n";
-    const auto replaced = [&](std::string from, const std::string& to) {
-        std::string t = text;
-        REQUIRE(t.find(from) != std::string::npos);
-        const auto printer = parse_printer(t.replace(t.find(from), from.size(), to), "p.toml");
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        const auto printer = parse_printer(replaced(text, from, to), "p.toml");
         return printer ? "" : printer.error().message;
     };
-    CHECK(holds(replaced(last, ""), "the tower homes to a switch at its min that is not listed"));
+    CHECK(holds(changed(last, ""), "the tower homes to a switch at its min that is not listed"));
     const std::string relay = "signal = \"controller\"\npin = 12 ";
-    CHECK(holds(replaced(relay, "signal = \"dtr\"\n"), "device"));
-    CHECK(holds(replaced(relay, "signal = \"dtr\"\ndevice = \"/dev/ttyUSB1\"\nstop = \"low\"\n"), "stop"));
-    CHECK(holds(replaced(relay, "signal = \"controller\"\npin = 99 "), "from 0 to 69"));
-    CHECK(replaced(relay, "signal = \"file\"\ndevice = \"/sys/class/gpio/gpio17/value\"\nstop = \"low\"\n").empty());
+    CHECK(holds(changed(relay, "signal = \"dtr\"\n"), "device"));
+    CHECK(holds(changed(relay, "signal = \"dtr\"\ndevice = \"/dev/ttyUSB1\"\nstop = \"low\"\n"), "stop"));
+    CHECK(holds(changed(relay, "signal = \"controller\"\npin = 99 "), "from 0 to 69"));
+    CHECK(changed(relay, "signal = \"file\"\ndevice = \"/sys/class/gpio/gpio17/value\"\nstop = \"low\"\n").empty());
 }
 
 TEST_CASE("the older form of one fan is still read") {
-    std::string text = read_file("examples/printers/rotary.toml").value();
-    REQUIRE(holds(text, "[[fan]]"));
-    text.replace(text.find("[[fan]]"), 7, "[fans]");
-    const Printer p = parse_printer(text, "p.toml").value();
+    const std::string text = read_file("examples/printers/rotary.toml").value();
+    const Printer p = parse_printer(replaced(text, "[[fan]]", "[fans]"), "p.toml").value();
     REQUIRE(p.fans.size() == 1);
     CHECK(p.fans[0].off == "M107 P0");
 }

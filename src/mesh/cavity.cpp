@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "core/disjoint_sets.hpp"
 #include "mesh/surface_shells.hpp"
 
 namespace pliant::mesh {
@@ -13,16 +13,6 @@ namespace {
 
 /// Connected sets of faces, by the edges they share: (faces) the first face of each one's set.
 std::vector<int> components(const std::vector<Face>& faces) {
-    std::vector<int> parent(faces.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int f) {
-        while (parent[static_cast<std::size_t>(f)] != f) {
-            int& up = parent[static_cast<std::size_t>(f)];
-            up = parent[static_cast<std::size_t>(up)];
-            f = up;
-        }
-        return f;
-    };
     struct Edge {
         int low, high, face;
         bool operator<(const Edge& o) const { return std::tie(low, high, face) < std::tie(o.low, o.high, o.face); }
@@ -35,13 +25,14 @@ std::vector<int> components(const std::vector<Face>& faces) {
         }
     }
     std::sort(edges.begin(), edges.end());
+    DisjointSets sets(faces.size());
     for (std::size_t e = 1; e < edges.size(); ++e) {
-        if (edges[e].low != edges[e - 1].low || edges[e].high != edges[e - 1].high) continue;
-        const auto [a, b] = std::minmax({root(edges[e].face), root(edges[e - 1].face)});
-        parent[static_cast<std::size_t>(b)] = a;
+        if (edges[e].low == edges[e - 1].low && edges[e].high == edges[e - 1].high)
+            sets.join(edges[e].face, edges[e - 1].face);
     }
-    for (std::size_t f = 0; f < faces.size(); ++f) parent[f] = root(static_cast<int>(f));
-    return parent;
+    std::vector<int> first(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) first[f] = sets.find(static_cast<int>(f));
+    return first;
 }
 
 TriMesh surface_of(const TetMesh& mesh, const std::vector<Face>& faces, const std::vector<int>& component, int wanted) {

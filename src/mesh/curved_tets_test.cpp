@@ -2,19 +2,15 @@
 
 #include <doctest/doctest.h>
 
+#include "mesh/test_tets.hpp"
+
 using namespace pliant;
 using namespace pliant::mesh;
 
 namespace {
 
-/// Two tets on both sides of the face (1, 2, 3), quadratic and straight.
 TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 0};
-    mesh.region_names = {"a"};
-    return to_quadratic(mesh);
+    return to_quadratic(mesh::test::two_tets());
 }
 
 }  // namespace

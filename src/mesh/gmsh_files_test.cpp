@@ -1,11 +1,11 @@
 // Holds our readers and writers against Gmsh's own: the same nodes, tets and volumes both ways.
 #include <doctest/doctest.h>
 #include <gmsh.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "core/test_folder.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_writer.hpp"
 
@@ -18,20 +18,15 @@ namespace {
 /// Gmsh running silently, and a folder of its own.
 class Bench {
 public:
-    Bench() : folder_(fs::temp_directory_path() / fmt::format("pliant_gmsh_files_{}", getpid())) {
-        fs::create_directories(folder_);
+    Bench() {
         gmsh::initialize(0, nullptr, false);
         gmsh::option::setNumber("General.Terminal", 0);
         gmsh::option::setNumber("General.AbortOnError", 2);
     }
-    ~Bench() {
-        gmsh::finalize();
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
+    ~Bench() { gmsh::finalize(); }
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
-    [[nodiscard]] const fs::path& folder() const { return folder_; }
+    [[nodiscard]] const fs::path& folder() const { return folder_.path(); }
 
     /// Two cubes side by side, in named groups.
     void draw(int order) {
@@ -57,7 +52,7 @@ public:
     }
 
 private:
-    fs::path folder_;
+    pliant::test::Folder folder_{"gmsh_files"};
 };
 
 void check_cubes(const fs::path& file, int order, std::size_t tets, bool named) {

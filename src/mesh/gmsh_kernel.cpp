@@ -14,6 +14,7 @@
 #include "mesh/gmsh_library.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/surface_orientation.hpp"
+#include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_improver.hpp"
 
@@ -167,11 +168,9 @@ struct BuildSolid {
 
     /// The empty space between the walls falls into pieces; the one that holds the point, unless it is the outermost.
     Entities operator()(const EnclosedSolid& s) const {
-        Entities walls;
+        const Entities walls = build_all(s.walls);
         Box3 box;
         for (const Solid& wall : s.walls) {
-            const Entities one = build(wall);
-            walls.insert(walls.end(), one.begin(), one.end());
             const Box3 around = bounds(wall);
             box.add(around.low);
             box.add(around.high);
@@ -192,16 +191,8 @@ struct BuildSolid {
     }
 
     Entities operator()(const NotchesSolid& s) const {
-        Entities hulls;
-        for (const Solid& hull : s.hulls) {
-            const Entities one = build(hull);
-            hulls.insert(hulls.end(), one.begin(), one.end());
-        }
-        Entities walls;
-        for (const Solid& wall : s.walls) {
-            const Entities one = build(wall);
-            walls.insert(walls.end(), one.begin(), one.end());
-        }
+        const Entities hulls = build_all(s.hulls);
+        const Entities walls = build_all(s.walls);
         Entities kept;
         const double radius = 1e-7 * bounds(s.hulls.front()).diagonal();
         for (const auto& piece : occ::cut(hulls, walls).entities) {
@@ -278,6 +269,15 @@ struct BuildSolid {
     }
 
     static Entities build(const Solid& solid) { return std::visit(BuildSolid{}, solid->shape); }
+
+    static Entities build_all(const std::vector<Solid>& solids) {
+        Entities all;
+        for (const Solid& solid : solids) {
+            const Entities one = build(solid);
+            all.insert(all.end(), one.begin(), one.end());
+        }
+        return all;
+    }
 
     static Entities intersect(const Entities& a, const Entities& b) {
         return a.empty() || b.empty() ? Entities{} : occ::intersect(a, b).entities;
@@ -483,9 +483,7 @@ TriMesh collect_surface(const Entities& volumes) {
         for (const auto& [dimension, tag] : gmsh::model::get_boundary({volume}, true))
             append_face(std::abs(tag), one, index);
         orient_solid(one);  // Open CASCADE's faces look either way
-        const int offset = static_cast<int>(surface.points.size());
-        surface.points.insert(surface.points.end(), one.points.begin(), one.points.end());
-        for (const auto& [a, b, c] : one.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
+        append(surface, one);
     }
     return surface;
 }

@@ -1,12 +1,12 @@
 #include "mesh/mesh_report.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_writer.hpp"
@@ -27,10 +27,9 @@ TetMesh one_tet(const std::vector<Vec3>& points) {
 
 /// What is said of a file with this content.
 std::string described(std::string_view bytes) {
-    const auto path = std::filesystem::temp_directory_path() / fmt::format("pliant_mesh_report_{}", getpid());
-    REQUIRE(write_file(path, bytes));
-    const Result<std::string> text = describe_mesh_file(path);
-    std::filesystem::remove(path);
+    const pliant::test::Folder folder("mesh_report");
+    REQUIRE(write_file(folder / "nameless", bytes));
+    const Result<std::string> text = describe_mesh_file(folder / "nameless");
     return text ? *text : text.error().message;
 }
 

@@ -1,16 +1,17 @@
 // Holds our readers and writers against meshio, an independent program: the same nodes, tets and volumes both ways.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <sstream>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_writer.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::Folder;
 namespace fs = std::filesystem;
 
 namespace {
@@ -53,23 +54,6 @@ TetMesh block() {
     }
     return mesh;
 }
-
-class Folder {
-public:
-    Folder() : path_(fs::temp_directory_path() / fmt::format("pliant_meshio_{}", getpid())) {
-        fs::create_directories(path_);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 /// Runs meshio_peer.py with the Python that meshio itself runs with.
 std::string meshio(const Folder& folder, const std::string& arguments) {

@@ -53,8 +53,9 @@ private:
         if (section == "$MeshFormat") return read_format();
         if (section == "$PhysicalNames") return read_names();
         if (section == "$Entities") return version_ == 4 ? read_entities() : in_.skip_section(section);
-        if (section == "$Nodes") return version_ == 2 ? read_nodes_2() : read_nodes_4();
-        if (section == "$Elements") return version_ == 2 ? read_elements_2() : read_elements_4();
+        if (section == "$Nodes") return version_ == 2 ? read_nodes_2() : read_blocks(&MshReader::read_node_block);
+        if (section == "$Elements")
+            return version_ == 2 ? read_elements_2() : read_blocks(&MshReader::read_element_block);
         if (section.starts_with('$')) return in_.skip_section(section);
         return in_.error(fmt::format("\"{}\" is no section of a .msh file", section.substr(0, 40)));
     }
@@ -162,12 +163,13 @@ private:
         return in_.expect_end();
     }
 
-    Status read_nodes_4() {
+    /// Sections of version 4: a head whose first number counts the blocks that follow.
+    Status read_blocks(Status (MshReader::*read_block)()) {
         in_.skip_line_end();
         const auto head = in_.sizes<4>();
         if (!head) return tl::unexpected(head.error());
         for (std::uint64_t block = 0; block < (*head)[0]; ++block) {
-            if (Status status = read_node_block(); !status) return status;
+            if (Status status = (this->*read_block)(); !status) return status;
         }
         return in_.expect_end();
     }
@@ -258,16 +260,6 @@ private:
         const std::size_t nodes = nodes_of(type);
         if (nodes == 0) return in_.error(fmt::format("elements of type {} are not known", type));
         return in_.skip_bytes(rows, (nodes + per_row - 1) * width);
-    }
-
-    Status read_elements_4() {
-        in_.skip_line_end();
-        const auto head = in_.sizes<4>();
-        if (!head) return tl::unexpected(head.error());
-        for (std::uint64_t block = 0; block < (*head)[0]; ++block) {
-            if (Status status = read_element_block(); !status) return status;
-        }
-        return in_.expect_end();
     }
 
     Status read_element_block() {

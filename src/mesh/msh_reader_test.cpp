@@ -1,20 +1,17 @@
 #include <doctest/doctest.h>
 
+#include "core/test_text.hpp"
 #include "mesh/tet_file.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::replaced;
 
 namespace {
 
 std::string problem(std::string_view text) {
     const Result<TetMesh> mesh = parse_msh(text, "a.msh");
     return mesh ? "" : mesh.error().message;
-}
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    return text.replace(text.find(from), from.size(), to);
 }
 
 /// Two tets of two physical volumes, one triangle; node numbers with gaps, one node that no tet uses.
@@ -103,7 +100,7 @@ TEST_CASE("version 4: groups come by the volume they belong to") {
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"body", "0"});  // the second volume is in no group
     CHECK(volume(*mesh) == doctest::Approx(0.5));
-    const Result<TetMesh> plain = parse_msh(with(version_4, "1 1 1 1 7 0", "1 1 1 0 0"), "a.msh");
+    const Result<TetMesh> plain = parse_msh(replaced(version_4, "1 1 1 1 7 0", "1 1 1 0 0"), "a.msh");
     REQUIRE(plain);
     CHECK(plain->region_names == std::vector<std::string>{"1", "2"});
 }
@@ -126,17 +123,17 @@ TEST_CASE("broken files give a reason with the line, and claims are not believed
     CHECK(problem("$MeshFormat\n4.1 1 8\n$EndMeshFormat\n").find("a.msh: byte 24: the whole number 1 is needed") == 0);
     CHECK(problem("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").find("version \"1.0\"") != std::string::npos);
     CHECK(problem("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(with(version_2, "$Nodes\n6", "$Nodes\n6000000000000")).find("more than the file can hold") !=
+    CHECK(problem(replaced(version_2, "$Nodes\n6", "$Nodes\n6000000000000")).find("more than the file can hold") !=
           std::string::npos);
-    CHECK(problem(with(version_2, "40 0 0 1\n", "40 0 zero 1\n")) == "a.msh:15: \"zero\" is not a finite number");
-    CHECK(problem(with(version_2, "40 0 0 1\n", "30 0 0 1\n")).find("node 30 comes twice") != std::string::npos);
-    CHECK(problem(with(version_2, "10 20 30 40", "10 20 30 41")).find("names node 41, there is none") !=
+    CHECK(problem(replaced(version_2, "40 0 0 1\n", "40 0 zero 1\n")) == "a.msh:15: \"zero\" is not a finite number");
+    CHECK(problem(replaced(version_2, "40 0 0 1\n", "30 0 0 1\n")).find("node 30 comes twice") != std::string::npos);
+    CHECK(problem(replaced(version_2, "10 20 30 40", "10 20 30 41")).find("names node 41, there is none") !=
           std::string::npos);
-    CHECK(problem(with(version_2, "10 20 30 40", "10 20 30 30")).find("twice") != std::string::npos);
-    CHECK(problem(with(version_2, "\"grip\"", "grip")).find("a name in quotes") != std::string::npos);
-    CHECK(problem(with(version_4, "0 1 0 1\n1\n", "0 1 0 999999999\n1\n")).find("more than the file can hold") !=
+    CHECK(problem(replaced(version_2, "10 20 30 40", "10 20 30 30")).find("twice") != std::string::npos);
+    CHECK(problem(replaced(version_2, "\"grip\"", "grip")).find("a name in quotes") != std::string::npos);
+    CHECK(problem(replaced(version_4, "0 1 0 1\n1\n", "0 1 0 999999999\n1\n")).find("more than the file can hold") !=
           std::string::npos);
-    CHECK(problem(with(version_4, "$Entities\n1 0 1 2", "$Entities\n1 0 1 2000000000")).find("a.msh:") == 0);
+    CHECK(problem(replaced(version_4, "$Entities\n1 0 1 2", "$Entities\n1 0 1 2000000000")).find("a.msh:") == 0);
     for (const std::string& whole : {version_2, version_4}) {
         for (std::size_t length = 0; length < whole.size(); ++length) (void)parse_msh(whole.substr(0, length), "a.msh");
     }

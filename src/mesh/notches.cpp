@@ -143,6 +143,7 @@ struct Plane {
 std::vector<Plane> hull_planes(const std::vector<Vec3>& points, double size) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     std::vector<Kernel::Point_3> in;
+    in.reserve(points.size());
     for (const Vec3& p : points) in.emplace_back(p.x, p.y, p.z);
     CGAL::Surface_mesh<Kernel::Point_3> hull;
     CGAL::convex_hull_3(in.begin(), in.end(), hull);

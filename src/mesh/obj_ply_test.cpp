@@ -3,22 +3,19 @@
 #include <bit>
 #include <cstdint>
 
+#include "core/test_text.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_file.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::replaced;
 
 namespace {
 
 std::string problem(std::string_view text) {
     const Result<SurfaceFile> file = parse_surface(text, "a");
     return file ? "" : file.error().message;
-}
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    return text.replace(text.find(from), from.size(), to);
 }
 
 /// A cube of edge 2 with square faces.
@@ -97,12 +94,12 @@ TEST_CASE("OBJ: polygons, all kinds of corners, and everything else passed over"
 }
 
 TEST_CASE("OBJ: broken files give a reason with the line") {
-    CHECK(problem(with(obj, "f 2 3 7 6", "f 2 3 7 9")) == "a:16: a face names vertex 9, there are 8 so far");
-    CHECK(problem(with(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);
-    CHECK(problem(with(obj, "f 2 3 7 6", "f 2 3 7 -9")).find("names vertex -9") != std::string::npos);
-    CHECK(problem(with(obj, "f 2 3 7 6", "f 2 3")).find("a face has 2 corners") != std::string::npos);
-    CHECK(problem(with(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is no corner") != std::string::npos);
-    CHECK(problem(with(obj, "v 2 0 0", "v 2 0 nan")).find("a:5: \"nan\" is not a finite number") == 0);
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 9")) == "a:16: a face names vertex 9, there are 8 so far");
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 -9")).find("names vertex -9") != std::string::npos);
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3")).find("a face has 2 corners") != std::string::npos);
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is no corner") != std::string::npos);
+    CHECK(problem(replaced(obj, "v 2 0 0", "v 2 0 nan")).find("a:5: \"nan\" is not a finite number") == 0);
     CHECK(problem("v 1 2 3\n").find("holds no faces") != std::string::npos);
 }
 
@@ -117,14 +114,15 @@ TEST_CASE("PLY: text and bytes of both orders give the same surface") {
 }
 
 TEST_CASE("PLY: broken files give a reason, and claims are not believed") {
-    CHECK(problem(with(ply, "face 4", "face 4000000000000")).find("more than the file can hold") != std::string::npos);
-    CHECK(problem(with(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);
-    CHECK(problem(with(ply, "3 1 2 3", "3 1 2 4")).find("face 2 names vertex 4, there are 4") != std::string::npos);
-    CHECK(problem(with(ply, "3 1 2 3", "2 1 2 3")).find("face 2 has 2 corners") != std::string::npos);
-    CHECK(problem(with(ply, "double z", "quad z")).find("unknown type \"quad\"") != std::string::npos);
-    CHECK(problem(with(ply, "format ascii 1.0\n", "")).find("names no format") != std::string::npos);
-    CHECK(problem(with(ply, "end_header\n", "end\n")).find("no place in a PLY header") != std::string::npos);
-    CHECK(problem(with(ply, "list uchar int", "list float int")).find("whole numbers") != std::string::npos);
+    CHECK(problem(replaced(ply, "face 4", "face 4000000000000")).find("more than the file can hold") !=
+          std::string::npos);
+    CHECK(problem(replaced(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);
+    CHECK(problem(replaced(ply, "3 1 2 3", "3 1 2 4")).find("face 2 names vertex 4, there are 4") != std::string::npos);
+    CHECK(problem(replaced(ply, "3 1 2 3", "2 1 2 3")).find("face 2 has 2 corners") != std::string::npos);
+    CHECK(problem(replaced(ply, "double z", "quad z")).find("unknown type \"quad\"") != std::string::npos);
+    CHECK(problem(replaced(ply, "format ascii 1.0\n", "")).find("names no format") != std::string::npos);
+    CHECK(problem(replaced(ply, "end_header\n", "end\n")).find("no place in a PLY header") != std::string::npos);
+    CHECK(problem(replaced(ply, "list uchar int", "list float int")).find("whole numbers") != std::string::npos);
     const std::string bytes = binary_ply(false);
     for (std::size_t length = 4; length < bytes.size(); ++length)
         CHECK_FALSE(parse_surface(std::string_view(bytes).substr(0, length), "a.ply"));

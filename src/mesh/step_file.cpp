@@ -7,19 +7,10 @@
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "mesh/gmsh_kernel.hpp"
+#include "mesh/surface_shells.hpp"
 #include "mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
-namespace {
-
-void append(TriMesh& mesh, const TriMesh& other) {
-    const int offset = static_cast<int>(mesh.points.size());
-    mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
-    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + offset, b + offset, c + offset});
-}
-
-}  // namespace
-
 bool looks_like_step(std::string_view bytes) {
     const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
     return begin != std::string_view::npos && bytes.substr(begin).starts_with("ISO-10303-21");

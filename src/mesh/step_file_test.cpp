@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/mesher.hpp"
 
 using namespace pliant;
@@ -17,8 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A plate of 20 x 20 x 5 mm with a ball of radius 3 beside it, written by Gmsh with Open CASCADE.
-fs::path written() {
-    const fs::path path = fs::temp_directory_path() / "pliant_step_file_test.step";
+fs::path written(const pliant::test::Folder& folder) {
+    const fs::path path = folder / "drawing.step";
     gmsh::initialize(0, nullptr, false);
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::model::add("drawing");
@@ -39,7 +40,8 @@ double volume_of(const Solid& solid) {
 }  // namespace
 
 TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or all of them") {
-    const fs::path path = written();
+    const pliant::test::Folder folder("step");
+    const fs::path path = written(folder);
     const double ball = 4.0 / 3 * std::numbers::pi * 27;
     const Result<Solid> all = read_step(path, "", 1);
     REQUIRE_MESSAGE(all, (all ? "" : all.error().message));
@@ -63,11 +65,11 @@ TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or al
     const Result<Solid> first = read_step(path, bare, 1);
     REQUIRE_MESSAGE(first, (first ? "" : first.error().message));
     CHECK(volume_of(*first) == doctest::Approx(2000).epsilon(1e-9));
-    fs::remove(path);
 }
 
 TEST_CASE("a STEP file is joined to what it touches, and its curved faces stay curved") {
-    const fs::path path = written();
+    const pliant::test::Folder folder("step");
+    const fs::path path = written(folder);
     const Result<Solid> drawn = read_step(path, "", 1);
     REQUIRE(drawn);
     const Solid lid = std::make_shared<const SolidNode>(SolidNode{BoxSolid{{0, 0, 5}, {20, 20, 8}}});
@@ -80,23 +82,22 @@ TEST_CASE("a STEP file is joined to what it touches, and its curved faces stay c
     const Result<TriMesh> surface = tessellate(*drawn, 0.005);
     REQUIRE(surface);
     CHECK(signed_volume(*surface) == doctest::Approx(2000 + 4.0 / 3 * std::numbers::pi * 27).epsilon(1e-3));
-    fs::remove(path);
 }
 
 TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused with its name") {
-    const fs::path path = written();
+    const pliant::test::Folder folder("step");
+    const fs::path path = written(folder);
     const Result<std::string> whole = read_file(path);
     REQUIRE(whole);
     const auto refused = [&](const std::string& text) {
         REQUIRE(write_file(path, text));
         const Result<Solid> solid = read_step(path, "", 1);
         REQUIRE_FALSE(solid);
-        CHECK(solid.error().message.find("pliant_step_file_test.step") != std::string::npos);
+        CHECK(solid.error().message.find("drawing.step") != std::string::npos);
         return solid.error().message;
     };
     CHECK(refused(whole->substr(0, whole->size() / 2)).find("cut off") != std::string::npos);
     CHECK(refused("solid cube").find("no STEP file") != std::string::npos);
     (void)refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
     (void)refused("ISO-10303-21;\n\x01\xff\nEND-ISO-10303-21;\n");
-    fs::remove(path);
 }

@@ -1,13 +1,12 @@
 #include "mesh/surface_file.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cstring>
-#include <filesystem>
 #include <limits>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/surface_check.hpp"
 
 using namespace pliant;
@@ -21,11 +20,9 @@ TriMesh tetrahedron() {
 }
 
 std::string binary_stl(const TriMesh& mesh) {
-    const auto path = std::filesystem::temp_directory_path() / ("pliant_stl_" + std::to_string(getpid()) + ".stl");
-    REQUIRE(write_stl(path, mesh));
-    const std::string bytes = *read_file(path);
-    std::filesystem::remove(path);
-    return bytes;
+    const pliant::test::Folder folder("stl");
+    REQUIRE(write_stl(folder / "a.stl", mesh));
+    return read_file(folder / "a.stl").value();
 }
 
 std::string problem(std::string_view bytes) {

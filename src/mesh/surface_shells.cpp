@@ -4,47 +4,14 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
+
+#include "core/disjoint_sets.hpp"
 
 namespace pliant::mesh {
 namespace {
 
 constexpr std::size_t most_shells = 1000;
-
-/// Sets of triangles that share edges.
-class TriangleSets {
-public:
-    explicit TriangleSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-    std::size_t find(std::size_t t) {
-        while (parent_[t] != t) t = parent_[t] = parent_[parent_[t]];
-        return t;
-    }
-    void join(std::size_t a, std::size_t b) {
-        const std::size_t one = find(a);
-        const std::size_t other = find(b);
-        parent_[std::max(one, other)] = std::min(one, other);
-    }
-
-private:
-    std::vector<std::size_t> parent_;
-};
-
-TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles) {
-    TriMesh part;
-    std::map<int, int> index;
-    for (const std::size_t t : triangles) {
-        std::array<int, 3> triangle{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const int point = surface.triangles[t][i];
-            const auto [entry, fresh] = index.try_emplace(point, static_cast<int>(part.points.size()));
-            if (fresh) part.points.push_back(surface.points[static_cast<std::size_t>(point)]);
-            triangle[i] = entry->second;
-        }
-        part.triangles.push_back(triangle);
-    }
-    return part;
-}
 
 struct Shell {
     TriMesh mesh;
@@ -56,12 +23,6 @@ struct Shell {
         return box.contains(p) && std::fabs(winding_number(mesh, p)) > 0.5;
     }
 };
-
-void append(TriMesh& mesh, const TriMesh& other) {
-    const int offset = static_cast<int>(mesh.points.size());
-    mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
-    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + offset, b + offset, c + offset});
-}
 
 /// The smallest shell around shell `s`, or -1.
 int parent_of(const std::vector<Shell>& shells, std::size_t s) {
@@ -91,7 +52,7 @@ std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
     });
-    TriangleSets sets(surface.triangles.size());
+    DisjointSets sets(surface.triangles.size());
     for (std::size_t i = 1; i < edges.size(); ++i) {
         if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high)
             sets.join(edges[i].triangle, edges[i - 1].triangle);
@@ -104,6 +65,28 @@ std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
         shells[entry->second].push_back(t);
     }
     return shells;
+}
+
+void append(TriMesh& surface, const TriMesh& other) {
+    const int offset = static_cast<int>(surface.points.size());
+    surface.points.insert(surface.points.end(), other.points.begin(), other.points.end());
+    for (const auto& [a, b, c] : other.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
+}
+
+TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles) {
+    TriMesh part;
+    std::map<int, int> index;
+    for (const std::size_t t : triangles) {
+        std::array<int, 3> triangle{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int point = surface.triangles[t][i];
+            const auto [entry, fresh] = index.try_emplace(point, static_cast<int>(part.points.size()));
+            if (fresh) part.points.push_back(surface.points[static_cast<std::size_t>(point)]);
+            triangle[i] = entry->second;
+        }
+        part.triangles.push_back(triangle);
+    }
+    return part;
 }
 
 double winding_number(const TriMesh& surface, const Vec3& point) {

@@ -18,6 +18,12 @@ namespace pliant::mesh {
 /// The triangles of each shell (what hangs together by edges), shells in the order of their first triangle.
 [[nodiscard]] std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface);
 
+/// Puts `other` beside what there is.
+void append(TriMesh& surface, const TriMesh& other);
+
+/// Some triangles of a surface, in this order, with the points that they use.
+[[nodiscard]] TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles);
+
 /// How often a closed surface winds around a point off the surface: 1 inside, 0 outside (sum of solid angles / 4 pi;
 /// van Oosterom and Strackee 1983). Cost: all triangles.
 [[nodiscard]] double winding_number(const TriMesh& surface, const Vec3& point);

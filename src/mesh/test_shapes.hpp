@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/solid.hpp"
+#include "mesh/surface_shells.hpp"
 #include "mesh/tri_mesh.hpp"
 
 namespace pliant::mesh::test {
@@ -20,9 +21,7 @@ inline TriMesh cube(const Vec3& low = {0, 0, 0}, double side = 10) {
 }
 
 inline TriMesh joined(TriMesh a, const TriMesh& b) {
-    const int offset = static_cast<int>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+    append(a, b);
     return a;
 }
 

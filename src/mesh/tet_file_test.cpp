@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "mesh/test_tets.hpp"
 #include "mesh/tet_writer.hpp"
 
 using namespace pliant;
@@ -13,12 +14,7 @@ using namespace pliant::mesh;
 namespace {
 
 TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 1};
-    mesh.region_names = {"soft foam 50%", "grip"};
-    return mesh;
+    return mesh::test::two_tets("soft foam 50%", "grip");
 }
 
 std::string problem(std::string_view text) {

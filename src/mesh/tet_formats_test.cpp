@@ -1,26 +1,26 @@
 // The formats beside VTK: each written and read again, each read from what other programs write, and damaged.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
+#include "core/test_text.hpp"
+#include "mesh/test_tets.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_format.hpp"
 #include "mesh/tet_writer.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::replaced;
 
 namespace {
 
-/// Two tets that share a face, in regions whose names no format likes.
+/// Regions whose names no format likes, and a number that takes all digits.
 TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 1};
-    mesh.region_names = {"soft foam, 50%", "grip"};
+    TetMesh mesh = mesh::test::two_tets("soft foam, 50%", "grip");
+    mesh.points[3].z = 0.1;
     return mesh;
 }
 
@@ -45,11 +45,6 @@ void check_same(const Result<TetMesh>& back, const TetMesh& mesh) {
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
         CHECK(back->points[back->nodes[i]] == mesh.points[mesh.nodes[i]]);
     CHECK(back->notes.empty());
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    return text.replace(text.find(from), from.size(), to);
 }
 
 const std::string tetgen_nodes = "# a cube's corner\n4 3 1 0\n0 0 0 0 7\n1 1 0 0 7\n2 0 1 0 7\n3 0 0 1 7\n";
@@ -121,8 +116,7 @@ TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shar
 }
 
 TEST_CASE("files are written by their extension and read by their content") {
-    const auto folder = std::filesystem::temp_directory_path() / fmt::format("pliant_formats_{}", getpid());
-    std::filesystem::create_directories(folder);
+    const pliant::test::Folder folder("formats");
     for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp"}) {
         REQUIRE(write_tet_mesh(folder / name, curved_tets()));
         std::filesystem::rename(folder / name, folder / "nameless");
@@ -136,7 +130,6 @@ TEST_CASE("files are written by their extension and read by their content") {
         REQUIRE(mesh);
         CHECK(mesh->region_names == std::vector<std::string>{"-4"});
     }
-    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("formats are told by their first words") {

@@ -4,22 +4,11 @@
 
 #include <numeric>
 
+#include "mesh/test_tets.hpp"
+
 using namespace pliant;
 using namespace pliant::mesh;
-
-namespace {
-
-/// Two tets that share the face (1, 2, 3); together they fill 1/6 + 1/3 of the unit cube.
-TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 1};
-    mesh.region_names = {"a", "b"};
-    return mesh;
-}
-
-}  // namespace
+using mesh::test::two_tets;
 
 TEST_CASE("volumes of regions") {
     const TetMesh mesh = two_tets();

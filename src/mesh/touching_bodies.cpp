@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
+#include "core/disjoint_sets.hpp"
 #include "mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
@@ -56,23 +56,6 @@ bool reaches(const Shape& one, const Shape& other, double size) {
     return false;
 }
 
-class Groups {
-public:
-    explicit Groups(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), std::size_t{0}); }
-    std::size_t of(std::size_t i) {
-        while (root_[i] != i) i = root_[i] = root_[root_[i]];
-        return i;
-    }
-    /// The lower number leads.
-    void join(std::size_t a, std::size_t b) {
-        const auto [low, high] = std::minmax({of(a), of(b)});
-        root_[high] = low;
-    }
-
-private:
-    std::vector<std::size_t> root_;
-};
-
 class Finder {
 public:
     Finder(std::span<const BodyGeometry> bodies, double size) : bodies_(bodies), size_(size), shapes_(bodies.size()) {
@@ -81,13 +64,14 @@ public:
 
     Result<std::vector<TouchingGroup>> find() {
         if (std::none_of(bodies_.begin(), bodies_.end(), is_surface)) return std::vector<TouchingGroup>{};
-        Groups groups(bodies_.size());
+        DisjointSets groups(bodies_.size());
         for (std::size_t j = 1; j < bodies_.size(); ++j) {
             for (std::size_t i = 0; i < j; ++i) {
-                if (groups.of(i) == groups.of(j) || !near(boxes_[i], boxes_[j], touch * size_)) continue;
+                const int one = static_cast<int>(i), other = static_cast<int>(j);
+                if (groups.find(one) == groups.find(other) || !near(boxes_[i], boxes_[j], touch * size_)) continue;
                 const Result<bool> joined = do_touch(i, j);
                 if (!joined) return tl::unexpected(joined.error());
-                if (*joined) groups.join(i, j);
+                if (*joined) groups.join(one, other);
             }
         }
         return collect(groups);
@@ -113,13 +97,16 @@ private:
         return reaches(**one, **other, size_) || reaches(**other, **one, size_);
     }
 
-    std::vector<TouchingGroup> collect(Groups& groups) {
+    std::vector<TouchingGroup> collect(DisjointSets& groups) {
         std::vector<TouchingGroup> found;
         for (std::size_t first = 0; first < bodies_.size(); ++first) {
-            if (groups.of(first) != first) continue;
+            const auto is_of_group = [&](std::size_t b) {
+                return groups.find(static_cast<int>(b)) == static_cast<int>(first);
+            };
+            if (!is_of_group(first)) continue;
             TouchingGroup group;
             for (std::size_t b = first; b < bodies_.size(); ++b) {
-                if (groups.of(b) == first) group.bodies.push_back(b);
+                if (is_of_group(b)) group.bodies.push_back(b);
             }
             const bool any = std::any_of(group.bodies.begin(), group.bodies.end(),
                                          [&](std::size_t b) { return is_surface(bodies_[b]); });

@@ -4,21 +4,19 @@
 #include <cstdint>
 
 #include "core/base64.hpp"
+#include "core/test_text.hpp"
+#include "mesh/test_tets.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/vtu_writer.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::test::replaced;
 
 namespace {
 
 TetMesh two_tets() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    mesh.nodes = {0, 1, 2, 3, 1, 2, 3, 4};
-    mesh.region = {0, 1};
-    mesh.region_names = {"soft foam", "grip & <tip>"};
-    return mesh;
+    return mesh::test::two_tets("soft foam", "grip & <tip>");
 }
 
 std::string problem(std::string_view text) {
@@ -75,11 +73,6 @@ const std::string text_file =
     "format=\"ascii\">4</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" "
     "format=\"ascii\">10</DataArray></Cells>\n<CellData><DataArray type=\"Int32\" Name=\"material\" "
     "format=\"ascii\">-3</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>";
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    return text.replace(text.find(from), from.size(), to);
-}
 
 }  // namespace
 
@@ -140,7 +133,7 @@ TEST_CASE("text arrays, and pieces that follow each other") {
     CHECK(one->region_names == std::vector<std::string>{"-3"});
     const std::size_t begin = text_file.find("<Piece>");
     const std::string piece = text_file.substr(begin, text_file.find("</UnstructuredGrid>") - begin);
-    const Result<TetMesh> two = parse_vtu(with(text_file, piece, piece + with(piece, "-3<", "5<")), "a.vtu");
+    const Result<TetMesh> two = parse_vtu(replaced(text_file, piece, piece + replaced(piece, "-3<", "5<")), "a.vtu");
     REQUIRE_MESSAGE(two, (two ? "" : two.error().message));
     CHECK(two->points.size() == 8);
     CHECK(volume(*two) == doctest::Approx(2.0 / 6));
@@ -151,25 +144,25 @@ TEST_CASE("broken files give a reason, and claims are not believed") {
     CHECK(problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") == 0);
     CHECK(problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>").find("only VTKFile type=\"UnstructuredGrid\"") !=
           std::string::npos);
-    CHECK(problem(with(text_file, "0 1 2 3<", "0 1 2 9<")).find("names point 9, there are 4") != std::string::npos);
-    CHECK(problem(with(text_file, "0 1 2 3<", "0 1 2 2<")).find("point 2 twice") != std::string::npos);
-    CHECK(problem(with(text_file, "0 1 2 3<", "0 1 2 x<")).find("a.vtu:5: \"x\" is not a number") == 0);
-    CHECK(problem(with(text_file, "0 0 0 1 0", "nan 0 0 1 0")).find("point 0 is not finite") != std::string::npos);
-    CHECK(problem(with(text_file, ">4<", ">400<")).find("offsets of the cells do not fit") != std::string::npos);
-    CHECK(problem(with(text_file, ">4<", ">3<")).find("has 3 nodes") != std::string::npos);
-    CHECK(problem(with(text_file, ">10<", ">12<")).find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(with(text_file, "connectivity", "connections")).find("Cells connectivity is missing") !=
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 9<")).find("names point 9, there are 4") != std::string::npos);
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 2<")).find("point 2 twice") != std::string::npos);
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 x<")).find("a.vtu:5: \"x\" is not a number") == 0);
+    CHECK(problem(replaced(text_file, "0 0 0 1 0", "nan 0 0 1 0")).find("point 0 is not finite") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">4<", ">400<")).find("offsets of the cells do not fit") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">4<", ">3<")).find("has 3 nodes") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">10<", ">12<")).find("holds no tetrahedra") != std::string::npos);
+    CHECK(problem(replaced(text_file, "connectivity", "connections")).find("Cells connectivity is missing") !=
           std::string::npos);
-    CHECK(problem(with(text_file, "Int32", "Int24")).find("unknown type \"Int24\"") != std::string::npos);
+    CHECK(problem(replaced(text_file, "Int32", "Int24")).find("unknown type \"Int24\"") != std::string::npos);
     CHECK(problem("<VTKFile compressor=\"vtkLZ4DataCompressor\"><UnstructuredGrid/></VTKFile>").find("LZ4") !=
           std::string::npos);
     const std::string claims = bytes_of<std::uint32_t>({0xffffffffu, 0xffffffffu, 0, 8}, false);
     const std::string packed =
-        with(file(false, inline_base64), "byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order");
+        replaced(file(false, inline_base64), "byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order");
     CHECK(problem(packed).find("damaged") != std::string::npos);
     for (const std::string& header : {claims, bytes_of<std::uint32_t>({1, 0xffffffffu, 0, 4, 0}, false)}) {
         const std::string good = base64(block(points, false));
-        CHECK(problem(with(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
+        CHECK(problem(replaced(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
     }
 }
 

@@ -2,15 +2,13 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
+#include <unistd.h>  // environ
 
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <vector>
-
-extern char** environ;
 
 namespace pliant::operate {
 

@@ -4,10 +4,12 @@
 
 #include <string>
 
+#include "core/test_text.hpp"
 #include "plan/test_jobs.hpp"
 
 using namespace pliant;
 using namespace pliant::plan;
+using pliant::test::holds;
 
 namespace {
 
@@ -17,13 +19,9 @@ const std::string light = ";@expose layer=0 material=0 seconds=1 image=a.png\n";
 
 /// The error that the tower gives for `text`; "" if it passes.
 std::string error_of(const std::string& text) {
-    const machine::Printer printer = test::tower();
+    const machine::Printer printer = plan::test::tower();
     const Status status = check_gcode(text, printer);
     return status ? "" : status.error().message;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/files.hpp"
+#include "core/test_text.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
 #include "plan/swap.hpp"
@@ -13,6 +14,7 @@
 
 using namespace pliant;
 using namespace pliant::plan;
+using pliant::test::replaced;
 
 namespace {
 
@@ -30,7 +32,7 @@ job::Manifest random_job(const machine::Printer& printer, std::mt19937& random) 
             if (random() % 3 == 0) layer.push_back(m);
         }
     }
-    job::Manifest job = test::make_job_for(printer, layers, resins_of(printer));
+    job::Manifest job = plan::test::make_job_for(printer, layers, resins_of(printer));
     for (job::Layer& layer : job.layers) layer.z_um *= 1 + static_cast<int>(random() % 3) / 2;
     int below = 0;
     for (job::Layer& layer : job.layers) {
@@ -49,12 +51,8 @@ std::string without_line(const std::string& text, std::size_t n) {
 
 machine::Printer with_letter_e() {
     std::string text = read_file("examples/printers/tower.toml").value();
-    const auto change = [&](const std::string& from, const std::string& to) {
-        REQUIRE(text.find(from) != std::string::npos);
-        text.replace(text.find(from), from.size(), to);
-    };
-    change("dialect = \"marlin\"", "dialect = \"marlin-classic\"");
-    change("letter = \"Y\"", "letter = \"E\"");
+    text = replaced(text, "dialect = \"marlin\"", "dialect = \"marlin-classic\"");
+    text = replaced(text, "letter = \"Y\"", "letter = \"E\"");
     const std::size_t tower = text.find("[axis.tower]");
     text.replace(text.find("home = \"min\"", tower), 12, "home = \"hand\"");
     const auto printer = machine::parse_printer(text, "e.toml");
@@ -66,7 +64,7 @@ machine::Printer with_letter_e() {
 
 TEST_CASE("property: no generated program violates an interlock, on any machine") {
     std::mt19937 random(2024);
-    std::vector<machine::Printer> machines = test::machines();
+    std::vector<machine::Printer> machines = plan::test::machines();
     machines.push_back(with_letter_e());
     for (const machine::Printer& printer : machines) {
         for (int round = 0; round < 25; ++round) {
@@ -83,7 +81,7 @@ TEST_CASE("property: no generated program violates an interlock, on any machine"
 
 TEST_CASE("the planned time is that of the commands, to the microsecond, on every machine") {
     std::mt19937 random(5);
-    for (const machine::Printer& printer : test::machines()) {
+    for (const machine::Printer& printer : plan::test::machines()) {
         for (int round = 0; round < 5; ++round) {
             const job::Manifest job = random_job(printer, random);
             const Plan plan = make_plan(job, printer).value();
@@ -102,7 +100,7 @@ TEST_CASE("the planned time is that of the commands, to the microsecond, on ever
 
 TEST_CASE("no order of the planner takes longer than the thesis' rule or the naive one, and none beats the bound") {
     std::mt19937 random(9);
-    for (const machine::Printer& printer : test::machines()) {
+    for (const machine::Printer& printer : plan::test::machines()) {
         for (int round = 0; round < 10; ++round) {
             const Plan plan = make_plan(random_job(printer, random), printer).value();
             REQUIRE(plan.compared.size() == 3);
@@ -131,7 +129,7 @@ TEST_CASE("a rotary table takes the shorter way round, within the travel of its 
 
 TEST_CASE("a classic build has the tower on E: set by hand, absolute, allowed to move cold") {
     const machine::Printer printer = with_letter_e();
-    const job::Manifest job = test::make_job({{0, 1}}, {"semi-flex", "rigid-flex"});
+    const job::Manifest job = plan::test::make_job({{0, 1}}, {"semi-flex", "rigid-flex"});
     const std::string text = write_gcode(make_plan(job, printer).value(), job, printer);
     for (const char* line : {"\nM82\n", "\nM302 P1\n", "\nG92 E0.000\n", "\nG1 E0.500 F"}) {
         CHECK(text.find(line) != std::string::npos);
@@ -140,12 +138,12 @@ TEST_CASE("a classic build has the tower on E: set by hand, absolute, allowed to
 }
 
 TEST_CASE("two vats of one resin: the second takes over on the layer that the first cannot fill") {
-    machine::Printer printer = test::tower();
+    machine::Printer printer = plan::test::tower();
     printer.vat_shape.least_ml = 0;
     printer.vats[2].resin = "semi-flex";
     printer.vats[0].fill_ml = 0.012;  // two layers of 5 ul
     printer.vats[2].fill_ml = 0.011;
-    const Plan plan = make_plan(test::make_job({{0}, {0}, {0}, {0}, {0}}, {"semi-flex"}), printer).value();
+    const Plan plan = make_plan(plan::test::make_job({{0}, {0}, {0}, {0}, {0}}, {"semi-flex"}), printer).value();
     CHECK(plan.order == std::vector<VatList>{{0}, {0}, {2}, {2}, {2}});
     CHECK(plan.swaps == 1);
     REQUIRE(plan.vats.size() == 2);
@@ -157,8 +155,8 @@ TEST_CASE("two vats of one resin: the second takes over on the layer that the fi
 }
 
 TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, change the order") {
-    machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job({{0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
+    machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
     CHECK(make_plan(job, printer)->order[0] == VatList{0, 1, 2});
     printer.cleaning.pairs = {{"semi-flex", "rigid-flex", 60, 0}, {"rigid-flex", "semi-flex", 15, 500}};
     const Plan plan = make_plan(job, printer).value();
@@ -169,16 +167,16 @@ TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, ch
 }
 
 TEST_CASE("resin that is washed off and solution that is used follow from the number of cleanings") {
-    const machine::Printer printer = test::tower();
-    const Plan plan = make_plan(test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"}), printer).value();
+    const machine::Printer printer = plan::test::tower();
+    const Plan plan = make_plan(plan::test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"}), printer).value();
     // Two swaps and the cleaning at the end: 20 ml each; 200 mm^2 under a film of 60 um each.
     CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
     CHECK(plan.waste_ml == doctest::Approx(3 * 200 * 0.06 / 1000));
 }
 
 TEST_CASE("a program that has lost a line that the interlocks depend on is refused") {
-    const machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job({{0, 1}, {1}}, {"semi-flex", "rigid-flex"});
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1}, {1}}, {"semi-flex", "rigid-flex"});
     const std::string text = write_gcode(make_plan(job, printer).value(), job, printer);
     const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
     int refused = 0;

@@ -4,11 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/test_text.hpp"
 #include "plan/check.hpp"
 #include "plan/test_jobs.hpp"
 
 using namespace pliant;
 using namespace pliant::plan;
+using pliant::test::holds;
 
 namespace {
 
@@ -29,15 +31,11 @@ std::string error_of(const job::Manifest& job, const machine::Printer& printer) 
     return plan ? "" : plan.error().message;
 }
 
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
-    const machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job(repeated({0, 1}, 200), two);
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job(repeated({0, 1}, 200), two);
     const Plan plan = planned(job, printer);
     CHECK(plan.layers == 200);
     CHECK(plan.swaps == 200);
@@ -58,8 +56,8 @@ TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
 }
 
 TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
-    machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job({{0, 1, 2}}, {"rubber", "semi-flex", "wax"});
+    machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1, 2}}, {"rubber", "semi-flex", "wax"});
     Plan plan = planned(job, printer);
     CHECK(plan.vat_of_material == std::vector<int>{1, 0, 2});
     REQUIRE(plan.warnings.size() == 2);
@@ -75,7 +73,7 @@ TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
 }
 
 TEST_CASE("materials of one resin share a vat and need no swap") {
-    const Plan plan = planned(test::make_job(repeated({0, 1}, 4), {"tough", "tough"}), test::tower());
+    const Plan plan = planned(plan::test::make_job(repeated({0, 1}, 4), {"tough", "tough"}), plan::test::tower());
     CHECK(plan.swaps == 0);
     CHECK(plan.vats.size() == 1);
     CHECK(plan.vats[0].materials == std::vector<int>{0, 1});
@@ -83,30 +81,31 @@ TEST_CASE("materials of one resin share a vat and need no swap") {
 }
 
 TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, no exposure: errors") {
-    const machine::Printer printer = test::tower();
-    CHECK(holds(error_of(test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
-    job::Manifest job = test::make_job(repeated({0}, 3), two);
+    const machine::Printer printer = plan::test::tower();
+    CHECK(
+        holds(error_of(plan::test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
+    job::Manifest job = plan::test::make_job(repeated({0}, 3), two);
     job.width_px = 100;
     CHECK(holds(error_of(job, printer), "slice it again"));
-    job = test::make_job(repeated({0}, 3), two);
+    job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[2].z_um = 304801;
     CHECK(holds(error_of(job, printer), "builds 304.80 mm"));
     job.layers[2].z_um = 50;
     CHECK(holds(error_of(job, printer), "layer 2 at 50 um does not lie above 100 um"));
-    job = test::make_job(repeated({0}, 3), two);
+    job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[1].images[0].material = 2;
     CHECK(holds(error_of(job, printer), "prints material 2, there are 2"));
     job.layers[1].images[0] = {0, "a\nG28", 1};
     CHECK(holds(error_of(job, printer), "without a usable name"));
-    job = test::make_job(repeated({0}, 3), two);
+    job = plan::test::make_job(repeated({0}, 3), two);
     job.materials[0].exposure_s = 0;
     CHECK(holds(error_of(job, printer), "needs exposures"));
 }
 
 TEST_CASE("blank layers and resin that runs out are noticed") {
-    machine::Printer printer = test::tower();
+    machine::Printer printer = plan::test::tower();
     printer.vats[0].fill_ml = 60.01;  // of which 60 must stay
-    const Plan plan = planned(test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
+    const Plan plan = planned(plan::test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
     REQUIRE(plan.warnings.size() == 3);
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
     CHECK(
@@ -115,9 +114,9 @@ TEST_CASE("blank layers and resin that runs out are noticed") {
 }
 
 TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image once behind a fence") {
-    const machine::Printer printer = test::tower();
+    const machine::Printer printer = plan::test::tower();
     const job::Manifest job =
-        test::make_job({{0, 1, 2}, {0, 2}, {}, {1}, {0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
+        plan::test::make_job({{0, 1, 2}, {0, 2}, {}, {1}, {0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
     const Plan plan = planned(job, printer);
     const std::string text = write_gcode(plan, job, printer);
     const Status checked = check_gcode(text, printer);
@@ -136,8 +135,8 @@ TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image 
 }
 
 TEST_CASE("an empty job homes and does nothing") {
-    const machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job({}, two);
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({}, two);
     const Plan plan = planned(job, printer);
     CHECK(plan.swaps == 0);
     CHECK(plan.seconds.swap == 0);
@@ -145,7 +144,7 @@ TEST_CASE("an empty job homes and does nothing") {
 }
 
 TEST_CASE("the plan as JSON has the keys that programs read") {
-    const Plan plan = planned(test::make_job(repeated({0, 1}, 2), {"semi-flex", "wax"}), test::tower());
+    const Plan plan = planned(plan::test::make_job(repeated({0, 1}, 2), {"semi-flex", "wax"}), plan::test::tower());
     const auto json = nlohmann::json::parse(plan_json(plan));
     CHECK(json["layers"] == 2);
     CHECK(json["swaps"] == 2);
@@ -159,7 +158,7 @@ TEST_CASE("the plan as JSON has the keys that programs read") {
 TEST_CASE("the plan as text shows times as h:mm:ss") {
     CHECK(clock_text(3723.4) == "1:02:03");
     CHECK(clock_text(0) == "0:00:00");
-    const std::string text = plan_text(planned(test::make_job(repeated({0, 1}, 2), two), test::tower()));
+    const std::string text = plan_text(planned(plan::test::make_job(repeated({0, 1}, 2), two), plan::test::tower()));
     CHECK(holds(text, "no order needs fewer than 2"));
     CHECK(holds(text, "slot 2"));
 }
@@ -169,7 +168,7 @@ TEST_CASE("the models of known swap counts: naive and best, as their table gives
     std::vector<std::string> resins;
     for (const machine::Vat& vat : printer.vats) resins.push_back(vat.resin);
     const auto counts = [&](const std::vector<std::vector<int>>& layers) {
-        const Plan plan = planned(test::make_job(layers, resins), printer);
+        const Plan plan = planned(plan::test::make_job(layers, resins), printer);
         CHECK(plan.swap_lower_bound == plan.compared.back().swaps);
         return std::pair(plan.compared.front().swaps, plan.swaps);
     };

@@ -10,6 +10,7 @@ namespace {
 
 /// What is left of the rounding of a quantity to metres, in micrometres.
 constexpr double rounding_um = 1e-6;
+constexpr double longest_m = 1e6;
 
 /// Whether the whole text is a number of the type of `number`.
 template <class Number>
@@ -24,6 +25,7 @@ Result<double> length_um(const char* option, const std::string& text, double oth
     if (text.empty()) return otherwise;
     const Result<double> length = parse_quantity(text, Dimension::length);
     if (!length) return input_error("{}: {}", option, length.error().message);
+    if (!(std::fabs(*length) <= longest_m)) return input_error("{} {}: is longer than 1000 km", option, text);
     return *length * 1e6;
 }
 
@@ -47,7 +49,7 @@ Result<int> layer_height_um(const char* option, const std::string& text) {
 
 int plain_number(const std::string& text) {
     int number = -1;
-    return reads(text, number) ? number : -1;
+    return reads(text, number) && number >= 0 ? number : -1;
 }
 
 Result<double> plain_degrees(const char* option, const std::string& text) {

@@ -7,7 +7,8 @@
 
 namespace pliant::prepare {
 
-/// A length with its unit, in micrometres; `otherwise` where the text is empty. Errors name the option.
+/// A length with its unit, in micrometres, at most 1000 km; `otherwise` where the text is empty. Errors name the
+/// option.
 [[nodiscard]] Result<double> length_um(const char* option, const std::string& text, double otherwise);
 
 /// The same, from `least_um` to `most_um`.
@@ -17,7 +18,7 @@ namespace pliant::prepare {
 /// A whole number of micrometres from 1 to 1000.
 [[nodiscard]] Result<int> layer_height_um(const char* option, const std::string& text);
 
-/// A whole number without anything around it; -1 for anything else.
+/// A whole number from 0 on without anything around it; -1 for anything else.
 [[nodiscard]] int plain_number(const std::string& text);
 
 /// A number without anything around it. Errors: anything else, infinity included.

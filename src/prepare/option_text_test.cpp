@@ -17,6 +17,7 @@ TEST_CASE("lengths have a unit and come out in micrometres") {
         CHECK(length.error().cause == Cause::input);
         CHECK(length.error().message.find("--x: ") == 0);
     }
+    CHECK(length_um("--x", "1e303 m", 7).error().message == "--x 1e303 m: is longer than 1000 km");
 }
 
 TEST_CASE("lengths within limits, the limits included") {
@@ -47,7 +48,7 @@ TEST_CASE("plain numbers have nothing around them") {
     CHECK(plain_number("0") == 0);
     CHECK(plain_number("12") == 12);
     for (const char* wrong : {"", "-", "1.5", " 1", "1 ", "+1", "0x1", "99999999999", "-3"})
-        CHECK(plain_number(wrong) < 0);
+        CHECK(plain_number(wrong) == -1);
     CHECK(*plain_degrees("--angle", "45") == 45);
     CHECK(*plain_degrees("--angle", "-0.5") == -0.5);
     for (const char* wrong : {"", "45 deg", "nan", "inf", "1e400", " 4"}) {

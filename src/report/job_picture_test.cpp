@@ -3,9 +3,10 @@
 #include <cairo.h>
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+
+#include "core/test_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::report;
@@ -15,9 +16,8 @@ namespace {
 
 /// Two layers of 20 x 10 pixels, the lower of the first material, the upper of the second on its right half.
 Result<std::string> picture(bool blank) {
-    std::string folder = (fs::temp_directory_path() / "pliant_picture_XXXXXX").string();
-    REQUIRE(mkdtemp(folder.data()) != nullptr);
-    const fs::path path = fs::path(folder) / "job.zip";
+    const pliant::test::Folder folder("picture");
+    const fs::path path = folder / "job.zip";
     job::Manifest m{"two", "0", 64, 48, 100, 0, {{"soft", "s", 1, 0, 1, 1}, {"rigid", "r", 1, 0, 1, 1}}, {}, {}};
     m.layers = {{50, 50, {}}, {100, 50, {}}};
     auto writer = job::Writer::create(path);
@@ -31,9 +31,7 @@ Result<std::string> picture(bool blank) {
     REQUIRE(writer->finish(m).has_value());
     const auto archive = job::Archive::open(path);
     REQUIRE(archive.has_value());
-    auto png = job_picture(*archive);
-    fs::remove_all(folder);
-    return png;
+    return job_picture(*archive);
 }
 
 struct Source {

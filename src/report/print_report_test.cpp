@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "host/control_types.hpp"
 #include "plan/test_jobs.hpp"
 #include "report/layer_plot.hpp"
@@ -95,9 +96,8 @@ TEST_CASE("a plot over the layers has a line for every series, and rounds its sc
 }
 
 TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; another job's journal is refused") {
-    std::string folder = (fs::temp_directory_path() / "pliant_report_XXXXXX").string();
-    REQUIRE(mkdtemp(folder.data()) != nullptr);
-    const fs::path file = fs::path(folder) / "job.zip", journal = fs::path(folder) / "job.zip.journal";
+    const pliant::test::Folder folder("report");
+    const fs::path file = folder / "job.zip", journal = folder / "job.zip.journal";
     machine::Printer printer = plan::test::tower();
     job::Manifest m = plan::test::make_job({{0}, {0, 1}}, {"semi-flex", "rigid-flex"});
     m.name = "<b>two</b>";
@@ -131,5 +131,4 @@ TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; a
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message ==
           journal.string() + ": this journal is of another job, or job.zip has changed since");
-    fs::remove_all(folder);
 }

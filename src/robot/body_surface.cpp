@@ -7,6 +7,7 @@
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "mesh/surface_file.hpp"
+#include "mesh/surface_shells.hpp"
 #include "threemf/read_3mf.hpp"
 
 namespace pliant::robot {
@@ -37,10 +38,7 @@ Result<mesh::TriMesh> triangles_of_3mf(const SurfaceFile& file, double unit_m) {
         if (!file.part.empty() && body.material != file.part && body.name != file.part) continue;
         if (!body.slices.empty())
             return input_error("{}: \"{}\" is given in slices, which bound no solid", file.path.string(), body.name);
-        const int offset = static_cast<int>(surface.points.size());
-        surface.points.insert(surface.points.end(), body.mesh_mm.points.begin(), body.mesh_mm.points.end());
-        for (const auto& [a, b, c] : body.mesh_mm.triangles)
-            surface.triangles.push_back({a + offset, b + offset, c + offset});
+        mesh::append(surface, body.mesh_mm);
     }
     if (surface.triangles.empty())
         return input_error("{}: has no part \"{}\"; it has {}", file.path.string(), file.part,

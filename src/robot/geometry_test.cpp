@@ -1,13 +1,13 @@
 // Bodies from files, what touches, and the notches that cables cross.
 #include <doctest/doctest.h>
 #include <gmsh.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "core/files.hpp"
+#include "core/test_folder.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/test_run.hpp"
 #include "zip/zip_file.hpp"
@@ -19,20 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own for each test.
-class Folder {
-public:
-    Folder() : path_(fs::temp_directory_path() / fmt::format("pliant_geometry_test_{}", getpid())) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() { fs::remove_all(path_); }
-    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    fs::path path_;
+struct Folder : pliant::test::Folder {
+    [[nodiscard]] std::string file(const std::string& name) const { return (*this / name).string(); }
 };
 
 const std::string head = R"(name = "bar"

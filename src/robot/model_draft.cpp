@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "core/disjoint_sets.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -26,27 +27,18 @@ mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
 
 /// Gives every notch of a region but the first a region of its own, at the end; gives those.
 std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
-    std::vector<int> parent(mesh.points.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int node) {
-        while (parent[static_cast<std::size_t>(node)] != node) {
-            int& up = parent[static_cast<std::size_t>(node)];
-            up = parent[static_cast<std::size_t>(up)];
-            node = up;
-        }
-        return node;
-    };
+    DisjointSets sets(mesh.points.size());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (mesh.region[t] != region) continue;
-        for (const int node : mesh.tet(t)) parent[static_cast<std::size_t>(root(node))] = root(mesh.tet(t)[0]);
+        for (const int node : mesh.tet(t)) sets.join(node, mesh.tet(t)[0]);
     }
-    std::map<int, int> region_of_root;
+    std::map<int, int> region_of_set;
     std::vector<int> added;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (mesh.region[t] != region) continue;
         const auto next = static_cast<int>(mesh.region_names.size());
-        const auto [entry, fresh] =
-            region_of_root.try_emplace(root(mesh.tet(t)[0]), added.empty() && region_of_root.empty() ? region : next);
+        const auto [entry, fresh] = region_of_set.try_emplace(sets.find(mesh.tet(t)[0]),
+                                                              added.empty() && region_of_set.empty() ? region : next);
         mesh.region[t] = entry->second;
         if (!fresh || entry->second == region) continue;
         added.push_back(next);

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/test_folder.hpp"
+#include "core/test_text.hpp"
 #include "mesh/tet_writer.hpp"
 #include "robot/test_run.hpp"
 
@@ -59,10 +61,7 @@ steps = 3
 )";
 
 std::string with(const std::string& line, const std::string& replacement) {
-    std::string text = good;
-    const std::size_t at = text.find(line);
-    REQUIRE_MESSAGE(at != std::string::npos, line);
-    return text.replace(at, line.size(), replacement);
+    return pliant::test::replaced(good, line, replacement);
 }
 
 }  // namespace
@@ -278,7 +277,7 @@ const std::string room = "geometry = { box = [[24, 3, 3], [36, 7, 7]] }";  // 19
 /// The notched bar as a mesh file with the regions "left" and "right", gone when the test ends.
 class MeshFile {
 public:
-    MeshFile() : path_(std::filesystem::temp_directory_path() / fmt::format("pliant_robot_{}.vtu", ::getpid())) {
+    MeshFile() {
         const Result<Robot> robot = parse_robot(good, "bar.toml", {"mesh.order=1"});
         REQUIRE(robot);
         Progress silent;
@@ -286,9 +285,6 @@ public:
         REQUIRE(mesh);
         REQUIRE(mesh::write_tet_mesh(path_, mesh::scaled(*mesh, 1000)));
     }
-    MeshFile(const MeshFile&) = delete;
-    MeshFile& operator=(const MeshFile&) = delete;
-    ~MeshFile() { std::filesystem::remove(path_); }
 
     /// A robot of this mesh; `bodies` are [[body]] tables.
     [[nodiscard]] std::string robot(const std::string& bodies) const {
@@ -298,7 +294,8 @@ public:
     }
 
 private:
-    std::filesystem::path path_;
+    pliant::test::Folder folder_{"robot"};
+    std::filesystem::path path_ = folder_ / "bar.vtu";
 };
 
 std::string region(const std::string& name, const std::string& material, const std::string& which) {

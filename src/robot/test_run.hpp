@@ -55,4 +55,8 @@ inline sim::Trajectory run_to_the_end(const Built& built) {
     return result;
 }
 
+inline sim::Trajectory run_file(const std::string& path, const std::vector<std::string>& assignments) {
+    return run_to_the_end(build(load_robot(path, assignments)));
+}
+
 }  // namespace pliant::robot::testing

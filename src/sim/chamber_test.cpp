@@ -27,6 +27,56 @@ std::vector<double> distorted(const mesh::TetMesh& mesh) {
     return x;
 }
 
+/// One rough direction.
+std::vector<double> direction_of(std::size_t size) {
+    std::vector<double> direction(size);
+    for (std::size_t i = 0; i < size; ++i) direction[i] = std::cos(12.9898 * static_cast<double>(i));
+    return direction;
+}
+
+std::vector<double> moved(std::vector<double> x, const std::vector<double>& direction, double h) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * direction[i];
+    return x;
+}
+
+std::vector<double> gradient_of(const ChamberSurface& wall, const std::vector<double>& x) {
+    std::vector<double> gradient(x.size(), 0.0);
+    wall.add_gradient(x, 1, gradient);
+    return gradient;
+}
+
+/// The symmetric part of the second gradient, times a direction.
+std::vector<double> hessian_times(const ChamberSurface& wall, const std::vector<double>& x,
+                                  const std::vector<double>& direction) {
+    std::vector<int> free_index(x.size() / 3);
+    std::iota(free_index.begin(), free_index.end(), 0);
+    std::vector<std::vector<int>> cliques;
+    wall.append_cliques(free_index, cliques);
+    const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
+    std::vector<double> hessian(pattern.entries(), 0.0);
+    wall.add_hessian(x, 1, free_index, pattern, hessian, false);
+    std::vector<double> product(x.size(), 0.0);
+    linalg::add_product(pattern, hessian, direction, 1, product);
+    return product;
+}
+
+/// The gradient's slope along a direction, by central differences; the volume is a cubic, so that they are exact but
+/// for rounding.
+std::vector<double> gradient_slope(const ChamberSurface& wall, const std::vector<double>& x,
+                                   const std::vector<double>& direction) {
+    const double h = 1e-5;
+    std::vector<double> slope = gradient_of(wall, moved(x, direction, h));
+    const std::vector<double> behind = gradient_of(wall, moved(x, direction, -h));
+    for (std::size_t i = 0; i < x.size(); ++i) slope[i] = (slope[i] - behind[i]) / (2 * h);
+    return slope;
+}
+
+double largest(const std::vector<double>& values) {
+    double most = 0;
+    for (const double value : values) most = std::max(most, std::fabs(value));
+    return most;
+}
+
 }  // namespace
 
 TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
@@ -38,44 +88,16 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         CHECK(is_closed(d.chambers[0].wall));
         CHECK(wall.volume(rest) == doctest::Approx(0.02 * 0.005 * 0.005).scale(0).epsilon(1e-12));
 
-        std::vector<double> x = distorted(d.mesh);
-        std::vector<double> gradient(x.size(), 0.0);
-        wall.add_gradient(x, 1, gradient);
-        std::vector<int> free_index(d.mesh.points.size());
-        std::iota(free_index.begin(), free_index.end(), 0);
-        std::vector<std::vector<int>> cliques;
-        wall.append_cliques(free_index, cliques);
-        const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
-        std::vector<double> hessian(pattern.entries(), 0.0);
-        wall.add_hessian(x, 1, free_index, pattern, hessian, false);
-
-        // Along one rough direction: the volume is a cubic, so central differences are exact but for rounding.
-        std::vector<double> direction(x.size());
-        for (std::size_t i = 0; i < x.size(); ++i) direction[i] = std::cos(12.9898 * static_cast<double>(i));
+        const std::vector<double> x = distorted(d.mesh);
+        const std::vector<double> direction = direction_of(x.size());
+        const std::vector<double> gradient = gradient_of(wall, x);
         double slope = 0;
         for (std::size_t i = 0; i < x.size(); ++i) slope += gradient[i] * direction[i];
         const double h = 1e-5;
-        std::vector<double> ahead = x;
-        std::vector<double> behind = x;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            ahead[i] += h * direction[i];
-            behind[i] -= h * direction[i];
-        }
-        CHECK((wall.volume(ahead) - wall.volume(behind)) / (2 * h) == doctest::Approx(slope).scale(0).epsilon(1e-5));
-        std::vector<double> gradient_ahead(x.size(), 0.0);
-        std::vector<double> gradient_behind(x.size(), 0.0);
-        wall.add_gradient(ahead, 1, gradient_ahead);
-        wall.add_gradient(behind, 1, gradient_behind);
-        double largest = 0;
-        double wrong = 0;
-        std::vector<double> product(x.size(), 0.0);
-        linalg::add_product(pattern, hessian, direction, 1, product);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const double expected = (gradient_ahead[i] - gradient_behind[i]) / (2 * h);
-            largest = std::max(largest, std::fabs(expected));
-            wrong = std::max(wrong, std::fabs(expected - product[i]));
-        }
-        CHECK(wrong < 1e-8 * largest);
+        const double rise = wall.volume(moved(x, direction, h)) - wall.volume(moved(x, direction, -h));
+        CHECK(rise / (2 * h) == doctest::Approx(slope).scale(0).epsilon(1e-5));
+        const std::vector<double> expected = gradient_slope(wall, x, direction);
+        CHECK(largest(moved(hessian_times(wall, x, direction), expected, -1)) < 1e-8 * largest(expected));
     }
 }
 
@@ -84,40 +106,15 @@ TEST_CASE("an open wall: symmetric and skew part together are the derivative of 
     Wall wall = d.chambers[0].wall;
     wall.faces.resize(wall.faces.size() / 3);
     REQUIRE_FALSE(is_closed(wall));
-    std::vector<double> x = distorted(d.mesh);
+    const std::vector<double> x = distorted(d.mesh);
     const ChamberSurface surface(wall, x);
-    std::vector<double> v(x.size());
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::cos(12.9898 * static_cast<double>(i));
-    std::vector<int> free_index(d.mesh.points.size());
-    std::iota(free_index.begin(), free_index.end(), 0);
-    std::vector<std::vector<int>> cliques;
-    surface.append_cliques(free_index, cliques);
-    const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
-    std::vector<double> hessian(pattern.entries(), 0.0);
-    surface.add_hessian(x, 1, free_index, pattern, hessian, false);
-    std::vector<double> product(x.size(), 0.0);
-    linalg::add_product(pattern, hessian, v, 1, product);
+    const std::vector<double> direction = direction_of(x.size());
     std::vector<double> skew(x.size(), 0.0);
-    surface.apply_skew(x, 1, v, skew);
-    const double h = 1e-5;
-    std::vector<double> ahead(x.size(), 0.0);
-    std::vector<double> behind(x.size(), 0.0);
-    std::vector<double> moved = x;
-    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = x[i] + h * v[i];
-    surface.add_gradient(moved, 1, ahead);
-    for (std::size_t i = 0; i < x.size(); ++i) moved[i] = x[i] - h * v[i];
-    surface.add_gradient(moved, 1, behind);
-    double largest = 0;
-    double wrong = 0;
-    double skewness = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double expected = (ahead[i] - behind[i]) / (2 * h);
-        largest = std::max(largest, std::fabs(expected));
-        wrong = std::max(wrong, std::fabs(expected - product[i] - skew[i]));
-        skewness = std::max(skewness, std::fabs(skew[i]));
-    }
-    CHECK(wrong < 1e-8 * largest);
-    CHECK(skewness > 1e-2 * largest);
+    surface.apply_skew(x, 1, direction, skew);
+    const std::vector<double> expected = gradient_slope(surface, x, direction);
+    const std::vector<double> both = moved(hessian_times(surface, x, direction), skew, 1);
+    CHECK(largest(moved(both, expected, -1)) < 1e-8 * largest(expected));
+    CHECK(largest(skew) > 1e-2 * largest(expected));
 }
 
 TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {

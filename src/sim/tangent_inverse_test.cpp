@@ -40,31 +40,41 @@ Eigen::VectorXd bent(const Equilibrium& system, double radius_m) {
     return x;
 }
 
+/// A pushed body bent to an arc: its tangent there, and what is out of balance.
+struct Bent {
+    Model model;
+    Equilibrium system{model};
+    TangentLayout layout = system.lay_out_tangent();
+    std::vector<double> values = std::vector<double>(layout.pattern.entries(), 0.0);
+    Eigen::VectorXd positions, out_of_balance;
+
+    Bent(const Description& d, double radius_m, bool project) : model(Model::create(d).value()) {
+        State state = system.rest();
+        state.x = bent(system, radius_m);
+        const Controls controls = system.controls(1);
+        system.add_tangent(state, controls, layout, values, project);
+        positions = system.restrict_to_free(state.x);
+        out_of_balance = system.restrict_to_free(system.evaluate(state, controls).out_of_balance);
+    }
+    Bent(const Bent&) = delete;
+    Bent& operator=(const Bent&) = delete;
+};
+
 }  // namespace
 
 TEST_CASE("two levels and the factor solve the tangent of a bent body alike, linear and quadratic") {
     for (const int order : {1, 2}) {
-        const auto model =
-            Model::create(pushed({0.06, 0.01, 0.01}, order == 1 ? 24 : 12, order == 1 ? 4 : 2, order, 1));
-        REQUIRE(model);
-        const Equilibrium system(*model);
-        State state = system.rest();
-        state.x = bent(system, 0.05);
-        const Controls controls = system.controls(1);
-        const TangentLayout layout = system.lay_out_tangent();
-        std::vector<double> values(layout.pattern.entries(), 0.0);
-        system.add_tangent(state, controls, layout, values, true);
-        const Eigen::VectorXd positions = system.restrict_to_free(state.x);
-        Eigen::MatrixXd columns(positions.size(), 2);
-        columns.col(0) = system.restrict_to_free(system.evaluate(state, controls).out_of_balance);
-        columns.col(1) = positions.array().sin();
+        const Bent b(pushed({0.06, 0.01, 0.01}, order == 1 ? 24 : 12, order == 1 ? 4 : 2, order, 1), 0.05, true);
+        Eigen::MatrixXd columns(b.positions.size(), 2);
+        columns.col(0) = b.out_of_balance;
+        columns.col(1) = b.positions.array().sin();
 
         Eigen::MatrixXd direct = columns, levels = columns;
-        const auto factor = make_direct_inverse(linalg::analyse(layout.pattern), true);
-        REQUIRE(factor->set(values, positions, TangentInverse::Effort::usual));
+        const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
+        REQUIRE(factor->set(b.values, b.positions, TangentInverse::Effort::usual));
         REQUIRE(factor->solve(direct) == TangentInverse::Outcome::solved);
-        const auto two = make_two_level_inverse(layout.pattern);
-        REQUIRE(two->set(values, positions, TangentInverse::Effort::usual));
+        const auto two = make_two_level_inverse(b.layout.pattern);
+        REQUIRE(two->set(b.values, b.positions, TangentInverse::Effort::usual));
         REQUIRE(two->solve(levels) == TangentInverse::Outcome::solved);
         for (const Eigen::Index k : {0, 1}) {
             const double energy = direct.col(k).dot(columns.col(k));
@@ -75,21 +85,12 @@ TEST_CASE("two levels and the factor solve the tangent of a bent body alike, lin
 }
 
 TEST_CASE("a tangent with negative directions is refused or found out by both") {
-    const auto model = Model::create(pushed({0.06, 0.01, 0.01}, 24, 4, 1, 1));
-    REQUIRE(model);
-    const Equilibrium system(*model);
-    State state = system.rest();
-    state.x = bent(system, 0.02);
-    const Controls controls = system.controls(1);
-    const TangentLayout layout = system.lay_out_tangent();
-    std::vector<double> values(layout.pattern.entries(), 0.0);
-    system.add_tangent(state, controls, layout, values, false);
-    const Eigen::VectorXd positions = system.restrict_to_free(state.x);
-    const auto factor = make_direct_inverse(linalg::analyse(layout.pattern), true);
-    REQUIRE_FALSE(factor->set(values, positions, TangentInverse::Effort::all));
-    const auto two = make_two_level_inverse(layout.pattern);
-    Eigen::MatrixXd column = system.restrict_to_free(system.evaluate(state, controls).out_of_balance);
-    if (two->set(values, positions, TangentInverse::Effort::usual))
+    const Bent b(pushed({0.06, 0.01, 0.01}, 24, 4, 1, 1), 0.02, false);
+    const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
+    REQUIRE_FALSE(factor->set(b.values, b.positions, TangentInverse::Effort::all));
+    const auto two = make_two_level_inverse(b.layout.pattern);
+    Eigen::MatrixXd column = b.out_of_balance;
+    if (two->set(b.values, b.positions, TangentInverse::Effort::usual))
         CHECK(two->solve(column) == TangentInverse::Outcome::indefinite);
 }
 

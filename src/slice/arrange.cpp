@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "slice/place.hpp"
+
 namespace pliant::slice {
 namespace {
 
@@ -20,20 +22,11 @@ void turn_pair(double& a, double& b, double degrees) {
     b = s * x + c * b;
 }
 
-Result<Box3> bounds_of_all(const std::vector<Body>& bodies) {
-    Box3 box;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const auto own = bounds(bodies[i], describe(bodies[i], i));
-        if (!own) return own;
-        if (own->empty()) continue;
-        box.add(own->low);
-        box.add(own->high);
-    }
-    return box;
-}
+constexpr int most_copies = 10000;
 
+/// So many find room in a row; endlessly many would of what has no size.
 int fitting(double room, double size, double spacing) {
-    return std::max(0, static_cast<int>(std::floor((room + spacing + 1) / (size + spacing))));
+    return static_cast<int>(std::clamp(std::floor((room + spacing + 1) / (size + spacing)), 0.0, 1.0 * most_copies));
 }
 
 }  // namespace
@@ -64,9 +57,9 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
 }
 
 Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster) {
-    constexpr int most = 10000;
-    if (count < 1 || count > most) return input_error("{} copies: must be 1 to {}", count, most);
-    if (!(spacing_um >= 0)) return input_error("copies {} um apart: must not be negative", spacing_um);
+    if (count < 1 || count > most_copies) return input_error("{} copies: must be 1 to {}", count, most_copies);
+    if (!(spacing_um >= 0 && std::isfinite(spacing_um)))
+        return input_error("copies {} um apart: must be a length from 0 on", spacing_um);
     if (count == 1) return {};
     const auto box = bounds_of_all(bodies);
     if (!box) return tl::unexpected(box.error());

@@ -37,3 +37,13 @@ TEST_CASE("copies fill rows, and too many are refused with the number that fits"
     CHECK(!repeat(bodies, 0, 500, raster).has_value());
     CHECK(!repeat(bodies, 2, -1, raster).has_value());
 }
+
+TEST_CASE("copies of what is flat, and with no room between them") {
+    const Raster raster{64, 48, 100};
+    mesh::TriMesh flat;
+    add_triangle(flat, {0, 0, 0}, {0, 1000, 0}, {0, 0, 1000});
+    std::vector<Body> bodies{{"soft", flat, "a"}};
+    REQUIRE(repeat(bodies, 100, 0, raster).has_value());
+    CHECK(bodies.size() == 100);
+    CHECK(bodies[99].surface_um.points[0] == Vec3{0, 0, 0});
+}

@@ -84,13 +84,7 @@ public:
             end = std::max(end, (set.end_row() + factor_ - 1) / factor_);
         }
         for (int row = first; row < end; ++row) add_row(row);
-        std::vector<MaterialImage> result;
-        for (std::size_t m = 0; m < images_.size(); ++m) {
-            if (images_[m].blank()) continue;
-            const std::int64_t sum = images_[m].value_sum();
-            result.push_back({static_cast<int>(m), std::move(images_[m]), sum, 0});
-        }
-        return result;
+        return lit_images(std::move(images_));
     }
 
 private:

@@ -77,15 +77,7 @@ public:
         }
     }
 
-    std::vector<MaterialImage> take() {
-        std::vector<MaterialImage> taken;
-        for (std::size_t m = 0; m < images_.size(); ++m) {
-            if (images_[m].blank()) continue;
-            const std::int64_t sum = images_[m].value_sum();
-            taken.push_back({static_cast<int>(m), std::move(images_[m]), sum, 0});
-        }
-        return taken;
-    }
+    std::vector<MaterialImage> take() { return lit_images(std::move(images_)); }
 
 private:
     static RunImage brightened(const RunImage& image, const std::vector<Pixel>& pixels) {
@@ -271,6 +263,16 @@ auto* find_image(Images& images, int material) {
 }
 
 }  // namespace
+
+std::vector<MaterialImage> lit_images(std::vector<RunImage> images) {
+    std::vector<MaterialImage> lit;
+    for (std::size_t m = 0; m < images.size(); ++m) {
+        if (images[m].blank()) continue;
+        const std::int64_t sum = images[m].value_sum();
+        lit.push_back({static_cast<int>(m), std::move(images[m]), sum, 0});
+    }
+    return lit;
+}
 
 const MaterialImage* find(const ComposedLayer& layer, int material) {
     return find_image(layer.images, material);

@@ -38,6 +38,9 @@ struct ComposedLayer {
     std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
 };
 
+/// The images (materials) that are not blank.
+[[nodiscard]] std::vector<MaterialImage> lit_images(std::vector<RunImage> images);
+
 /// The image of a material; null where the layer has none.
 [[nodiscard]] const MaterialImage* find(const ComposedLayer& layer, int material);
 [[nodiscard]] MaterialImage* find(ComposedLayer& layer, int material);

@@ -3,9 +3,8 @@
 #include <cmath>
 
 namespace pliant::slice {
-namespace {
 
-Result<Box3> box_of(std::span<const Body> bodies) {
+Result<Box3> bounds_of_all(std::span<const Body> bodies) {
     Box3 box;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const auto own = bounds(bodies[i], describe(bodies[i], i));
@@ -14,16 +13,14 @@ Result<Box3> box_of(std::span<const Body> bodies) {
         box.add(own->low);
         box.add(own->high);
     }
-    if (box.empty()) return input_error("there is no triangle to print");
     return box;
 }
 
-}  // namespace
-
 Result<std::vector<std::string>> place_on_platform(std::span<Body> bodies, const Raster& raster) {
     if (auto status = check(raster); !status) return tl::unexpected(status.error());
-    const auto box = box_of(bodies);
+    const auto box = bounds_of_all(bodies);
     if (!box) return tl::unexpected(box.error());
+    if (box->empty()) return input_error("there is no triangle to print");
     const Vec3 size = box->size();
     if (size.x > raster.width_um() + 1 || size.y > raster.height_um() + 1)
         return input_error("the part measures {:.3f} x {:.3f} mm, the image only {:.3f} x {:.3f} mm", size.x / 1000,

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "mesh/tri_mesh.hpp"
+#include "mesh/surface_shells.hpp"
 
 namespace pliant::slice::test {
 
@@ -54,9 +54,7 @@ inline mesh::TriMesh turned_inside_out(mesh::TriMesh mesh) {
 }
 
 inline mesh::TriMesh together(mesh::TriMesh a, const mesh::TriMesh& b) {
-    const int shift = static_cast<int>(a.points.size());
-    a.points.insert(a.points.end(), b.points.begin(), b.points.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    append(a, b);
     return a;
 }
 

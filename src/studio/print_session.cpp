@@ -166,7 +166,7 @@ Status PrintSession::take_port(const std::filesystem::path& job, const operate::
     return take(std::make_shared<Machine>(job, std::move(*ready), std::move(*station), port.device));
 }
 
-Status PrintSession::take(std::shared_ptr<Machine> made) {
+Status PrintSession::take(const std::shared_ptr<Machine>& made) {
     if (Status loaded = made->control.load(made->ready.job); !loaded) return loaded;
     made->control.serve_until_idle();
     // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
@@ -197,7 +197,7 @@ void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
     });
 }
 
-void PrintSession::end(std::shared_ptr<Machine> machine) {
+void PrintSession::end(const std::shared_ptr<Machine>& machine) {
     if (!machine) return;
     machine->ending = true;
     if (machine->watcher.joinable()) machine->watcher.join();
@@ -215,7 +215,8 @@ Status PrintSession::give_back() {
         const std::lock_guard lock(mutex_);
         machine_.reset();
     }
-    end(std::move(machine));
+    end(machine);
+    machine.reset();  // its device is free before anybody hears of it
     tell_(R"({"type":"machine"})");
     return {};
 }

@@ -54,10 +54,10 @@ public:
 
 private:
     struct Machine;
-    [[nodiscard]] Status take(std::shared_ptr<Machine> machine);
+    [[nodiscard]] Status take(const std::shared_ptr<Machine>& machine);
     void watch(const std::shared_ptr<Machine>& machine);
     [[nodiscard]] std::shared_ptr<Machine> machine() const;
-    void end(std::shared_ptr<Machine> machine);
+    void end(const std::shared_ptr<Machine>& machine);
 
     std::function<void(const std::string& json)> tell_;
     std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; gone with the session

@@ -2,10 +2,11 @@
 #include "studio/project_folder.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
+
+#include "core/test_folder.hpp"
 
 using namespace pliant::studio;
 namespace fs = std::filesystem;
@@ -14,7 +15,8 @@ namespace {
 
 /// A project with a neighbour that it must not see.
 struct Place {
-    fs::path base = fs::temp_directory_path() / ("pliant_project_" + std::to_string(::getpid()));
+    pliant::test::Folder folder{"project"};
+    fs::path base = folder.path();
     fs::path project = base / "project";
     Place() {
         fs::create_directories(project / "parts" / "deep" / "deeper");
@@ -25,10 +27,6 @@ struct Place {
             std::ofstream(base / name) << "x";
         fs::create_directory_symlink(base / "project_secret", project / "way_out");
         fs::create_symlink(base / "project_secret" / "s.toml", project / "link.toml");
-    }
-    ~Place() {
-        std::error_code ignored;
-        fs::remove_all(base, ignored);
     }
 };
 

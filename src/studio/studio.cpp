@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/files.hpp"
 #include "studio/examples.hpp"
@@ -96,23 +97,23 @@ Status Studio::edit(const std::string& text) {
     return {};
 }
 
+void Studio::take_back(std::vector<std::string>& from, std::vector<std::string>& to) {
+    to.push_back(std::exchange(document_.text, from.back()));
+    from.pop_back();
+    rebuild();
+}
+
 Status Studio::undo() {
     const std::lock_guard lock(mutex_);
     if (document_.undo.empty()) return input_error("there is nothing to undo");
-    document_.redo.push_back(document_.text);
-    document_.text = document_.undo.back();
-    document_.undo.pop_back();
-    rebuild();
+    take_back(document_.undo, document_.redo);
     return {};
 }
 
 Status Studio::redo() {
     const std::lock_guard lock(mutex_);
     if (document_.redo.empty()) return input_error("there is nothing to do again");
-    document_.undo.push_back(document_.text);
-    document_.text = document_.redo.back();
-    document_.redo.pop_back();
-    rebuild();
+    take_back(document_.redo, document_.undo);
     return {};
 }
 

@@ -71,6 +71,8 @@ private:
     Studio(ProjectFolder folder, std::string version);
     [[nodiscard]] Status start(const std::filesystem::path& file);
     [[nodiscard]] Status check_files(const std::string& text) const;
+    /// Goes to the last text of `from`; what there was goes to the end of `to`.
+    void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
     void rebuild();
     void greet(const std::shared_ptr<Connection>& connection);
 

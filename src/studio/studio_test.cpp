@@ -2,12 +2,13 @@
 #include "studio/studio.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "core/test_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::studio;
@@ -30,15 +31,12 @@ target = { shortening = "2 mm" }
 )";
 
 struct Project {
-    fs::path base = fs::temp_directory_path() / ("pliant_studio_test_" + std::to_string(::getpid()));
+    pliant::test::Folder folder{"studio"};
+    fs::path base = folder.path();
     Project() {
         fs::create_directories(base / "project");
         std::ofstream(base / "project" / "bar.toml") << bar;
         std::ofstream(base / "outside.stl") << "solid x\nendsolid x\n";
-    }
-    ~Project() {
-        std::error_code ignored;
-        fs::remove_all(base, ignored);
     }
 };
 

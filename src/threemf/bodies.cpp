@@ -5,56 +5,30 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/disjoint_sets.hpp"
+#include "mesh/surface_shells.hpp"
+
 namespace pliant::threemf {
 namespace {
 
-/// Which triangles hang together through points at the same place, as a number per triangle from 0 on.
-class ShellFinder {
-public:
-    explicit ShellFinder(const mesh::TriMesh& mesh) : root_(mesh.points.size()) {
-        std::iota(root_.begin(), root_.end(), 0);
-        std::vector<int> order(root_);
-        const auto place = [&](int i) {
-            const Vec3& p = mesh.points[static_cast<std::size_t>(i)];
-            return std::tuple(p.x, p.y, p.z);
-        };
-        std::sort(order.begin(), order.end(), [&](int a, int b) { return place(a) < place(b); });
-        for (std::size_t i = 1; i < order.size(); ++i) {
-            if (place(order[i]) == place(order[i - 1])) join(order[i], order[i - 1]);
-        }
-        for (const auto& t : mesh.triangles) {
-            join(t[0], t[1]);
-            join(t[0], t[2]);
-        }
+/// Which points hang together by triangles, or lie at the same place.
+DisjointSets shells_of(const mesh::TriMesh& mesh) {
+    std::vector<int> order(mesh.points.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto place = [&](int i) {
+        const Vec3& p = mesh.points[static_cast<std::size_t>(i)];
+        return std::tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return place(a) < place(b); });
+    DisjointSets sets(mesh.points.size());
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        if (place(order[i]) == place(order[i - 1])) sets.join(order[i], order[i - 1]);
     }
-    int root(int i) {
-        while (root_[static_cast<std::size_t>(i)] != i)
-            i = root_[static_cast<std::size_t>(i)] =
-                root_[static_cast<std::size_t>(root_[static_cast<std::size_t>(i)])];
-        return i;
+    for (const auto& t : mesh.triangles) {
+        sets.join(t[0], t[1]);
+        sets.join(t[0], t[2]);
     }
-
-private:
-    void join(int a, int b) {
-        root_[static_cast<std::size_t>(std::max(root(a), root(b)))] = std::min(root(a), root(b));
-    }
-    std::vector<int> root_;
-};
-
-mesh::TriMesh part_of(const mesh::TriMesh& mesh, const std::vector<std::size_t>& triangles) {
-    mesh::TriMesh part;
-    std::map<int, int> renumbered;
-    for (const std::size_t t : triangles) {
-        std::array<int, 3> corners{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const int old = mesh.triangles[t][i];
-            const auto [entry, fresh] = renumbered.try_emplace(old, static_cast<int>(part.points.size()));
-            if (fresh) part.points.push_back(mesh.points[static_cast<std::size_t>(old)]);
-            corners[i] = entry->second;
-        }
-        part.triangles.push_back(corners);
-    }
-    return part;
+    return sets;
 }
 
 std::string most_frequent(const Object& object) {
@@ -71,18 +45,18 @@ std::vector<Body> split_by_material(const Object& object, std::vector<std::strin
         const std::string material = !object.materials.empty() ? object.materials[0] : object.material;
         return {{object.name, material.empty() ? "default" : material, object.mesh, {}}};
     }
-    ShellFinder finder(object.mesh);
+    DisjointSets shells = shells_of(object.mesh);
     std::map<int, int> material_of_shell;  // -1: several
     for (std::size_t t = 0; t < object.mesh.triangles.size(); ++t) {
         const int m = object.material_of_triangle[t];
-        const auto [entry, fresh] = material_of_shell.try_emplace(finder.root(object.mesh.triangles[t][0]), m);
+        const auto [entry, fresh] = material_of_shell.try_emplace(shells.find(object.mesh.triangles[t][0]), m);
         if (!fresh && entry->second != m) entry->second = -1;
     }
     std::map<std::string, std::vector<std::size_t>> triangles_of;
     const std::string mixed = object.material.empty() ? most_frequent(object) : object.material;
     bool any_mixed = false;
     for (std::size_t t = 0; t < object.mesh.triangles.size(); ++t) {
-        const int m = material_of_shell[finder.root(object.mesh.triangles[t][0])];
+        const int m = material_of_shell[shells.find(object.mesh.triangles[t][0])];
         any_mixed = any_mixed || m < 0;
         triangles_of[m < 0 ? mixed : object.materials[static_cast<std::size_t>(m)]].push_back(t);
     }
@@ -93,7 +67,7 @@ std::vector<Body> split_by_material(const Object& object, std::vector<std::strin
                         object.name, object.materials.size(), mixed));
     std::vector<Body> bodies;
     for (const auto& [material, triangles] : triangles_of)
-        bodies.push_back({object.name, material, part_of(object.mesh, triangles), {}});
+        bodies.push_back({object.name, material, mesh::part_of(object.mesh, triangles), {}});
     return bodies;
 }
 

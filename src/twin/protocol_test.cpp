@@ -3,44 +3,21 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/test_text.hpp"
+#include "twin/test_peer.hpp"
 #include "twin/twin.hpp"
 
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
+using pliant::test::holds;
+using twin::test::Peer;
 
 namespace {
-
-struct Peer {
-    machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
-    Twin twin;
-    long number = 0;
-
-    explicit Peer(Options options = {}) : twin(printer, std::move(options)) { (void)twin.take_output(); }
-
-    std::string raw(const std::string& bytes, double wait_s = 0) {
-        twin.receive(bytes);
-        twin.advance_to(twin.now() + wait_s);
-        return twin.take_output();
-    }
-    std::string send(const std::string& command, double wait_s = 0) { return raw(line(++number, command), wait_s); }
-    static std::string line(long n, const std::string& command) {
-        const std::string body = fmt::format("N{} {}", n, command);
-        return fmt::format("{}*{}\n", body, checksum(body));
-    }
-    void home() {
-        for (const char* axis : {"G28 Z", "G28 X", "G28 Y"}) send(axis, 100);
-    }
-    [[nodiscard]] int z_um() const { return twin.interlock().position()[Axis::platform]; }
-};
 
 Options with(Options options, std::vector<Fault> faults) {
     options.faults = std::move(faults);
     return options;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

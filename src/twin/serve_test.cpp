@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "core/test_folder.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -41,7 +43,8 @@ struct Host {
 
 TEST_CASE("a host opens the device like a serial port, homes the machine a thousand times as fast, and comes back") {
     const auto printer = machine::load_printer("examples/printers/tower.toml").value();
-    const std::filesystem::path link = std::filesystem::temp_directory_path() / "pliant_serve_test";
+    const pliant::test::Folder folder("serve");
+    const std::filesystem::path link = folder / "printer";
     Twin twin(printer);
     std::atomic<bool> stop = false;
     {
@@ -67,7 +70,7 @@ TEST_CASE("a host opens the device like a serial port, homes the machine a thous
 }
 
 TEST_CASE("a link is not put over a file that is there") {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path();
-    CHECK_FALSE(Pty::open(folder));
+    const pliant::test::Folder folder("serve");
+    CHECK_FALSE(Pty::open(folder.path()));
     CHECK_FALSE(Pty::open(folder / "no such folder" / "x"));
 }

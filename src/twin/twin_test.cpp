@@ -3,49 +3,21 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/test_text.hpp"
 #include "machine/firmware.hpp"
+#include "twin/test_peer.hpp"
 
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
-
-namespace {
-
-struct Bench {
-    machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
-    Twin twin;
-    long number = 0;
-
-    explicit Bench(Options options = {}) : twin(printer, std::move(options)) { (void)twin.take_output(); }
-
-    /// Sends a numbered line; what comes back within `wait_s`.
-    std::string send(const std::string& command, double wait_s = 0) {
-        const std::string body = fmt::format("N{} {}", ++number, command);
-        return raw(fmt::format("{}*{}\n", body, checksum(body)), wait_s);
-    }
-    std::string raw(const std::string& bytes, double wait_s = 0) {
-        twin.receive(bytes);
-        twin.advance_to(twin.now() + wait_s);
-        return twin.take_output();
-    }
-    void home() {
-        send("G28 Z", 100);
-        send("G28 X", 100);
-        send("G28 Y", 100);
-    }
-};
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-}  // namespace
+using pliant::test::holds;
+using twin::test::Peer;
 
 TEST_CASE("it starts like Marlin and answers questions") {
     const auto printer = machine::load_printer("examples/printers/tower.toml").value();
     Twin twin(printer);
     CHECK(twin.take_output().substr(0, 6) == "start\n");
-    Bench b;
+    Peer b;
     CHECK(holds(b.send("M115"), "Cap:EMERGENCY_PARSER:1\nok\n"));
     CHECK(b.send("M118 E1 tok 5") == "echo:tok 5\nok\n");
     CHECK(b.send("M118 A1 x") == "//x\nok\n");
@@ -60,7 +32,7 @@ TEST_CASE("asked about its build it answers as a board that fits its machine, an
     for (const bool parser : {true, false}) {
         Options options;
         options.emergency_parser = parser;
-        Bench b(options);
+        Peer b(options);
         std::string answers;
         for (const char* query : {"M115", "M503", "M119", "M113"}) answers += b.send(query);
         CHECK(holds(answers, "echo:  M92 X525.21 Z800.00 Y315.13\n"));
@@ -69,14 +41,14 @@ TEST_CASE("asked about its build it answers as a board that fits its machine, an
         b.send("M113 S0");
         CHECK(holds(b.send("M113"), "echo:M113 S0\n"));
     }
-    Bench b;
+    Peer b;
     CHECK(holds(b.send("M119"), "z_max: open\n"));
     b.home();
     CHECK(holds(b.send("M119"), "z_max: TRIGGERED\n"));
 }
 
 TEST_CASE("a bad line gets Error, Resend and an ok; the right one is then taken") {
-    Bench b;
+    Peer b;
     CHECK(b.raw("N1 M400*1\n") == "Error:checksum mismatch, Last Line: 0\nResend: 1\nok\n");
     CHECK(b.send("M400") == "ok\n");
     // A duplicate asks for the next number.
@@ -85,7 +57,7 @@ TEST_CASE("a bad line gets Error, Resend and an ok; the right one is then taken"
 }
 
 TEST_CASE("ok comes when a move is queued, M400 when it is done, and busy in between") {
-    Bench b;
+    Peer b;
     b.home();
     const double start = b.twin.now();
     CHECK(b.send("G1 Z300 F1200") == "ok\n");
@@ -98,7 +70,7 @@ TEST_CASE("ok comes when a move is queued, M400 when it is done, and busy in bet
 }
 
 TEST_CASE("the queue holds four lines and the receive buffer what fits; the rest is lost") {
-    Bench b;
+    Peer b;
     std::string lines;
     for (int i = 0; i < 60; ++i) lines += "G4 P1\n";
     b.twin.receive(lines);
@@ -110,7 +82,7 @@ TEST_CASE("the queue holds four lines and the receive buffer what fits; the rest
 }
 
 TEST_CASE("what the interlocks forbid is refused, reported and recorded") {
-    Bench b;
+    Peer b;
     CHECK(holds(b.send("G1 X10"), "Error:interlock: the carriage moves before"));
     b.home();
     CHECK(holds(b.send("G1 Y10 X355.6"), "Error:interlock: the tower moves"));
@@ -121,7 +93,7 @@ TEST_CASE("what the interlocks forbid is refused, reported and recorded") {
 }
 
 TEST_CASE("M410 stops in mid-move and the axes must be homed again") {
-    Bench b;
+    Peer b;
     b.home();
     b.send("G1 Z300 F1200", 2.6);
     CHECK(b.raw("M410\n") == "ok\n");
@@ -130,7 +102,7 @@ TEST_CASE("M410 stops in mid-move and the axes must be homed again") {
 }
 
 TEST_CASE("M112 kills, only a reset revives") {
-    Bench b;
+    Peer b;
     CHECK(holds(b.raw("M112\n"), "Error:Printer halted. kill() called!"));
     CHECK(b.send("M114").empty());
     b.twin.reset();
@@ -140,11 +112,11 @@ TEST_CASE("M112 kills, only a reset revives") {
 }
 
 TEST_CASE("idle motors let go after two minutes unless M84 S0 was sent") {
-    Bench b;
+    Peer b;
     b.home();
     b.raw("", 121);
     CHECK(holds(b.send("G1 Z300"), "before it is homed"));
-    Bench kept;
+    Peer kept;
     kept.send("M84 S0");
     kept.home();
     kept.raw("", 121);
@@ -152,15 +124,15 @@ TEST_CASE("idle motors let go after two minutes unless M84 S0 was sent") {
 }
 
 TEST_CASE("faults on demand") {
-    Bench corrupt({false, 2, {{Fault::Kind::corrupt_byte, 1}}});
+    Peer corrupt({false, 2, {{Fault::Kind::corrupt_byte, 1}}});
     CHECK(holds(corrupt.send("M400"), "Error:"));
-    Bench lost({false, 2, {{Fault::Kind::lose_line, 1}}});
+    Peer lost({false, 2, {{Fault::Kind::lose_line, 1}}});
     CHECK(lost.send("M400").empty());
-    Bench no_ok({false, 2, {{Fault::Kind::lose_ok, 1}}});
+    Peer no_ok({false, 2, {{Fault::Kind::lose_ok, 1}}});
     CHECK(no_ok.send("M118 E1 a") == "echo:a\n");
-    Bench reset({false, 2, {{Fault::Kind::reset, 2}}});
+    Peer reset({false, 2, {{Fault::Kind::reset, 2}}});
     reset.send("M400");
     CHECK(holds(reset.send("M400"), "start\n"));
-    Bench advanced({true, 2, {}});
+    Peer advanced({true, 2, {}});
     CHECK(advanced.send("M400") == "ok N1 P15 B4\n");
 }

@@ -1,0 +1,60 @@
+// A controller that says anything at all: the host's link must come to an end, and say why where it does not like it.
+#include "host/link.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "bytes.hpp"
+
+namespace {
+
+using namespace pliant;
+
+class CountingClock final : public host::Clock {
+public:
+    [[nodiscard]] double now() const override { return now_s; }
+    void sleep(double seconds) override { now_s += seconds; }
+    double now_s = 0;
+};
+
+/// Hands the input out in pieces, some of them late; then it is silent.
+class AnyWire final : public host::Wire {
+public:
+    AnyWire(Bytes bytes, CountingClock& clock) : bytes_(bytes), clock_(clock) {}
+    [[nodiscard]] Status write(std::string_view) override { return {}; }
+    [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        const int length = bytes_.byte();
+        if (length == 0) {
+            clock_.now_s += std::max(timeout_s, 1e-3);
+            return std::string();
+        }
+        clock_.now_s += 1e-3;
+        return std::string(bytes_.text(static_cast<std::size_t>(length)));
+    }
+
+private:
+    Bytes bytes_;
+    CountingClock& clock_;
+};
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    CountingClock clock;
+    host::LinkOptions options;
+    options.boot_s = 0.5;
+    const bool asks_first = bytes.chance();
+    AnyWire wire(bytes, clock);
+    host::Link link(wire, clock, options);
+    if (asks_first) (void)link.last_line();
+    Status status = link.connect();
+    if (status) (void)link.introduce();
+    for (int i = 0; status && i < 6; ++i) status = link.send(i % 2 == 0 ? "G1 Z30" : "G1 Z20");
+    if (status) (void)link.ask("M119");
+    if (status) status = link.fence();
+    if (!status && status.error().message.empty()) __builtin_trap();
+    if (status) status = link.listen_for(1);
+    link.stop({"M107 P1"});
+    return 0;
+}
