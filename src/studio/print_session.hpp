@@ -38,11 +38,17 @@ public:
     [[nodiscard]] Status give_back();
     /// Of the virtual printer.
     [[nodiscard]] Status set_speed(double speed);
+    /// Opens or shuts the door of the virtual printer. Errors: there is none, or it has no door.
+    [[nodiscard]] Status set_door(bool open);
 
     /// One request of docs/reference/host-api.md; 404 while there is no machine.
     [[nodiscard]] host::ApiAnswer ask(std::string_view method, std::string_view path, std::string_view body);
     /// The machine and the job for the page: JSON.
     [[nodiscard]] std::string describe() const;
+    /// The part as far as it is printed, a packet (see GrowingPart): what has cured in the virtual printer, what has
+    /// been exposed at a port. From slab `from` on if the page knows that `revision`, else from the first. "": there is
+    /// no machine.
+    [[nodiscard]] std::string part(int revision, std::size_t from) const;
     [[nodiscard]] std::vector<std::string> news() const;
     /// Job and journal of the machine at hand; both empty while there is none.
     struct Files {
@@ -56,6 +62,8 @@ private:
     struct Machine;
     [[nodiscard]] Status take(std::shared_ptr<Machine> machine);
     void watch(const std::shared_ptr<Machine>& machine);
+    static void prepare_start(Machine& machine);
+    static void pour(Machine& machine);
     [[nodiscard]] std::shared_ptr<Machine> machine() const;
     void end(std::shared_ptr<Machine> machine);
 
