@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { job, mayDrive, post, say } from '../store';
+import { job, mayDrive, online, post, say } from '../store';
 import { clock } from '../make/plan';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
@@ -190,6 +190,20 @@ function Light() {
   );
 }
 
+/// What is shown is as old as the connection.
+function Lost() {
+  return (
+    <div class="prompt bad" role="alert" data-testid="lost">
+      <Icon name="warn" />
+      <span>
+        <b>This page has lost the studio</b>
+        What you see is old. A print goes on without this page, as long as the studio runs; if the studio has ended, the light is off and the machine stands still. To stop the
+        machine now, use its own switch.
+      </span>
+    </div>
+  );
+}
+
 const refillOf = (prompt: string | null) => info.value!.refills.find((r) => r.text === prompt);
 
 /// Why a paused print waits, and what a person has to do.
@@ -269,6 +283,7 @@ function Steering() {
           Emergency stop
         </button>
       </div>
+      {f.printing && <p class="quiet small-print">The print goes on when this page is closed. The studio must keep running, and its computer awake.</p>}
     </section>
   );
 }
@@ -492,6 +507,7 @@ export function Print() {
           <b>{i.machine.name}</b>
           <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>
+        {!online.value && <Lost />}
         <Progress />
         <Steering />
         {!busy.value && (now.value.job.canResume ? <GoOn /> : <Checklist />)}
