@@ -44,10 +44,13 @@ bool under_way(host::State state) {
 Status check_device(const std::string& device) {
     std::error_code error;
     const std::filesystem::path real = std::filesystem::canonical(device, error);
-    const bool terminal =
-        !error && real.string().starts_with("/dev/") && std::filesystem::is_character_file(real, error);
-    return terminal ? Status{}
-                    : input_error("device: \"{}\" is no serial port; one such as /dev/ttyACM0 is needed", device);
+    if (error)
+        return input_error(
+            "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
+            device);
+    if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
+        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
+    return {};
 }
 
 /// What watches over the machine, as far as its file says: switches with their names on the wire, door, emergency line.
