@@ -39,17 +39,20 @@ GrowingPart::GrowingPart(std::filesystem::path file, const operate::ReadyJob& jo
 }
 
 void GrowingPart::clear() {
+    {
+        const std::lock_guard lock(waiting_mutex_);
+        waiting_.clear();
+    }
     const std::lock_guard lock(mutex_);
     revisions_before_ = revision() + 1;
     part_ = empty_;
     seen_ = 0;
-    waiting_.clear();
     grown_ = true;
 }
 
 void GrowingPart::exposed(const host::Given& given) {
     if (!given.complete) return;
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(waiting_mutex_);
     waiting_.push_back(given);
 }
 
@@ -83,22 +86,45 @@ void GrowingPart::look_at(PacedTwin& twin, bool is_over) {
     grown_ = grown_ || !fresh.empty();
 }
 
+/// Precondition: archive_mutex_ is held.
+Result<job::Archive*> GrowingPart::archive() {
+    if (!archive_) {
+        Result<operate::OpenJob> open = operate::open_job(file_);
+        if (!open) return tl::unexpected(open.error());
+        archive_ = std::make_unique<job::Archive>(std::move(open->archive));
+    }
+    return archive_.get();
+}
+
+Result<std::string> GrowingPart::image(int layer, int material) {
+    const std::lock_guard lock(archive_mutex_);
+    const auto open = archive();
+    if (!open) return tl::unexpected(open.error());
+    const auto& layers = (*open)->manifest().layers;
+    if (layer >= 0 && layer < static_cast<int>(layers.size())) {
+        for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
+            if (entry.material == material) return (*open)->file(entry.file);
+        }
+    }
+    return input_error("layer {} has no image of material {}", layer, material);
+}
+
 /// Decodes what has been exposed; an image that cannot be read is left out.
 void GrowingPart::take_exposed() {
     for (std::size_t k = 0; k < most_at_once; ++k) {
         host::Given given;
         {
-            const std::lock_guard lock(mutex_);
+            const std::lock_guard lock(waiting_mutex_);
             if (waiting_.empty()) return;
             given = waiting_.front();
             waiting_.pop_front();
         }
-        if (!archive_) {
-            Result<operate::OpenJob> open = operate::open_job(file_);
-            if (!open) return;
-            archive_ = std::make_unique<job::Archive>(std::move(open->archive));
-        }
-        const Result<job::Image> image = operate::image_of(*archive_, given.layer, given.material);
+        const Result<job::Image> image = [&]() -> Result<job::Image> {
+            const std::lock_guard lock(archive_mutex_);
+            const auto open = archive();
+            if (!open) return tl::unexpected(open.error());
+            return operate::image_of(**open, given.layer, given.material);
+        }();
         if (!image) continue;
         const twin::Runs runs = twin::runs_of(*image);
         const auto [bottom_um, top_um] = heights_[static_cast<std::size_t>(given.layer)];

@@ -31,6 +31,8 @@ public:
     void recall(const std::filesystem::path& journal);
     /// What has cured since; `is_over`: no more light comes, the last layer is complete.
     void look_at(PacedTwin& twin, bool is_over);
+    /// One image of the job, PNG. Errors: there is none.
+    [[nodiscard]] Result<std::string> image(int layer, int material);
     /// {"type": "part", ...} if it has grown since the last call, else "".
     [[nodiscard]] std::string news();
     /// The slabs from `from` on, the last of which may still change; all of them if `revision` is not the present one.
@@ -41,19 +43,22 @@ public:
 
 private:
     void take_exposed();
+    [[nodiscard]] Result<job::Archive*> archive();
     [[nodiscard]] int revision() const { return revisions_before_ + part_.revision(); }
 
     std::filesystem::path file_;
-    std::unique_ptr<job::Archive> archive_;     ///< of its own, opened when it is needed: the print reads the other
+    std::mutex archive_mutex_;
+    std::unique_ptr<job::Archive> archive_;  ///< of its own, opened when it is needed: the print reads the other
+    std::mutex waiting_mutex_;               ///< of what the print leaves here: it must not wait for anything else
+    std::deque<host::Given> waiting_;
     std::vector<std::pair<int, int>> heights_;  ///< bottom and top of the job's layers, um
     std::vector<int> material_of_vat_;
 
     mutable std::mutex mutex_;
     const twin::CoarsePart empty_;
     twin::CoarsePart part_;
-    bool cured_ = false;    ///< else exposed
-    std::size_t seen_ = 0;  ///< layers of the twin's block
-    std::deque<host::Given> waiting_;
+    bool cured_ = false;        ///< else exposed
+    std::size_t seen_ = 0;      ///< layers of the twin's block
     int revisions_before_ = 0;  ///< of parts that are gone: a number never comes again
     bool grown_ = false;
 };

@@ -121,15 +121,17 @@ std::string command_of(std::string_view body) {
 
 /// Either a twin or a port.
 struct PrintSession::Machine {
-    Machine(std::filesystem::path file_, operate::ReadyJob ready_, twin::Options options, double speed)
-        : file(std::move(file_)),
+    Machine(const Order& order, operate::ReadyJob ready_, twin::Options options, double speed)
+        : file(order.job),
+          colours(order.colours),
           ready(std::move(ready_)),
           twin(std::make_unique<PacedTwin>(ready.printer, std::move(options), speed)),
           part(file, ready),
           control(setup()) {}
-    Machine(std::filesystem::path file_, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_,
+    Machine(const Order& order, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_,
             std::string device_)
-        : file(std::move(file_)),
+        : file(order.job),
+          colours(order.colours),
           ready(std::move(ready_)),
           port(std::move(port_)),
           device(std::move(device_)),
@@ -160,6 +162,7 @@ struct PrintSession::Machine {
     }
 
     std::filesystem::path file;
+    std::vector<std::string> colours;
     operate::ReadyJob ready;
     std::unique_ptr<PacedTwin> twin;
     std::unique_ptr<operate::PortStation> port;
@@ -201,10 +204,10 @@ report::PrintExtras PrintSession::extras() const {
     return extras;
 }
 
-Status PrintSession::take_twin(const std::filesystem::path& job, double speed) {
+Status PrintSession::take_twin(const Order& order, double speed) {
     if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
     if (Status status = give_back(); !status) return status;
-    Result<operate::ReadyJob> ready = operate::load_job(job);
+    Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready->archive, ready->printer.projector);
     if (!mask) return tl::unexpected(mask.error());
@@ -214,19 +217,20 @@ Status PrintSession::take_twin(const std::filesystem::path& job, double speed) {
     std::filesystem::create_directories(scratch_, error);
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     // A new virtual machine stands at its beginning: what another one had begun cannot be gone on with here.
-    ready->job.journal = scratch_ / fmt::format("twin_{}.journal", ++twins_);
+    ready->job.journal = scratch_ / fmt::format("twin_{}.journal", ++taken_);
     ready->job.sync_journal = false;
-    return take(std::make_shared<Machine>(job, std::move(*ready), std::move(options), speed));
+    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(options), speed));
 }
 
-Status PrintSession::take_port(const std::filesystem::path& job, const operate::PortOptions& port) {
+Status PrintSession::take_port(const Order& order, const operate::PortOptions& port) {
     if (Status status = check_device(port.device); !status) return status;
     if (Status status = give_back(); !status) return status;
-    Result<operate::ReadyJob> ready = operate::load_job(job);
+    Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
     auto station = operate::PortStation::open(port, *ready);
     if (!station) return tl::unexpected(station.error());
-    return take(std::make_shared<Machine>(job, std::move(*ready), std::move(*station), port.device));
+    ++taken_;
+    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(*station), port.device));
 }
 
 Status PrintSession::take(std::shared_ptr<Machine> made) {
@@ -346,6 +350,14 @@ std::string PrintSession::describe() const {
         vats.push_back({{"slot", use.slot}, {"resin", use.resin}, {"ml", use.resin_ml}, {"materials", use.materials}});
     for (const host::Refill& refill : machine->ready.job.refills)
         refills.push_back({{"layer", refill.layer}, {"slot", refill.slot}, {"text", refill.text}});
+    Json materials = Json::array();
+    const auto& listed = machine->ready.archive->manifest().materials;
+    for (std::size_t m = 0; m < listed.size(); ++m) {
+        materials.push_back({{"name", listed[m].name},
+                             {"resin", listed[m].resin},
+                             {"exposure_s", listed[m].exposure_s},
+                             {"colour", m < machine->colours.size() ? machine->colours[m] : ""}});
+    }
     long last = 0;
     const Json history = Json::parse(host::history_message(machine->control, last));
     return dumped({{"machine", printer_json(machine->ready.printer)},
@@ -353,12 +365,19 @@ std::string PrintSession::describe() const {
                    {"device", machine->device},
                    {"speed", machine->twin ? machine->twin->pace().speed() : 1},
                    {"file", machine->file.filename().string()},
-                   {"materials", machine->ready.job.materials},
+                   {"materials", materials},
+                   {"taken", taken_.load()},
                    {"job", machine->ready.job.name},
                    {"seconds", machine->ready.plan.seconds.total},
                    {"vats", vats},
                    {"refills", refills},
                    {"now", history["history"]}});
+}
+
+Result<std::string> PrintSession::image(int layer, int material) const {
+    const auto machine = this->machine();
+    if (!machine) return input_error("no machine has been taken");
+    return machine->part.image(layer, material);
 }
 
 std::string PrintSession::part(int revision, std::size_t from) const {

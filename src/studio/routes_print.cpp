@@ -23,7 +23,7 @@ double speed_of(const Request& request) {
 Response take_twin(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
-    return done(studio.print().take_twin(job->file, speed_of(request)));
+    return done(studio.print().take_twin({job->file, job->colours}, speed_of(request)));
 }
 
 /// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
@@ -50,7 +50,7 @@ Response take_port(Studio& studio, const Request& request) {
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
     }
-    return done(studio.print().take_port(job->file, port));
+    return done(studio.print().take_port({job->file, job->colours}, port));
 }
 
 Response journals(Studio& studio, const Request&) {
@@ -116,6 +116,18 @@ Response part(Studio& studio, const Request& request) {
     return {200, "application/octet-stream", std::move(packet)};
 }
 
+Response image(Studio& studio, const Request& request) {
+    const auto number = [&](const char* part) {
+        const std::string& text = request.parts.at(part);
+        int value = -1;
+        const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return code == std::errc() && end == text.data() + text.size() ? value : -1;
+    };
+    Result<std::string> png = studio.print().image(number("layer"), number("material"));
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
+}
+
 /// "/api/print/host/printer/axes" is the host's "/api/printer/axes".
 Response forward(Studio& studio, const Request& request) {
     std::string path = "/api/" + request.parts.at("what");
@@ -152,6 +164,8 @@ void add_print_routes(std::vector<Route>& routes) {
                       true, set_door, json});
     routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
                       "application/octet-stream", false, part});
+    routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
+                      false, image});
     // Whoever sees that something goes wrong may stop it.
     routes.push_back(
         {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {

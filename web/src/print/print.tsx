@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { job, mayDrive, online, post, say } from '../store';
+import { mayDrive, online, post, say } from '../store';
 import { clock } from '../make/plan';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
@@ -144,17 +144,16 @@ function GoOn() {
 /// Light of each material from the next layer on, and layers to be left out.
 function Light() {
   const n = now.value!;
-  const j = job.value;
   const i = info.value!;
   const [skip, setSkip] = useState('');
   if (!flags.value.printing && !flags.value.paused) return null;
   return (
     <details class="block fold" data-testid="light">
       <summary>Change the light</summary>
-      {i.materials.map((name, m) => (
+      {i.materials.map(({ name, colour, exposure_s }, m) => (
         <label class="field-row" key={name}>
           <span>
-            {j && <span class="swatch" style={{ background: j.colours[m] }} />}
+            <span class="swatch" style={{ background: colour }} />
             {name}
             {n.progress.exposures[m] > 0 && <span class="quiet"> changed</span>}
           </span>
@@ -164,7 +163,7 @@ function Light() {
               min={0}
               step="any"
               disabled={!mayDrive.value}
-              value={n.progress.exposures[m] || j?.manifest.materials[m]?.exposure_s || ''}
+              value={n.progress.exposures[m] || exposure_s}
               onChange={(e) => host('job/exposure', { material: m, seconds: Number(e.currentTarget.value) })}
             />
             <span class="unit">s</span>
@@ -328,17 +327,14 @@ function Progress() {
 
 function Picture() {
   const p = now.value!.progress;
-  const j = job.value;
-  const known = j && p.layer !== null && p.material !== null && j.manifest.layers[p.layer]?.images.some((i) => i.material === p.material);
+  const i = info.value!;
+  const known = p.layer !== null && p.material !== null;
+  const name = known ? i.materials[p.material!]?.name : '';
   return (
     <figure class={`picture ${p.lit ? 'lit' : ''}`}>
-      {known ? (
-        <img alt={`Layer ${p.layer}, ${j.manifest.materials[p.material!].name}`} src={`/api/job/layers/${p.layer}/${p.material}?job=${j.revision}`} />
-      ) : (
-        <div class="dark">no light yet</div>
-      )}
+      {known ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no light yet</div>}
       <figcaption>
-        {known ? j.manifest.materials[p.material!].name : ''}
+        {name}
         <span>{p.lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
       </figcaption>
     </figure>
@@ -362,14 +358,13 @@ function Machine3D() {
   const shown = useRef<MachineView | null>(null);
   const [near, setNear] = useState(false);
   const i = info.value!;
-  const j = job.value;
   useEffect(() => {
     if (!i.machine) return;
     const colours: Record<string, string> = {};
-    j?.manifest.materials.forEach((m, k) => (colours[m.resin] ??= j.colours[k]));
+    for (const m of i.materials) colours[m.resin] ??= m.colour;
     let view: MachineView;
     try {
-      view = new MachineView(canvas.current!, i.machine, colours, j?.colours ?? []);
+      view = new MachineView(canvas.current!, i.machine, colours, i.materials.map((m) => m.colour));
     } catch {
       return; // no WebGL: the print is steered without the picture
     }
@@ -381,7 +376,7 @@ function Machine3D() {
       shown.current = null;
       view.dispose();
     };
-  }, [i.machine, j?.revision, theme.value]);
+  }, [i.machine, theme.value]);
   return (
     <>
       <div class="machine-view">

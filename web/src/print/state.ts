@@ -54,7 +54,8 @@ export interface PrintInfo {
   device: string;
   speed: number;
   file: string;
-  materials: string[];
+  materials: { name: string; resin: string; exposure_s: number; colour: string }[];
+  taken: number; // tells this machine's pictures from those of the one before
   job: string;
   seconds: number;
   vats: { slot: number; resin: string; ml: number; materials: number[] }[];
