@@ -83,7 +83,7 @@ async function start(page) {
 
 test('an open door pauses the print and says so; an empty vat asks for resin; the part grows, and the report judges it', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
-  await takeTwin(page, '60');
+  await takeTwin(page, '10');
   // Before the start: what is listed is known, and an open door is no beginning.
   await state(page, 'door', 'shut');
   await state(page, 'switch-z_max', 'free').catch(() => state(page, 'switch-z_max', 'pressed'));
@@ -110,7 +110,7 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   assert.ok(await page.getByTestId('resume').isDisabled(), 'nothing goes on behind an open door');
   assert.equal(await page.locator('.picture.lit').count(), 0);
   const stopped = await layer(page);
-  await page.waitForTimeout(1000); // a minute on the machine's clock
+  await page.waitForTimeout(1500); // five layers on the machine's clock
   assert.equal(await layer(page), stopped);
   await page.getByTestId('move-door').click();
   await shown(page, () => /shut again/.test(document.querySelector('[data-testid=prompt]').textContent));
