@@ -137,6 +137,7 @@ struct ControlBench {
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
+    std::vector<host::Given> ended;  ///< lights, as the host has told
     host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
     std::unique_ptr<TwinClock> clock;
@@ -185,7 +186,8 @@ struct ControlBench {
             [this](int layer) {
                 if (after_layer) after_layer(layer);
             },
-            guarded ? &guard : nullptr};
+            guarded ? &guard : nullptr,
+            [this](const host::Given& given) { ended.push_back(given); }};
         life->on_death = [this] {
             guard.host_died();
             twin->light_off();

@@ -100,6 +100,28 @@ TEST_CASE("an emergency stop from another thread makes dark and reaches the mach
     CHECK(live.twin.take_output().find("ok") == std::string::npos);  // dead until it is reset
 }
 
+TEST_CASE("while the machine stands idle its switches are known, and follow the axes") {
+    Live live;
+    REQUIRE(live.control.connect());
+    const auto pressed = [&](const char* name) -> std::optional<bool> {
+        for (const machine::SwitchReading& reading : live.control.snapshot().switches) {
+            if (reading.name == name) return reading.pressed;
+        }
+        return std::nullopt;
+    };
+    REQUIRE(live.reaches([&] { return pressed("x_min") && pressed("z_max") && pressed("y_min"); }));
+    CHECK_FALSE(live.control.snapshot().door_open);  // this one has none
+    REQUIRE(live.reaches(host::State::idle));
+    REQUIRE(live.control.home({}));
+    REQUIRE(live.reaches(host::State::idle));
+    CHECK(live.reaches([&] { return pressed("z_max") == true && pressed("y_min") == true; }));
+    REQUIRE(live.control.jog(machine::Axis::platform, -20000, 0));
+    CHECK(live.reaches([&] { return pressed("z_max") == false; }));
+    REQUIRE(live.reaches(host::State::idle));
+    REQUIRE(live.control.disconnect());
+    CHECK(live.reaches([&] { return live.control.snapshot().switches.empty(); }));
+}
+
 TEST_CASE("a second host on the same port is refused while the first has it") {
     Live live;
     REQUIRE(live.control.connect());

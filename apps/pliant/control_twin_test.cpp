@@ -544,6 +544,23 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
     }
 }
 
+TEST_CASE("every light that has ended is told, broken off or whole") {
+    ControlBench b(faulty(twin::Fault::Kind::door_open, 4, 40), "tower", 5, with_door);
+    const Impatient person(b);
+    b.start();
+    REQUIRE(b.snapshot().finished);
+    std::size_t whole = 0, broken = 0;
+    for (const Given& given : b.ended) ++(given.complete ? whole : broken);
+    CHECK(whole == 10);
+    CHECK(broken == 1);
+    CHECK(b.ended.front().layer == 0);
+    CHECK(b.ended.back().layer == 4);
+    // The seconds of one that went on are those of all its pieces.
+    for (std::size_t k = 1; k < b.ended.size(); ++k) {
+        if (!b.ended[k - 1].complete) CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
+    }
+}
+
 TEST_CASE("a skipped layer gets no light") {
     ControlBench b;
     Person person(b, lit_on_layer(1), [&] {
@@ -560,7 +577,7 @@ TEST_CASE("a skipped layer gets no light") {
 
 TEST_CASE("resin is asked for before its layer, a picture is taken after every one") {
     ControlBench b;
-    b.refills = {{3, "refill the vat of slot 1 with x"}};
+    b.refills = {{3, 1, "refill the vat of slot 1 with x"}};
     std::vector<int> pictures;
     b.after_layer = [&](int layer) { pictures.push_back(layer); };
     b.new_host();

@@ -104,8 +104,10 @@ Result<int> print_on_twin(const Options& options) {
             return tl::unexpected(written.error());
     }
     if (!options.live.report.empty()) {
+        Result<report::CuredBlock> block = report::cured_block(bench.twin(), manifest, runs);
+        if (!block) return tl::unexpected(block.error());
         const report::PrintExtras extras{"virtual printer", "", record.lines_sent, record.resends,
-                                         twin::report_text(*report)};
+                                         std::make_shared<const report::CuredBlock>(std::move(*block))};
         const Result<std::string> page =
             report::print_report(job->archive, job->printer, journal_of(record, manifest, job->printer.name), extras);
         if (!page) return tl::unexpected(page.error());

@@ -207,12 +207,20 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     return ended;
 }
 
-/// The page about the print, as far as it went.
+/// The page about the print, as far as it went; `twin`: that it was printed on, or null.
 Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, const host::Snapshot& last,
-                    const std::string& findings) {
+                    twin::Twin* twin) {
     if (options.report.empty()) return {};
-    const report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware,
-                                     last.lines_sent, last.resends, findings};
+    report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware, last.lines_sent,
+                               last.resends, nullptr};
+    if (twin != nullptr) {
+        const twin::RunSource runs = [&](int layer, int material) {
+            return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
+        };
+        Result<report::CuredBlock> block = report::cured_block(*twin, ready.archive->manifest(), runs);
+        if (!block) return tl::unexpected(block.error());
+        extras.block = std::make_shared<const report::CuredBlock>(std::move(*block));
+    }
     const Result<std::string> page = report::print_report(options.job, ready.job.journal, extras);
     if (!page) return tl::unexpected(page.error());
     return write_file(options.report, *page);
@@ -251,9 +259,10 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     host::Control control(std::move(setup));
     const Result<Ended> ended = run(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
-    const Result<twin::Report> report = inspect_twin(machine.end(), ready);
+    twin::Twin& twin = machine.end();
+    const Result<twin::Report> report = inspect_twin(twin, ready);
     if (!report) return tl::unexpected(report.error());
-    if (Status written = write_report(options, ready, ended->last, twin::report_text(*report)); !written)
+    if (Status written = write_report(options, ready, ended->last, &twin); !written)
         return tl::unexpected(written.error());
     if (options.output.json)
         fmt::print("{}\n", twin::report_json(*report));
@@ -271,7 +280,7 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
     host::Control control(std::move(setup));
     const Result<Ended> ended = run(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
-    if (Status written = write_report(options, ready, ended->last, ""); !written)
+    if (Status written = write_report(options, ready, ended->last, nullptr); !written)
         return tl::unexpected(written.error());
     return ended->status;
 }

@@ -119,6 +119,7 @@ struct Control::State_ {
     [[nodiscard]] Status check_journal(const JournalFacts& facts) const;
     void finish(const Result<Ending>& ending);
     void show_machine();
+    void show_switches();
     void note_firmware();
     void fail(const Error& error);
     void look_at_journal();
@@ -455,8 +456,12 @@ void Control::serve() {
             }
         }
         Status status = s.desk.watch();
+        if (status) status = s.machine->ask_for_switches();
         if (status) status = s.machine->link().listen_for(idle_listen_s);
-        if (!status) s.fail(status.error());
+        if (!status)
+            s.fail(status.error());
+        else
+            s.show_switches();
     }
     s.close();
 }
@@ -515,6 +520,7 @@ void Control::State_::close() {
         s.firmware.clear();
         s.homed.fill(false);
         s.door_open.reset();
+        s.switches.clear();
         s.slot = 0;
     });
 }
@@ -561,7 +567,14 @@ void Control::State_::show_machine() {
         const auto vat = at.hooked_vat();
         s.slot = vat ? setup.printer.vats[static_cast<std::size_t>(*vat)].slot : 0;
         s.pump = at.pump_runs();
+    });
+    show_switches();
+}
+
+void Control::State_::show_switches() {
+    desk.update([&](Snapshot& s) {
         s.door_open = machine->door_open();
+        s.switches = machine->limit_switches();
     });
 }
 

@@ -66,9 +66,15 @@ json machine_json(const Snapshot& s) {
         axes[std::string(machine::axis_name(axis))] = {{"position", s.position[axis] / 1000.0},
                                                        {"homed", s.homed[index]}};
     }
-    return {{"axes", axes},           {"slot", s.slot},
-            {"pump", s.pump},         {"door", s.door_open ? json(*s.door_open ? "open" : "shut") : json(nullptr)},
-            {"firmware", s.firmware}, {"linesSent", s.lines_sent},
+    json switches = json::object();
+    for (const machine::SwitchReading& reading : s.switches) switches[reading.name] = reading.pressed;
+    return {{"axes", axes},
+            {"slot", s.slot},
+            {"switches", switches},
+            {"pump", s.pump},
+            {"door", s.door_open ? json(*s.door_open ? "open" : "shut") : json(nullptr)},
+            {"firmware", s.firmware},
+            {"linesSent", s.lines_sent},
             {"resends", s.resends}};
 }
 

@@ -16,6 +16,7 @@
 #include "host/print.hpp"
 #include "machine/interlock.hpp"
 #include "machine/printer.hpp"
+#include "machine/switches.hpp"
 
 namespace pliant::host {
 
@@ -48,7 +49,8 @@ struct Programs {
 /// Ask for resin before a layer.
 struct Refill {
     int layer = 0;
-    std::string text;  ///< "slot 2 needs 300 ml of rigid-flex"
+    int slot = 0;      ///< of the vat
+    std::string text;  ///< "refill the vat of slot 2 with rigid-flex"
 };
 
 /// A job as the host needs it.
@@ -64,6 +66,16 @@ struct PrintJob {
     bool sync_journal = true;       ///< false: a power cut may lose the end of the journal; for tests
 };
 
+/// Light of one image that has ended.
+struct Given {
+    int layer = 0, material = 0;
+    double seconds = 0;     ///< in all its pieces
+    bool complete = false;  ///< nothing of it is missing
+};
+
+/// Called by the working thread when a light has ended. Must not take long: nothing moves meanwhile.
+using LightHook = std::function<void(const Given& given)>;
+
 /// Called by the working thread when a layer has been lit and the platform has risen from it.
 using LayerHook = std::function<void(int layer)>;
 
@@ -77,6 +89,7 @@ struct ControlSetup {
     EmergencyLine* emergency_line = nullptr;  ///< the hardware's; may be null
     LayerHook after_layer;                    ///< may be empty
     Guard* guard = nullptr;                   ///< who makes dark if this program dies; may be null
+    LightHook after_light{};                  ///< may be empty
 };
 
 /// What to take for granted where the journal proves nothing.
@@ -135,8 +148,9 @@ struct Snapshot {
     std::array<bool, machine::axis_count> homed{};
     int slot = 0;  ///< of the vat in use; 0: none
     bool pump = false;
-    std::optional<bool> door_open;  ///< nullopt: not known, or the machine has no switch at its door
-    std::string prompt;             ///< what a person is asked to do before resume()
+    std::optional<bool> door_open;                 ///< nullopt: not known, or the machine has no switch at its door
+    std::vector<machine::SwitchReading> switches;  ///< limit switches that the printer file lists, as last heard
+    std::string prompt;                            ///< what a person is asked to do before resume()
     long lines_sent = 0;
     long resends = 0;
     long last_event = 0;  ///< number of the newest event

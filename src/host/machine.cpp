@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <map>
 
-#include "machine/switches.hpp"
-
 namespace pliant::host {
 namespace {
 
@@ -63,7 +61,11 @@ Position compare_position(const Printer& printer, const Interlock& state, std::s
 }
 
 Machine::Machine(Wire& wire, Clock& clock, const Printer& printer, const LinkOptions& options)
-    : clock_(clock), printer_(printer), link_(wire, clock, options), at_{Interlock(printer)} {}
+    : clock_(clock),
+      printer_(printer),
+      link_(wire, clock, options),
+      at_{Interlock(printer)},
+      pressed_(printer.limit_switches.size()) {}
 
 void Machine::keep(Journal* journal) {
     journal_ = journal;
@@ -95,17 +97,41 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before,
 // --- switches ------------------------------------------------------------------------------------------------------
 
 void Machine::hear(std::string_view line) {
-    if (!printer_.door.present()) return;
-    if (const auto reading = machine::parse_switch(line); reading && reading->name == printer_.door.input)
-        door_open_ = reading->pressed;
+    if (!has_switches()) return;
+    const auto reading = machine::parse_switch(line);
+    if (!reading) return;
+    if (reading->name == printer_.door.input) door_open_ = reading->pressed;
+    for (std::size_t i = 0; i < pressed_.size(); ++i) {
+        const auto names = machine::switch_names(printer_, printer_.limit_switches[i]);
+        if (std::find(names.begin(), names.end(), reading->name) != names.end()) pressed_[i] = reading->pressed;
+    }
+}
+
+std::vector<machine::SwitchReading> Machine::limit_switches() const {
+    std::vector<machine::SwitchReading> heard;
+    for (std::size_t i = 0; i < pressed_.size(); ++i) {
+        if (pressed_[i])
+            heard.push_back({machine::switch_names(printer_, printer_.limit_switches[i]).front(), *pressed_[i]});
+    }
+    return heard;
 }
 
 Status Machine::ask_for_door() {
     constexpr double every_s = 0.25;
-    if (!printer_.door.present() || !link_.is_quiet() || clock_.now() - door_asked_s_ < every_s) return {};
-    door_asked_s_ = clock_.now();
+    if (!printer_.door.present() || !link_.is_quiet() || clock_.now() - switches_asked_s_ < every_s) return {};
+    switches_asked_s_ = clock_.now();
     noted_ = false;
     return link_.send("M119");
+}
+
+/// Nothing of it is left on the wire when it returns: what comes next may begin a new session.
+Status Machine::ask_for_switches() {
+    constexpr double every_s = 1;
+    if (!has_switches() || clock_.now() - switches_asked_s_ < every_s) return {};
+    switches_asked_s_ = clock_.now();
+    noted_ = false;
+    const auto answers = link_.ask("M119");
+    return answers ? Status{} : tl::unexpected(answers.error());
 }
 
 /// Answers lose bytes: what is not named is asked for again before it counts as not there.

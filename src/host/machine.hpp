@@ -13,6 +13,7 @@
 #include "host/link.hpp"
 #include "machine/follow.hpp"
 #include "machine/printer.hpp"
+#include "machine/switches.hpp"
 
 namespace pliant::host {
 
@@ -52,10 +53,14 @@ public:
     [[nodiscard]] Status look_at_switches();
     /// Asks M119, four times a second at most and only if nothing is under way; hear() gets the answer.
     [[nodiscard]] Status ask_for_door();
+    /// Asks M119 of a machine that stands idle, once a second at most, and waits for the answer.
+    [[nodiscard]] Status ask_for_switches();
     /// Takes a line that the controller has said.
     void hear(std::string_view line);
     /// As last heard; nullopt: not yet, or there is no switch.
     [[nodiscard]] std::optional<bool> door_open() const { return door_open_; }
+    /// The limit switches that the printer file lists, in its order, as last heard; those not yet heard are left out.
+    [[nodiscard]] std::vector<machine::SwitchReading> limit_switches() const;
 
     [[nodiscard]] Status light_on() { return at_.lock.light_on(false); }
     void light_off() { at_.lock.light_off(); }
@@ -74,7 +79,8 @@ private:
     machine::Followed at_;
     Journal* journal_ = nullptr;
     std::optional<bool> door_open_;
-    double door_asked_s_ = 0;
+    std::vector<std::optional<bool>> pressed_;  ///< of every listed limit switch
+    double switches_asked_s_ = 0;
     bool noted_ = false;  ///< the journal knows which line the next step will have
 };
 

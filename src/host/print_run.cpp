@@ -195,6 +195,7 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
                                        {"done", fact.complete ? "1" : "0"},
                                        {"by", "host"}});
     fact.open_light = 0;
+    if (run_.setup.after_light) run_.setup.after_light({fact.layer, fact.material, fact.lit_s, fact.complete});
     if (!status) return status;
     if (!dark) return dark;
     return noted;
@@ -246,7 +247,7 @@ Status PrintRun::serve_wishes(std::size_t step) {
     if (Status status = keep_changes(); !status) return status;
     const Wishes wishes = run_.desk.wishes();
     if (wishes.cancel || wishes.suspend) return wish_to_end();
-    show_door();
+    show_switches();
     if (door_is_open()) return hold_for_door();
     if (wishes.pause_now || (wishes.pause_after && at_safe_point())) return pause("");
     return at_safe_point() ? between_layers(step) : Status{};
@@ -348,12 +349,15 @@ Status PrintRun::wait_for_resume() {
 Status PrintRun::listen_at_door(double seconds) {
     if (Status status = run_.machine.ask_for_door(); !status) return status;
     Status status = run_.machine.link().listen_for(seconds);
-    show_door();
+    show_switches();
     return status;
 }
 
-void PrintRun::show_door() {
-    run_.desk.update([&](Snapshot& s) { s.door_open = run_.machine.door_open(); });
+void PrintRun::show_switches() {
+    run_.desk.update([&](Snapshot& s) {
+        s.door_open = run_.machine.door_open();
+        s.switches = run_.machine.limit_switches();
+    });
 }
 
 /// Nothing is parked while the door is open. A suspended print stays as it is; a cancelled one waits, unless the host

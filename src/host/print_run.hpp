@@ -64,7 +64,7 @@ private:
     [[nodiscard]] Status listen_at_door(double seconds);
     [[nodiscard]] Result<Ending> wait_to_park(Ending ending);
     [[nodiscard]] bool door_is_open() const { return run_.machine.door_open().value_or(false); }
-    void show_door();
+    void show_switches();
     [[nodiscard]] Result<Ending> park(Ending ending);
     [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
     [[nodiscard]] double exposure_s(const machine::Expose& light) const;

@@ -11,7 +11,8 @@ namespace {
 std::vector<host::Refill> refills_of(const plan::Plan& plan) {
     std::vector<host::Refill> refills;
     for (const plan::RefillBefore& refill : plan.refills) {
-        refills.push_back({refill.layer, fmt::format("refill the vat of slot {} with {}", refill.slot, refill.resin)});
+        refills.push_back(
+            {refill.layer, refill.slot, fmt::format("refill the vat of slot {} with {}", refill.slot, refill.resin)});
     }
     return refills;
 }

@@ -268,9 +268,11 @@ std::string settings_section(const Printed& p) {
            "</pre></details>\n";
 }
 
-std::string findings_section(const PrintExtras& extras) {
-    if (extras.findings.empty()) return "";
-    return "<h2>What has cured</h2>\n<pre>" + escaped_lines(extras.findings) + "</pre>\n";
+Result<std::string> block_of(const Printed& p) {
+    if (!p.extras.block) return std::string();
+    return block_picture(*p.extras.block, p.archive.manifest(), p.printer.projector).map([&](const std::string& png) {
+        return block_section(*p.extras.block, png);
+    });
 }
 
 Result<std::string> pictures(const Printed& p) {
@@ -306,8 +308,10 @@ Result<std::string> print_report(const job::Archive& archive, const machine::Pri
     const Printed p{archive, printer, extras, std::move(*story), std::move(*plan), std::move(planned_at_s)};
     const Result<std::string> drawn = pictures(p);
     if (!drawn) return drawn;
-    return head(p) + heading(p) + tiles(p) + *drawn + happenings(p) + plots(p) + lights_table(p) + materials(p) +
-           findings_section(extras) + settings_section(p) + journal_section(journal) +
+    const Result<std::string> cured = block_of(p);
+    if (!cured) return cured;
+    return head(p) + heading(p) + tiles(p) + *drawn + *cured + happenings(p) + plots(p) + lights_table(p) +
+           materials(p) + settings_section(p) + journal_section(journal) +
            "<footer><p>Made by Pliant " PLIANT_VERSION
            ". Nothing on this page is loaded from a network.</p></footer>\n</main>\n</body>\n</html>\n";
 }

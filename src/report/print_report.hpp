@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "host/journal.hpp"
 #include "job/job.hpp"
 #include "machine/printer.hpp"
+#include "report/cured_block.hpp"
 
 namespace pliant::report {
 
@@ -20,7 +22,7 @@ struct PrintExtras {
     std::string firmware;  ///< as M115 names it
     long lines_sent = -1;
     long resends = -1;
-    std::string findings;  ///< of the virtual printer about what has cured: lines of text
+    std::shared_ptr<const CuredBlock> block;  ///< of the virtual printer; null: there is none
 };
 
 /// The page. Errors: a job that cannot be planned or drawn, a journal that tells of another job. Cost: every image is

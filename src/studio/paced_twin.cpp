@@ -11,33 +11,39 @@ constexpr double most_at_once_s = 0.05;  // of wall time: an emergency stop must
 /// The host's end of the wire. Waiting moves the twin's clock on.
 class TwinWire final : public host::Wire {
 public:
-    TwinWire(twin::Twin& twin, Pace& pace) : twin_(twin), pace_(pace) {}
+    TwinWire(SharedTwin& shared, Pace& pace) : shared_(shared), pace_(pace) {}
     [[nodiscard]] Status write(std::string_view bytes) override {
-        twin_.receive(bytes);
+        const std::lock_guard lock(shared_.mutex);
+        shared_.twin.receive(bytes);
         return {};
     }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
-        const double end_s = twin_.now() + std::min(timeout_s, most_at_once_s * pace_.speed());
+        std::unique_lock lock(shared_.mutex);
+        const double end_s = shared_.twin.now() + std::min(timeout_s, most_at_once_s * pace_.speed());
         for (;;) {
-            if (std::string said = twin_.take_output(); !said.empty()) return said;
-            const auto next = twin_.next_event();
+            if (std::string said = shared_.twin.take_output(); !said.empty()) return said;
+            const auto next = shared_.twin.next_event();
             if (!next || *next > end_s) break;
-            go(*next);
+            go(*next, lock);
         }
-        go(end_s);
-        return twin_.take_output();
+        go(end_s, lock);
+        return shared_.twin.take_output();
     }
     [[nodiscard]] Status reset() override {
-        twin_.reset();
+        const std::lock_guard lock(shared_.mutex);
+        shared_.twin.reset();
         return {};
     }
 
 private:
-    void go(double to_s) {
-        twin_.advance_to(to_s);
-        pace_.wait_for(twin_.now());
+    void go(double to_s, std::unique_lock<std::mutex>& lock) {
+        shared_.twin.advance_to(to_s);
+        const double now_s = shared_.twin.now();
+        lock.unlock();
+        pace_.wait_for(now_s);
+        lock.lock();
     }
-    twin::Twin& twin_;
+    SharedTwin& shared_;
     Pace& pace_;
 };
 
@@ -56,26 +62,38 @@ void Pace::wait_for(double virtual_s) {
     }
 }
 
-PacedTwin::PacedTwin(const machine::Printer& printer, double speed)
-    : twin_(printer), pace_(speed), projector_(twin_), clock_(twin_, pace_) {}
+PacedTwin::PacedTwin(const machine::Printer& printer, twin::Options options, double speed)
+    : shared_(printer, std::move(options)), pace_(speed), projector_(shared_), clock_(shared_, pace_) {}
 
 std::unique_ptr<host::Wire> PacedTwin::wire() {
-    return std::make_unique<TwinWire>(twin_, pace_);
+    return std::make_unique<TwinWire>(shared_, pace_);
 }
 
 Status PacedTwin::Projector::show(const job::Image& image) {
-    twin_.light_on(image);
+    const std::lock_guard lock(shared_.mutex);
+    shared_.twin.light_on(image);
     return {};
 }
 
 Status PacedTwin::Projector::black() {
-    twin_.light_off();
+    const std::lock_guard lock(shared_.mutex);
+    shared_.twin.light_off();
     return {};
 }
 
+double PacedTwin::Clock::now() const {
+    const std::lock_guard lock(shared_.mutex);
+    return shared_.twin.now();
+}
+
 void PacedTwin::Clock::sleep(double seconds) {
-    twin_.advance_to(twin_.now() + seconds);
-    pace_.wait_for(twin_.now());
+    double now_s = 0;
+    {
+        const std::lock_guard lock(shared_.mutex);
+        shared_.twin.advance_to(shared_.twin.now() + seconds);
+        now_s = shared_.twin.now();
+    }
+    pace_.wait_for(now_s);
 }
 
 }  // namespace pliant::studio

@@ -1,10 +1,11 @@
 // The virtual printer in this program, in the time of people: its clock runs at most `speed` times as fast as the
-// wall's, so that a print can be watched. All of it belongs to the thread that serves the print.
+// wall's, so that a print can be watched.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
 
 #include "host/devices.hpp"
 #include "twin/twin.hpp"
@@ -30,10 +31,17 @@ private:
     std::chrono::steady_clock::time_point due_ = std::chrono::steady_clock::now();
 };
 
+/// The twin, for one at a time: who serves the print, who opens its door, who looks at its block.
+struct SharedTwin {
+    explicit SharedTwin(const machine::Printer& printer, twin::Options options) : twin(printer, std::move(options)) {}
+    std::mutex mutex;
+    twin::Twin twin;
+};
+
 /// Wire, projector and clock of one twin. Errors: none.
 class PacedTwin {
 public:
-    PacedTwin(const machine::Printer& printer, double speed);
+    PacedTwin(const machine::Printer& printer, twin::Options options, double speed);
     PacedTwin(const PacedTwin&) = delete;
     PacedTwin& operator=(const PacedTwin&) = delete;
 
@@ -41,29 +49,35 @@ public:
     [[nodiscard]] host::Projector& projector() { return projector_; }
     [[nodiscard]] host::Clock& clock() { return clock_; }
     [[nodiscard]] Pace& pace() { return pace_; }
+    /// From any thread; the print stands still meanwhile.
+    template <class Do>
+    auto with(const Do& todo) {
+        const std::lock_guard lock(shared_.mutex);
+        return todo(shared_.twin);
+    }
 
 private:
     class Projector final : public host::Projector {
     public:
-        explicit Projector(twin::Twin& twin) : twin_(twin) {}
+        explicit Projector(SharedTwin& shared) : shared_(shared) {}
         [[nodiscard]] Status show(const job::Image& image) override;
         [[nodiscard]] Status black() override;
 
     private:
-        twin::Twin& twin_;
+        SharedTwin& shared_;
     };
     class Clock final : public host::Clock {
     public:
-        Clock(twin::Twin& twin, Pace& pace) : twin_(twin), pace_(pace) {}
-        [[nodiscard]] double now() const override { return twin_.now(); }
+        Clock(SharedTwin& shared, Pace& pace) : shared_(shared), pace_(pace) {}
+        [[nodiscard]] double now() const override;
         void sleep(double seconds) override;
 
     private:
-        twin::Twin& twin_;
+        SharedTwin& shared_;
         Pace& pace_;
     };
 
-    twin::Twin twin_;
+    SharedTwin shared_;
     Pace pace_;
     Projector projector_;
     Clock clock_;

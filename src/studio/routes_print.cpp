@@ -1,4 +1,5 @@
 // The print: which machine, and what the host's control may be asked for, docs/reference/host-api.md.
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "report/print_report.hpp"
@@ -22,7 +23,7 @@ double speed_of(const Request& request) {
 Response take_twin(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
-    return done(studio.print().take_twin(job->file, speed_of(request)));
+    return done(studio.print().take_twin({job->file, job->colours}, speed_of(request)));
 }
 
 /// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
@@ -49,7 +50,7 @@ Response take_port(Studio& studio, const Request& request) {
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
     }
-    return done(studio.print().take_port(job->file, port));
+    return done(studio.print().take_port({job->file, job->colours}, port));
 }
 
 Response journals(Studio& studio, const Request&) {
@@ -92,6 +93,41 @@ Response report_page(Studio& studio, const Request& request) {
     return {200, "text/html; charset=utf-8", std::move(*page), "print_report.html"};
 }
 
+Response set_door(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains("open") || !json["open"].is_boolean())
+        return error_response(422, "{\"open\": true or false} is needed");
+    return done(studio.print().set_door(json["open"].get<bool>()));
+}
+
+/// A number of the query, 0 if it is none.
+std::size_t number_of(const Request& request, const char* key) {
+    const auto found = request.query.find(key);
+    std::size_t number = 0;
+    if (found != request.query.end())
+        std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+    return number;
+}
+
+Response part(Studio& studio, const Request& request) {
+    std::string packet =
+        studio.print().part(static_cast<int>(number_of(request, "revision")), number_of(request, "from"));
+    if (packet.empty()) return error_response(404, "no machine has been taken");
+    return {200, "application/octet-stream", std::move(packet)};
+}
+
+Response image(Studio& studio, const Request& request) {
+    const auto number = [&](const char* part) {
+        const std::string& text = request.parts.at(part);
+        int value = -1;
+        const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return code == std::errc() && end == text.data() + text.size() ? value : -1;
+    };
+    Result<std::string> png = studio.print().image(number("layer"), number("material"));
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
+}
+
 /// "/api/print/host/printer/axes" is the host's "/api/printer/axes".
 Response forward(Studio& studio, const Request& request) {
     std::string path = "/api/" + request.parts.at("what");
@@ -124,6 +160,12 @@ void add_print_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
     routes.push_back({"POST", "/api/print/leave", "gives the machine back", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
+    routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or shuts the door of the virtual printer", json,
+                      true, set_door, json});
+    routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
+                      "application/octet-stream", false, part});
+    routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
+                      false, image});
     // Whoever sees that something goes wrong may stop it.
     routes.push_back(
         {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {

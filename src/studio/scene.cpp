@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/share.hpp"
 #include "report/colour.hpp"
 #include "sim/fields.hpp"
 #include "sim/simulate.hpp"
@@ -123,6 +124,7 @@ Scene::Scene(const robot::Robot& robot, const sim::Model& model) : robot_(robot)
     for (const robot::BodySpec& body : robot.bodies) region_material_.push_back(body.material);
     region_material_.resize(model.mesh().region_names.size(), -1);
     add_materials();
+    add_grades();
     sim::Trajectory rest;
     rest.steps.emplace_back();
     rest.steps.back().positions = model.mesh().points;
@@ -141,6 +143,31 @@ void Scene::add_materials() {
         material_.resize(surface_.vertex_node.size(), static_cast<std::uint32_t>(m));
         shown_.push_back(std::move(shown));
         parts_.push_back(std::move(part));
+    }
+}
+
+/// Graded bodies are drawn in the colours that they change between.
+void Scene::add_grades() {
+    const bool any =
+        std::any_of(robot_.bodies.begin(), robot_.bodies.end(), [](auto& b) { return b.blend.has_value(); });
+    if (!any) return;
+    other_ = material_;
+    share_.resize(material_.size());
+    std::size_t first = 0;
+    for (const report::Surface& part : parts_) {
+        for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+            const auto body = static_cast<std::size_t>(model_.mesh().region[static_cast<std::size_t>(part.tet[t])]);
+            if (body >= robot_.bodies.size() || !robot_.bodies[body].blend) continue;
+            const robot::PrintBlend& blend = *robot_.bodies[body].blend;
+            for (const int corner : part.triangles[t]) {
+                const std::size_t v = first + static_cast<std::size_t>(corner);
+                const Vec3& at = model_.mesh().points[static_cast<std::size_t>(surface_.vertex_node[v])];
+                other_[v] = static_cast<std::uint32_t>(blend.material);
+                share_[v] = static_cast<float>(
+                    share_along(blend.shares, robot_.unit_m * blend.from, robot_.unit_m * blend.to, at));
+            }
+        }
+        first += part.vertex_node.size();
     }
 }
 
@@ -168,12 +195,18 @@ std::string Scene::head() const {
     for (const sim::Marker& marker : d.markers)
         markers.push_back({{"name", marker.name},
                            {"rest", vector_json(mm * sim::position(marker.point, flat(model_.mesh().points)))}});
+    Json graded = Json::array();
+    for (const robot::BodySpec& body : robot_.bodies) {
+        if (body.blend)
+            graded.push_back({{"body", body.name}, {"material", body.material}, {"other", body.blend->material}});
+    }
     for (const report::Obstacle& obstacle : obstacles_)
         obstacles.push_back({{"name", obstacle.name}, {"open", obstacle.open}});
     const bool loaded = !d.loads.empty() || !d.pressures.empty() || norm(d.gravity_m_s2) > 0 ||
                         std::any_of(d.supports.begin(), d.supports.end(), [](const auto& s) { return s.moves(); });
     const Json json = {{"robot", robot_.name},
                        {"materials", materials},
+                       {"graded", graded},
                        {"actuators", actuators},
                        {"cable_points", cables},
                        {"supports", supports},
@@ -210,6 +243,10 @@ std::string Scene::packet(const std::string& extra) const {
     packet.add("rest", rest);
     packet.add("triangles", triangles);
     packet.add("material", material_);
+    if (!share_.empty()) {
+        packet.add("other", other_);
+        packet.add("share", share_);
+    }
     packet.add("support", support);
     packet.add("chamber_triangles", chamber_triangles);
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {

@@ -40,6 +40,7 @@ public:
 
 private:
     void add_materials();
+    void add_grades();
     void add_field(Packet& packet, const std::string& name, const std::vector<double>& tets) const;
     [[nodiscard]] std::string head() const;
 
@@ -50,6 +51,8 @@ private:
     std::vector<report::Surface> parts_;   ///< (materials)
     std::vector<std::vector<int>> shown_;  ///< (materials) region_material with all others void
     std::vector<std::uint32_t> material_;  ///< (vertices)
+    std::vector<std::uint32_t> other_;     ///< (vertices) what a graded body changes into, else its own material
+    std::vector<float> share_;             ///< (vertices) of that; empty: no body is graded
     std::vector<report::Obstacle> obstacles_;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/files.hpp"
+#include "machine/printer.hpp"
 #include "studio/examples.hpp"
 
 namespace pliant::studio {
@@ -22,6 +23,13 @@ std::string document_event(const Studio::Document& d) {
         {"unsaved", d.text != d.saved}, {"undo", d.undo.size()},
         {"redo", d.redo.size()},        {"accuracy", d.accuracy == Accuracy::preview ? "preview" : "fine"}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A printer file has its own place.
+Status check_kind(const std::string& text, const std::filesystem::path& file) {
+    if (!machine::parse_printer(text, file)) return {};
+    return input_error("{} is a printer file: choose it under Make, when the robot is sliced",
+                       file.filename().string());
 }
 
 }  // namespace
@@ -55,6 +63,7 @@ Status Studio::start(const std::filesystem::path& file) {
     }
     const Result<std::string> text = read_file(file, largest_robot);
     if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, file); !status) return status;
     const std::string name = file.filename().string();
     document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::preview, {}};
     // What the user's own file names lies where the user wants it.
@@ -141,6 +150,7 @@ Status Studio::open_file(const std::string& name) {
         return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
     const Result<std::string> text = read_file(*path, largest_robot);
     if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, *path); !status) return status;
     const std::lock_guard lock(mutex_);
     Document opened{name, *path, *text, *text, {}, {}, document_.accuracy, {}};
     std::swap(document_, opened);

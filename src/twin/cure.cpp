@@ -22,6 +22,12 @@ Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
     overcure_mm3_.resize(printer.vats.size());
 }
 
+void Cure::clear() {
+    const std::vector<double> left_ml = left_ml_;
+    *this = Cure(*printer_);
+    left_ml_ = left_ml;
+}
+
 double Cure::pixel_mm2() const {
     return printer_->projector.pixel_um * printer_->projector.pixel_um / 1e6;
 }

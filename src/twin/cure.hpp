@@ -58,6 +58,8 @@ public:
     }
     /// Closes the layer that is under way; called before the block is looked at.
     void finish();
+    /// The part is taken away; what is in the vats stays.
+    void clear();
     /// Resin that leaves a vat (negative: comes into it) in another way than by curing.
     void take_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] -= ml; }
     void set_level_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] = ml; }

@@ -43,6 +43,18 @@ double Fluids::enter(int vat, double vat_ml) {
     return film;
 }
 
+void Fluids::wipe() {
+    std::fill(film_ml_.begin(), film_ml_.end(), 0.0);
+}
+
+void Fluids::pour(int vat, double vat_ml, double ml) {
+    const double all = std::max(0.0, vat_ml) + ml;
+    if (ml <= 0 || all <= 0) return;
+    std::vector<double>& mixture = mixture_[static_cast<std::size_t>(vat)];
+    for (double& share : mixture) share *= (all - ml) / all;
+    mixture[static_cast<std::size_t>(own_[static_cast<std::size_t>(vat)])] += ml / all;
+}
+
 double Fluids::share(int vat, int resin) const {
     return mixture_[static_cast<std::size_t>(vat)][static_cast<std::size_t>(resin)];
 }

@@ -21,6 +21,11 @@ public:
     /// The part comes into a vat that holds `vat_ml`: what is left of the film mixes in. What the vat gains, in ml.
     double enter(int vat, double vat_ml);
 
+    /// The part is gone, and the film on it.
+    void wipe();
+    /// Fresh resin into a vat that holds `vat_ml`.
+    void pour(int vat, double vat_ml, double ml);
+
     /// Share of what a vat holds that is another resin than its own.
     [[nodiscard]] double foreign_share(int vat) const;
     /// Share of one resin in a vat.

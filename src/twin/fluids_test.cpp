@@ -43,6 +43,21 @@ TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat"
     CHECK(fluids.share(2, 0) == doctest::Approx(0.01));
 }
 
+TEST_CASE("fresh resin thins what has come in from elsewhere; a part that is taken away takes its film along") {
+    const auto printer = printer_with_film();
+    Fluids fluids(printer);
+    fluids.leave(0, 1000);
+    fluids.enter(1, 0.9);
+    REQUIRE(fluids.foreign_share(1) == doctest::Approx(0.1));
+    fluids.pour(1, 1, 3);
+    CHECK(fluids.foreign_share(1) == doctest::Approx(0.025));
+    fluids.pour(1, 4, 0);
+    CHECK(fluids.foreign_share(1) == doctest::Approx(0.025));
+    fluids.leave(1, 1000);
+    fluids.wipe();
+    CHECK(fluids.enter(2, 100) == 0);
+}
+
 TEST_CASE("faults are named on the command line") {
     CHECK(parse_fault("stall:40:90")->kind == Fault::Kind::stall);
     CHECK(parse_fault("stall:40:90")->n == 40);

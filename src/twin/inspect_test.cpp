@@ -70,6 +70,30 @@ TEST_CASE("the right layers pass, with the drawn volume") {
     CHECK(report_json(r).find("\"passed\": true") != std::string::npos);
 }
 
+TEST_CASE("the part is taken off, the vat filled again: the next print begins anew") {
+    const auto printer = small_tower();
+    Twin twin(printer);
+    print(twin, {0.05, 0.1});
+    REQUIRE(inspect(twin, half_job(), half_image).value().passed);
+    CHECK(twin.closed_layers().size() == 2);
+    twin.take_part_off();
+    CHECK(twin.closed_layers().empty());
+    CHECK(twin.log().exposures == 0);
+    CHECK(twin.cured().left_ml()[0] == doctest::Approx(700 - 0.4e-3));
+    twin.fill_vat(1);
+    twin.fill_vat(99);  // there is none
+    CHECK(twin.cured().left_ml()[0] == 700);
+    for (const double z : {0.05, 0.1}) {
+        twin.receive(fmt::format("G1 Z50\nG1 Z{:.3f}\n", z));
+        twin.advance_to(twin.now() + 100);
+        twin.light_on(half);
+        twin.advance_to(twin.now() + 2.5);
+        twin.light_off();
+    }
+    const Report again = inspect(twin, half_job(), half_image).value();
+    CHECK_MESSAGE(again.passed, report_text(again));
+}
+
 TEST_CASE("a missing layer, a wrong height, a short or a double light fail") {
     const Report missing = inspected({0.05});
     CHECK_FALSE(missing.passed);

@@ -334,6 +334,23 @@ TEST_CASE("machine: the door's switch is on its input, and light behind an open 
     CHECK(holds(says(), "y_max: open"));
 }
 
+TEST_CASE("machine: a door that somebody holds open is open until it is shut") {
+    Twin twin(machine::load_printer("examples/printers/single.toml").value());
+    const auto says = [&] {
+        (void)twin.take_output();
+        twin.receive("M119\n");
+        return twin.take_output();
+    };
+    CHECK(holds(says(), "y_max: open"));
+    twin.set_door(true);
+    twin.advance_to(1000);
+    CHECK(holds(says(), "y_max: TRIGGERED"));
+    twin.set_door(false);
+    CHECK(holds(says(), "y_max: open"));
+    twin.set_door(false);
+    CHECK(twin.log().mishaps.size() == 1);
+}
+
 TEST_CASE("machine: both fans run on their own; M112 switches everything off and drops the relay until a reset") {
     Peer p;
     p.send("M106 P0 S255");

@@ -329,6 +329,37 @@ void Twin::open_door() {
     mishap("somebody opens the door");
 }
 
+void Twin::set_door(bool open) {
+    if (open == door_is_open()) return;
+    if (open) {
+        door_opens_s_ = now_s_;
+        door_shuts_s_ = never;
+        mishap("somebody opens the door");
+    } else {
+        door_shuts_s_ = now_s_;
+    }
+}
+
+void Twin::fill_vat(int slot) {
+    const machine::Vat* vat = printer_.vat_of_slot(slot);
+    if (vat == nullptr) return;
+    const int index = static_cast<int>(vat - printer_.vats.data());
+    const double left_ml = std::max(0.0, cure_.left_ml()[static_cast<std::size_t>(index)]);
+    if (left_ml >= vat->fill_ml) return;
+    fluids_.pour(index, left_ml, vat->fill_ml - left_ml);
+    cure_.set_level_ml(index, vat->fill_ml);
+}
+
+void Twin::take_part_off() {
+    cure_.clear();
+    fluids_.wipe();
+    contamination_.clear();
+    log_ = {};
+    log_.fan_s.resize(printer_.fans.size());
+    part_vat_ = last_vat_ = -1;
+    residue_ = sprayed_s_ = 0;
+}
+
 /// The vat that really is under the platform, by index; -1: none is where it should be.
 int Twin::vat_under_light() const {
     const int hooked = interlock().hooked_vat().value_or(-1);

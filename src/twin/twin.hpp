@@ -90,6 +90,14 @@ public:
     /// When the firmware will say or do something next; nullopt while it waits for the host.
     [[nodiscard]] std::optional<double> next_event() const;
 
+    /// Somebody opens the door, or shuts it; nobody tells the controller, which only sees its switch.
+    void set_door(bool open);
+    /// Somebody fills the vat of a slot up to what the printer file has in it. No such slot: nothing happens.
+    void fill_vat(int slot);
+
+    /// Somebody takes the part away and cleans the platform: the next print begins with an empty block and log.
+    void take_part_off();
+
     void light_on(const job::Image& image);
     void light_off();
 
@@ -102,6 +110,8 @@ public:
     [[nodiscard]] const Screen& screen() const { return screen_; }
     /// The cured block, closed up to now.
     [[nodiscard]] const Cure& cured();
+    /// The layers of it that are closed already, while it still grows.
+    [[nodiscard]] const std::vector<CuredLayer>& closed_layers() const { return cure_.layers(); }
     [[nodiscard]] const Fluids& fluids() const { return fluids_; }
     /// One entry for each vat of each layer, in the order of printing.
     [[nodiscard]] const std::vector<Contamination>& contamination() const { return contamination_; }

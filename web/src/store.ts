@@ -78,7 +78,9 @@ export function wantFields(names: string[]) {
 }
 
 export async function api(path: string, options: RequestInit = {}): Promise<Response> {
-  const response = await fetch(path, { ...options, headers: { ...options.headers, 'X-Pliant-Page': page } });
+  const response = await fetch(path, { ...options, headers: { ...options.headers, 'X-Pliant-Page': page } }).catch(() => {
+    throw new Error('The studio does not answer. Is it still running, and this computer still connected to it?');
+  });
   if (!response.ok) {
     const body = (await response.json().catch(() => ({}))) as { error?: string };
     throw new Error(body.error ?? `the studio answered ${response.status}`);

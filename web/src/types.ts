@@ -24,6 +24,7 @@ export interface SceneHead {
   accuracy: 'preview' | 'fine';
   robot: string;
   materials: Material[];
+  graded: { body: string; material: number; other: number }[];
   actuators: Actuator[];
   cable_points: number[];
   supports: string[];

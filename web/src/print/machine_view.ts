@@ -1,6 +1,8 @@
 // The machine in 3D, from simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import type { Part } from './part';
+import { PartMesh } from './part_mesh';
 import type { MachineInfo, Now } from './state';
 
 const grey = 0x8f99a5;
@@ -14,12 +16,18 @@ export class MachineView {
   private readonly tower = new THREE.Group();
   private readonly cleaning = new THREE.Group();
   private readonly platform = new THREE.Group();
-  private readonly part: THREE.Mesh;
+  private readonly part: PartMesh;
+  private readonly shaft: THREE.Mesh;
+  private readonly floor: THREE.Mesh;
   private readonly light: THREE.Mesh;
   private readonly spray: THREE.Points;
   private readonly resize: ResizeObserver;
+  private near = false; // the part alone, not all of the machine
+  private seen = new THREE.Box3(); // of the part, when the camera was last placed for it
+  private last: Now | null = null;
 
-  constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, partSize: [number, number]) {
+  /// `colours` of what is in the vats, by resin; `materials`: those of the job.
+  constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[]) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -39,22 +47,23 @@ export class MachineView {
     this.world.add(this.cleaning);
     this.buildTower(w, d);
     this.platform.add(this.box(width, depth, 8, grey, 4));
-    this.platform.add(this.box(22, 22, machine.platform.height, 0x6b7580, 8 + machine.platform.height / 2));
-    this.part = this.box(partSize[0], partSize[1], 1, 0xd98f5c, -0.5);
-    this.platform.add(this.part);
+    this.shaft = this.box(22, 22, machine.platform.height, 0x6b7580, 8 + machine.platform.height / 2);
+    this.platform.add(this.shaft);
+    this.part = new PartMesh(machine.projector, materials.map((c) => new THREE.Color(c)));
+    this.platform.add(this.part.group);
     this.world.add(this.platform);
     this.light = new THREE.Mesh(
-      new THREE.PlaneGeometry(partSize[0], partSize[1]),
+      new THREE.PlaneGeometry(1, 1),
       new THREE.MeshBasicMaterial({ color: 0xffd75a, transparent: true, opacity: 0.95, side: THREE.DoubleSide }),
     );
     this.light.position.z = -2;
     this.world.add(this.light);
     this.spray = this.makeSpray(width, depth);
     this.cleaning.add(this.spray);
-    const floor = new THREE.Mesh(new THREE.CircleGeometry(4 * w, 64), new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.08 }));
-    floor.position.z = -h - 40 - this.depth();
-    this.world.add(floor);
-    this.look(w);
+    this.floor = new THREE.Mesh(new THREE.CircleGeometry(4 * w, 64), new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.08 }));
+    this.floor.position.z = -h - 40 - this.depth();
+    this.world.add(this.floor);
+    this.look();
     this.resize = new ResizeObserver(() => {
       const box = canvas.parentElement!.getBoundingClientRect();
       if (!box.width) return;
@@ -67,7 +76,30 @@ export class MachineView {
     this.resize.observe(canvas.parentElement!);
   }
 
-  private look(w: number) {
+  /// All of the machine, or the part alone.
+  lookAt(near: boolean) {
+    this.near = near;
+    this.seen.makeEmpty();
+    if (this.last) this.show(this.last);
+    if (near) this.lookAtPart();
+    else this.look();
+    this.draw();
+  }
+
+  /// Comes back to the part whenever it has outgrown what was seen.
+  private lookAtPart() {
+    const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-20, -20, -20), new THREE.Vector3(20, 20, 0)) : this.part.box.clone();
+    if (!this.seen.isEmpty() && this.seen.containsBox(box)) return;
+    const size = box.getSize(new THREE.Vector3()).length();
+    this.seen = box.clone().expandByScalar(0.25 * size);
+    const centre = box.getCenter(new THREE.Vector3()).add(new THREE.Vector3(0, 0, this.platform.position.z));
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).add(new THREE.Vector3(-0.7, -1.5, -0.35).multiplyScalar(1.5 * size));
+    this.controls.update();
+  }
+
+  private look() {
+    const w = this.machine.platform.width * 1.15;
     const reach = this.machine.store === 'tower' ? this.machine.carriage.tower - this.machine.carriage.print : 0;
     const size = Math.abs(reach) + 1.6 * w;
     // All of the tower is in sight: its vats hang below the one at hand.
@@ -137,33 +169,47 @@ export class MachineView {
     return spray;
   }
 
-  show(now: Now, partHeight: number, partColour: string) {
+  showPart(part: Part | null) {
+    this.part.show(part);
+    if (this.near) this.lookAtPart();
+    if (this.last) this.show(this.last);
+    else this.draw();
+  }
+
+  show(now: Now) {
+    this.last = now;
     const { carriage, tower, store } = this.machine;
     const at = (axis: string) => now.machine.axes[axis]?.position ?? 0;
     const reach = carriage.tower - carriage.print;
-    this.cleaning.visible = store === 'tower';
+    this.cleaning.visible = store === 'tower' && !this.near;
+    this.tower.visible = this.shaft.visible = this.floor.visible = !this.near;
     this.cleaning.position.x = at('carriage') - carriage.tower;
     for (const [slot, group] of this.vats) {
       const used = slot === now.machine.slot;
-      if (store !== 'tower') {
-        group.visible = used || this.vats.size === 1 || (now.machine.slot === 0 && slot === 1);
+      if (store !== 'tower' || this.near) {
+        group.visible = !this.near && ( used || this.vats.size === 1 || (now.machine.slot === 0 && slot === 1));
         continue;
       }
+      group.visible = true;
       const level = at('tower') - (tower.first + (slot - 1) * tower.pitch);
       group.position.set(used ? at('carriage') - carriage.print : reach, 0, used ? 0 : level);
     }
     this.tower.position.set(reach, 0, at('tower') - tower.first);
     const z = at('platform') - Math.max(this.machine.wall, 20) * 0.62;
-    this.platform.position.z = z;
-    const height = Math.max(partHeight, 0.01);
-    this.part.scale.z = height;
-    this.part.position.z = -height / 2;
-    this.part.visible = partHeight > 0;
-    (this.part.material as THREE.MeshStandardMaterial).color.set(partColour);
-    this.light.visible = now.progress.lit;
-    this.light.position.z = z - height - 0.6;
+    // The part alone stays where it is, and the eye with it.
+    this.platform.position.z = this.near ? 0 : z;
+    this.showLight(now);
     this.spray.visible = now.machine.pump;
     this.draw();
+  }
+
+  /// Under the part, as wide as it is; under the whole platform while nothing is there.
+  private showLight(now: Now) {
+    this.light.visible = now.progress.lit;
+    const { width, depth } = this.machine.platform;
+    const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-0.3 * width, -0.3 * depth, 0), new THREE.Vector3(0.3 * width, 0.3 * depth, 0)) : this.part.box;
+    this.light.position.set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, this.platform.position.z + box.min.z - 0.3);
+    this.light.scale.set(box.max.x - box.min.x, box.max.y - box.min.y, 1);
   }
 
   private draw() {
@@ -172,6 +218,7 @@ export class MachineView {
 
   dispose() {
     this.resize.disconnect();
+    this.part.dispose();
     this.controls.dispose();
     this.renderer.dispose();
   }

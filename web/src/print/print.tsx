@@ -2,10 +2,12 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { job, mayDrive, post, say } from '../store';
+import { mayDrive, online, post, say } from '../store';
 import { clock } from '../make/plan';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
+import { followPart, part } from './part';
+import { Safety } from './safety';
 import { busy, events, flags, host, info, load, now } from './state';
 import { TakeMachine } from './take';
 
@@ -54,6 +56,7 @@ function Checklist() {
     ['solution', 'cleaning solution is filled up, the drain is free'],
   ];
   const open = items.filter(([key]) => !ticks.value[key]).length;
+  const doorOpen = now.value!.machine.door === 'open';
   return (
     <section class="block">
       <h3>Before it starts</h3>
@@ -68,8 +71,8 @@ function Checklist() {
           </li>
         ))}
       </ul>
-      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready} onClick={() => host('job', { command: 'start' })}>
-        {open > 0 ? `${open} to check` : 'Start the print'}
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => host('job', { command: 'start' })}>
+        {doorOpen ? 'Shut the door first' : open > 0 ? `${open} to check` : 'Start the print'}
       </button>
     </section>
   );
@@ -141,17 +144,16 @@ function GoOn() {
 /// Light of each material from the next layer on, and layers to be left out.
 function Light() {
   const n = now.value!;
-  const j = job.value;
   const i = info.value!;
   const [skip, setSkip] = useState('');
   if (!flags.value.printing && !flags.value.paused) return null;
   return (
     <details class="block fold" data-testid="light">
       <summary>Change the light</summary>
-      {i.materials.map((name, m) => (
+      {i.materials.map(({ name, colour, exposure_s }, m) => (
         <label class="field-row" key={name}>
           <span>
-            {j && <span class="swatch" style={{ background: j.colours[m] }} />}
+            <span class="swatch" style={{ background: colour }} />
             {name}
             {n.progress.exposures[m] > 0 && <span class="quiet"> changed</span>}
           </span>
@@ -161,7 +163,7 @@ function Light() {
               min={0}
               step="any"
               disabled={!mayDrive.value}
-              value={n.progress.exposures[m] || j?.manifest.materials[m]?.exposure_s || ''}
+              value={n.progress.exposures[m] || exposure_s}
               onChange={(e) => host('job/exposure', { material: m, seconds: Number(e.currentTarget.value) })}
             />
             <span class="unit">s</span>
@@ -187,30 +189,66 @@ function Light() {
   );
 }
 
+/// What is shown is as old as the connection.
+function Lost() {
+  return (
+    <div class="prompt bad" role="alert" data-testid="lost">
+      <Icon name="warn" />
+      <span>
+        <b>This page has lost the studio</b>
+        What you see is old. A print goes on without this page, as long as the studio runs; if the studio has ended, the light is off and the machine stands still. To stop the
+        machine now, use its own switch.
+      </span>
+    </div>
+  );
+}
+
+const refillOf = (prompt: string | null) => info.value!.refills.find((r) => r.text === prompt);
+
+/// Why a paused print waits, and what a person has to do.
+function Waiting() {
+  const n = now.value!;
+  const prompt = n.progress.prompt;
+  const open = n.machine.door === 'open';
+  const refill = refillOf(prompt);
+  const vat = refill && info.value!.machine!.vats.find((v) => v.slot === refill.slot);
+  const [title, text] = open
+    ? ['The door is open', 'The light is off, pump and fans stand still, nothing moves. Shut the door; then the print can go on.']
+    : refill
+      ? ['Resin is needed', `Fill the vat of slot ${refill.slot} with ${vat?.resin ?? 'its resin'}${vat ? `, up to ${Math.round(vat.fill_ml)} ml` : ''}. Nothing moves meanwhile.`]
+      : prompt?.startsWith('the door')
+        ? ['The door is shut again', 'What is missing of the light is given when you go on.']
+        : prompt
+          ? ['The print waits for you', prompt]
+          : ['Paused', 'The part hangs clear of the vat. Nothing moves before you go on.'];
+  return (
+    <div class={`prompt ${open ? 'bad' : ''}`} role="alert" data-testid="prompt">
+      <Icon name={open || prompt ? 'warn' : 'pause'} />
+      <span>
+        <b>{title}</b>
+        {text}
+        {open && !info.value!.twin && ' The switch is not what keeps fingers safe: lamp and motors should lose their power too.'}
+      </span>
+    </div>
+  );
+}
+
 function Steering() {
   const n = now.value!;
   const f = flags.value;
   const [sure, setSure] = useState(false);
   return (
     <section class="block steering">
-      {n.progress.prompt && (
-        <div class="prompt" role="alert" data-testid="prompt">
-          <Icon name="warn" />
-          <span>{n.progress.prompt}</span>
-          <button class="primary small" disabled={!mayDrive.value} onClick={() => host('job', { command: 'resume' })}>
-            Done, go on
-          </button>
-        </div>
-      )}
+      {f.paused && <Waiting />}
       <div class="row left">
         {(f.printing || f.pausing) && (
           <button data-testid="pause" disabled={!mayDrive.value || f.pausing} onClick={() => host('job', { command: 'pause', action: 'pause' })}>
             <Icon name="pause" /> {f.pausing ? 'pausing…' : 'Pause'}
           </button>
         )}
-        {f.paused && !n.progress.prompt && (
-          <button class="primary" data-testid="resume" disabled={!mayDrive.value} onClick={() => host('job', { command: 'resume' })}>
-            <Icon name="play" /> Go on
+        {f.paused && (
+          <button class="primary" data-testid="resume" disabled={!mayDrive.value || n.machine.door === 'open'} onClick={() => host('job', { command: 'resume' })}>
+            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, go on' : 'Go on'}
           </button>
         )}
         {busy.value &&
@@ -244,6 +282,7 @@ function Steering() {
           Emergency stop
         </button>
       </div>
+      {f.printing && <p class="quiet small-print">The print goes on when this page is closed. The studio must keep running, and its computer awake.</p>}
     </section>
   );
 }
@@ -288,53 +327,77 @@ function Progress() {
 
 function Picture() {
   const p = now.value!.progress;
-  const j = job.value;
-  const known = j && p.layer !== null && p.material !== null && j.manifest.layers[p.layer]?.images.some((i) => i.material === p.material);
+  const i = info.value!;
+  const known = p.layer !== null && p.material !== null;
+  const name = known ? i.materials[p.material!]?.name : '';
   return (
     <figure class={`picture ${p.lit ? 'lit' : ''}`}>
-      {known ? (
-        <img alt={`Layer ${p.layer}, ${j.manifest.materials[p.material!].name}`} src={`/api/job/layers/${p.layer}/${p.material}?job=${j.revision}`} />
-      ) : (
-        <div class="dark">no light yet</div>
-      )}
+      {known ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no light yet</div>}
       <figcaption>
-        {known ? j.manifest.materials[p.material!].name : ''}
+        {name}
         <span>{p.lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
       </figcaption>
     </figure>
   );
 }
 
+/// What the 3D view knows of the part, and how.
+function PartCaption() {
+  const p = part.value;
+  if (!p || p.slabs.length === 0) return null;
+  const runs = p.slabs.reduce((sum, slab) => sum + slab.runs.length / 3, 0);
+  return (
+    <p class="part-caption" data-testid="part" data-runs={runs} data-height={p.height}>
+      <b>{p.height.toFixed(2)} mm</b> {p.kind === 'cured' ? 'cured in the virtual printer' : 'exposed; nobody has looked into the vat'}
+    </p>
+  );
+}
+
 function Machine3D() {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const shown = useRef<MachineView | null>(null);
+  const [near, setNear] = useState(false);
   const i = info.value!;
-  const j = job.value;
   useEffect(() => {
     if (!i.machine) return;
     const colours: Record<string, string> = {};
-    j?.manifest.materials.forEach((m, k) => (colours[m.resin] = j.colours[k]));
-    const size: [number, number] = [i.machine.platform.width * 0.36, i.machine.platform.depth * 0.3];
+    for (const m of i.materials) colours[m.resin] ??= m.colour;
     let view: MachineView;
     try {
-      view = new MachineView(canvas.current!, i.machine, colours, size);
+      view = new MachineView(canvas.current!, i.machine, colours, i.materials.map((m) => m.colour));
     } catch {
-      return;
+      return; // no WebGL: the print is steered without the picture
     }
-    const stop = now.subscribe((n) => {
-      if (!n) return;
-      const layer = n.progress.layer;
-      const height = layer === null || !j ? 0 : (j.manifest.layers[Math.min(layer, j.manifest.layers.length - 1)]?.z_um ?? 0) / 1000;
-      view.show(n, height, j?.colours[n.progress.material ?? 0] ?? '#d98f5c');
-    });
+    shown.current = view;
+    const stops = [followPart(), part.subscribe((p) => view.showPart(p)), now.subscribe((n) => n && view.show(n))];
+    view.lookAt(near);
     return () => {
-      stop();
+      for (const stop of stops) stop();
+      shown.current = null;
       view.dispose();
     };
-  }, [i, j?.revision, theme.value]);
+  }, [i.machine, theme.value]);
   return (
-    <div class="machine-view">
-      <canvas ref={canvas} tabIndex={0} aria-label="The machine in 3D" data-testid="machine-view" />
-    </div>
+    <>
+      <div class="machine-view">
+        <canvas ref={canvas} tabIndex={0} aria-label="The machine in 3D" data-testid="machine-view" />
+      </div>
+      <span class="segments view-of" role="group" aria-label="What is shown">
+        {([[false, 'Machine'], [true, 'Part']] as const).map(([only, name]) => (
+          <button
+            aria-pressed={near === only}
+            data-testid={`view-${name.toLowerCase()}`}
+            onClick={() => {
+              setNear(only);
+              shown.current?.lookAt(only);
+            }}
+          >
+            {name}
+          </button>
+        ))}
+      </span>
+      <PartCaption />
+    </>
   );
 }
 
@@ -439,10 +502,12 @@ export function Print() {
           <b>{i.machine.name}</b>
           <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>
+        {!online.value && <Lost />}
         <Progress />
         <Steering />
         {!busy.value && (now.value.job.canResume ? <GoOn /> : <Checklist />)}
         <Light />
+        <Safety />
         <section class="block row wrap">
           {i.twin && (
             <span class="segments" role="group" aria-label="Speed of the virtual printer">

@@ -24,6 +24,8 @@ export interface Now {
     axes: Record<string, { position: number; homed: boolean }>;
     slot: number;
     pump: boolean;
+    door: 'open' | 'shut' | null;
+    switches: Record<string, boolean>;
     firmware: string;
     linesSent: number;
     resends: number;
@@ -40,6 +42,10 @@ export interface MachineInfo {
   platform: { width: number; depth: number; height: number };
   tower: { slots: number; first: number; pitch: number };
   wall: number;
+  projector: { width: number; height: number; pixel: number; mirror_x: boolean; mirror_y: boolean; rotation: number; offset_x: number; offset_y: number };
+  switches: { axis: string; end: 'min' | 'max'; name: string }[];
+  door: string | null; // the input that its switch is at
+  emergency: { signal: 'none' | 'controller' | 'dtr' | 'rts' | 'file'; device: string; pin: number };
 }
 
 export interface PrintInfo {
@@ -48,11 +54,12 @@ export interface PrintInfo {
   device: string;
   speed: number;
   file: string;
-  materials: string[];
+  materials: { name: string; resin: string; exposure_s: number; colour: string }[];
+  taken: number; // tells this machine's pictures from those of the one before
   job: string;
   seconds: number;
   vats: { slot: number; resin: string; ml: number; materials: number[] }[];
-  refills: { layer: number; text: string }[];
+  refills: { layer: number; slot: number; text: string }[];
 }
 
 export const info = signal<PrintInfo | null>(null);

@@ -150,6 +150,15 @@ function Legend() {
             {m.name}
           </li>
         ))}
+        {scene.value?.head.graded.map((g) => {
+          const [a, b] = [g.material, g.other].map((m) => scene.value!.head.materials[m]);
+          return (
+            <li key={`graded ${g.body}`} data-testid={`graded-${g.body}`}>
+              <span class="swatch wide" style={{ background: `linear-gradient(to right, ${a.colour}, ${b.colour})` }} />
+              {g.body}: {a.name} to {b.name}
+            </li>
+          );
+        })}
       </ul>
     );
   const [low, high] = look.fieldRange.value;

@@ -318,7 +318,23 @@ export class RobotView {
     return values;
   }
 
+  /// Graded bodies have the colours of both materials, mixed as they are.
+  private mixColours() {
+    const scene = this.scene!;
+    if (!scene.has('share')) return;
+    const [own, other, share] = [scene.u32('material'), scene.u32('other'), scene.f32('share')];
+    const base = scene.head.materials.map((m) => new THREE.Color(m.colour));
+    const colours = this.body!.getAttribute('color') as THREE.BufferAttribute;
+    const mixed = new THREE.Color();
+    for (let v = 0; v < own.length; ++v) {
+      mixed.copy(base[own[v]]).lerp(base[other[v]], share[v]);
+      colours.setXYZ(v, mixed.r, mixed.g, mixed.b);
+    }
+    colours.needsUpdate = true;
+  }
+
   private updateColours() {
+    if (this.options?.field === 'material' && this.body && this.scene) this.mixColours();
     const values = this.fieldValues();
     if (!values || !this.body) return;
     const scale = this.options?.scale ?? 1;
@@ -381,7 +397,7 @@ export class RobotView {
   setOptions(options: ViewOptions) {
     this.options = options;
     if (!this.body || !this.scene) return;
-    const coloured = options.field !== 'material';
+    const coloured = options.field !== 'material' || this.scene.has('share');
     this.scene.head.materials.forEach((m, k) => {
       const outside = (this.meshes[0].material as THREE.MeshStandardMaterial[])[k];
       outside.vertexColors = coloured;

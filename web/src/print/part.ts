@@ -1,0 +1,86 @@
+// The part as far as it is printed: slabs of cells, fetched piece by piece as they grow.
+import { signal } from '@preact/signals';
+import { readPacket } from '../packet';
+import { api, onEvent } from '../store';
+
+interface Head {
+  kind: 'cured' | 'exposed';
+  revision: number;
+  from: number;
+  closed: number;
+  cell_px: number;
+  height_mm: number;
+}
+
+export interface Slab {
+  bottom: number; // mm below the platform
+  top: number;
+  runs: Uint32Array; // three numbers a run, see docs/reference/studio.md
+}
+
+export interface Part {
+  kind: 'cured' | 'exposed';
+  height: number;
+  cell_px: number;
+  revision: number;
+  slabs: Slab[];
+  changedFrom: number; // slabs before it are those of the part before, if the revision is the same
+}
+
+export const part = signal<Part | null>(null);
+
+let closed = 0;
+let fetching = false;
+let stale = false;
+let wanted = 0; // views that show it
+
+function take(buffer: ArrayBuffer) {
+  const packet = readPacket<Head>(buffer);
+  const { head } = packet;
+  const same = part.value !== null && part.value.revision === head.revision;
+  const slabs = same ? part.value!.slabs.slice(0, head.from) : [];
+  const heights = packet.f32('slabs');
+  const runs = packet.u32('runs');
+  let at = 0;
+  for (let s = 0; s < heights.length / 2; ++s) {
+    const first = at;
+    while (at < runs.length && (runs[at] & 0xffffff) === head.from + s) at += 3;
+    slabs.push({ bottom: heights[2 * s], top: heights[2 * s + 1], runs: runs.slice(first, at) });
+  }
+  closed = head.closed;
+  part.value = { kind: head.kind, height: head.height_mm, cell_px: head.cell_px, revision: head.revision, slabs, changedFrom: same ? head.from : 0 };
+}
+
+/// One request at a time: a page on a slow line gets larger steps.
+async function fetchPart() {
+  if (fetching) {
+    stale = true;
+    return;
+  }
+  fetching = true;
+  do {
+    stale = false;
+    try {
+      const known = part.value;
+      const answer = await api(`/api/print/part?revision=${known?.revision ?? -1}&from=${known ? closed : 0}`);
+      take(await answer.arrayBuffer());
+    } catch {
+      part.value = null; // no machine, or no studio: it is asked for again when there is news
+    }
+  } while (stale);
+  fetching = false;
+}
+
+onEvent((event) => {
+  if (event.type === 'machine') part.value = null;
+  if (wanted > 0 && (event.type === 'part' || event.type === 'machine')) void fetchPart();
+});
+
+/// While a view is open the part is kept up to date.
+export function followPart() {
+  ++wanted;
+  void fetchPart();
+  return () => {
+    --wanted;
+  };
+}

@@ -1,0 +1,62 @@
+// What watches over the machine, as its printer file has it: door, limit switches, the emergency line.
+import { mayDrive, post } from '../store';
+import { flags, info, now, type MachineInfo } from './state';
+
+/// What an emergency stop pulls.
+function lineText(line: MachineInfo['emergency'], twin: boolean): string {
+  const on = line.device ? ` (${line.device})` : '';
+  if (line.signal === 'controller') return `a relay at pin ${line.pin} of the board cuts the power when the firmware is killed`;
+  if (line.signal === 'none') return 'none: an emergency stop is the firmware’s (M112)';
+  const what = line.signal === 'file' ? `a pin of this computer${on}` : `the ${line.signal.toUpperCase()} line of a port of its own${on}`;
+  return twin ? `${what}; the virtual printer leaves it alone` : `${what} cuts the power, whatever the firmware does`;
+}
+
+function Door() {
+  const door = now.value!.machine.door;
+  const twin = info.value!.twin;
+  return (
+    <li class={door === 'open' ? 'bad' : ''} data-testid="door" data-state={door ?? 'unknown'}>
+      <span class={`lamp ${door === 'open' ? 'bad' : door === 'shut' ? 'good' : 'unknown'}`} />
+      <span>
+        <b>Door</b> {door === 'open' ? 'open' : door === 'shut' ? 'shut' : 'not known yet'}
+      </span>
+      {twin && door !== null && (
+        <button class="small" disabled={!mayDrive.value} data-testid="move-door" onClick={() => post('/api/print/door', { open: door !== 'open' })}>
+          {door === 'open' ? 'Shut it' : 'Open it'}
+        </button>
+      )}
+    </li>
+  );
+}
+
+export function Safety() {
+  const m = info.value!.machine!;
+  const read = now.value!.machine.switches;
+  const connected = flags.value.operational;
+  return (
+    <section class="block" data-testid="safety">
+      <h3>Switches</h3>
+      <ul class="switches">
+        {m.door && <Door />}
+        {m.switches.map((s) => {
+          const pressed = read[s.name];
+          return (
+            <li key={s.name} title={`M119 calls it ${s.name}`} data-testid={`switch-${s.name}`} data-state={pressed === undefined ? 'unknown' : pressed ? 'pressed' : 'free'}>
+              <span class={`lamp ${pressed === undefined ? 'unknown' : pressed ? 'busy' : 'good'}`} />
+              <span>
+                <b>{s.axis}</b> {s.end} {pressed === undefined ? (connected ? 'not read yet' : 'not known') : pressed ? 'pressed' : 'free'}
+              </span>
+            </li>
+          );
+        })}
+        {m.switches.length === 0 && <li class="quiet">The printer file lists no limit switches: the studio does not look at them.</li>}
+        <li data-testid="emergency-line">
+          <span class={`lamp ${m.emergency.signal === 'none' ? 'unknown' : 'good'}`} />
+          <span>
+            <b>Emergency line</b> {lineText(m.emergency, info.value!.twin)}
+          </span>
+        </li>
+      </ul>
+    </section>
+  );
+}

@@ -1,0 +1,103 @@
+// The mistakes of somebody who has never seen it: each ends in a sentence that says what is wrong and what would be right.
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settled, startBrowser, startStudio } from './studio.mjs';
+
+const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
+let folder;
+let browser;
+let studio;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'pliant_stranger_'));
+  copyFileSync(example('tutorial/finger.toml'), join(folder, 'finger.toml'));
+  copyFileSync(example('printers/single.toml'), join(folder, 'machine.toml'));
+  writeFileSync(join(folder, 'broken.zip'), 'this is no archive');
+  writeFileSync(join(folder, 'notes.toml'), 'hello = "world"\n');
+  studio = await startStudio(['finger.toml'], folder);
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await studio?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function open(page, name) {
+  await page.getByTestId('open').click();
+  await page.locator('.open-list .item', { hasText: name }).click();
+}
+async function told(page, text) {
+  await page
+    .waitForFunction((t) => new RegExp(t).test(document.querySelector('[data-testid=notice]')?.textContent ?? ''), text.source)
+    .catch(async () => assert.fail(`"${await page.getByTestId('notice').textContent({ timeout: 100 }).catch(() => '')}" is said, not ${text}`));
+}
+
+test('a printer file, a broken job and a file that is no robot are told apart, and the robot stays', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await open(page, 'machine.toml');
+  await told(page, /machine\.toml is a printer file: choose it under Make/);
+  await open(page, 'broken.zip');
+  await told(page, /broken\.zip/);
+  assert.match(await page.getByTestId('open').textContent(), /finger/);
+  await open(page, 'notes.toml');
+  await page.getByTestId('file-wrong').waitFor();
+  await page.getByTestId('tab-file').click();
+  assert.match(await page.getByTestId('problems').textContent(), /hello/);
+  await open(page, 'finger.toml');
+  await page.getByTestId('file-wrong').waitFor({ state: 'detached' });
+  await settled(page);
+});
+
+test('without a job there is nothing to print, and the page says where one is made', async (t) => {
+  const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
+  await page.getByText('There is no job yet').waitFor();
+  assert.equal(await page.getByTestId('take-twin').count(), 0);
+  await page.getByRole('link', { name: 'Slice the robot' }).click();
+  await page.getByTestId('slice').waitFor();
+  assert.deepEqual(wrong, []);
+});
+
+test('a port that is not there is named; one that does not answer too', async (t) => {
+  const { page } = await openPage(browser, `${studio.address}#make`, t);
+  await page.waitForFunction(() => window.pliant.scene.value !== null);
+  await page.getByTestId('option-layer').fill('1000');
+  await page.getByTestId('slice').click();
+  await page.waitForSelector('[data-testid=layer-view]');
+  await page.getByTestId('section-print').click();
+  await page.getByTestId('save-job').click();
+  await page.getByTestId('device').fill('/dev/ttyNOBODY7');
+  await page.getByTestId('projector').fill('light');
+  await page.getByTestId('take-port').click();
+  await told(page, /there is no \/dev\/ttyNOBODY7/);
+  await page.getByTestId('device').fill('/dev/null');
+  await page.getByTestId('take-port').click();
+  await page.waitForSelector('[data-testid=print-state]');
+  await page.waitForFunction(() => document.querySelector('[data-testid=print-state]').textContent === 'Error');
+  assert.match(await page.locator('.steer').innerText(), /\/dev\/null/);
+  assert.match(await page.getByTestId('known').textContent(), /the machine does not answer/);
+  assert.ok(await page.getByTestId('start').isDisabled());
+  await page.getByTestId('leave').click();
+  await page.getByTestId('take-port').waitFor();
+});
+
+test('a studio that is gone is said to be gone, in the middle of a print too', async (t) => {
+  const other = await startStudio(['finger.zip'], folder);
+  const { page } = await openPage(browser, `${other.address}#print`, t);
+  await page.getByTestId('take-speed').selectOption('60');
+  await page.getByTestId('take-twin').click();
+  await page.waitForSelector('[data-testid=print-state]');
+  for (const box of await page.locator('.checklist input').all()) await box.check();
+  await page.getByTestId('start').click();
+  await page.waitForFunction(() => document.querySelector('[data-testid=print-state]').textContent === 'Printing');
+  assert.equal(await page.getByTestId('lost').count(), 0);
+  other.child.kill('SIGKILL');
+  await page.getByTestId('lost').waitFor();
+  assert.match(await page.getByTestId('lost').textContent(), /lost the studio.*use its own switch/);
+  await page.getByTestId('emergency').click();
+  await told(page, /The studio does not answer/);
+});
