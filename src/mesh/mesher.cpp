@@ -10,6 +10,7 @@
 #include "mesh/size_field.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/surface_crossings.hpp"
+#include "mesh/surface_seams.hpp"
 #include "mesh/surface_shells.hpp"
 #include "mesh/surface_slivers.hpp"
 #include "mesh/tet_locator.hpp"
@@ -442,6 +443,21 @@ std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, doub
     return result;
 }
 
+/// Surfaces without the seams that rounding has left open, and a note for each that had some.
+std::vector<BodyGeometry> without_seams(std::span<const BodyGeometry> bodies, std::vector<std::string>& notes) {
+    std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
+    for (BodyGeometry& body : result) {
+        auto* surface = std::get_if<TriMesh>(&body.shape);
+        const std::size_t closed = surface == nullptr ? 0 : close_seams(*surface);
+        if (closed > 0)
+            notes.push_back(
+                fmt::format("body \"{}\": {} open edges of its surface were closed: their ends differ by less "
+                            "than a millionth of its size",
+                            body.name, closed));
+    }
+    return result;
+}
+
 }  // namespace
 
 Box3 bounds(const BodyGeometry& body) {
@@ -451,7 +467,9 @@ Box3 bounds(const BodyGeometry& body) {
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings, Progress& progress) {
     if (Status status = check_settings(drawn, settings); !status) return tl::unexpected(status.error());
-    const std::vector<BodyGeometry> bodies = with_solids(drawn, std::max(settings.close_gaps, 0.01 * settings.size));
+    std::vector<std::string> notes;
+    const std::vector<BodyGeometry> bodies =
+        with_solids(without_seams(drawn, notes), std::max(settings.close_gaps, 0.01 * settings.size));
     SizeField field(bodies, settings);
     const Result<Drawing> drawing = group_bodies(bodies, settings.size);
     if (!drawing) return tl::unexpected(drawing.error());
@@ -460,6 +478,7 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSetti
     Result<TetMesh> mesh = mesh_once(*drawing, settings, field, progress);
     if (mesh) mesh = close_gaps(*drawing, settings, field, std::move(*mesh), progress);
     if (!mesh) return mesh;
+    mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
     if (field.too_thin())
         mesh->notes.push_back(
             fmt::format("a wall is too thin for {} elements through it: edges go down to an eighth of the mesh size; "

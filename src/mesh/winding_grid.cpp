@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/surface_seams.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -12,33 +14,6 @@ constexpr double most_cells = 4e6;
 constexpr double most_work = 5e7;
 /// Of a box with more triangles the tree knows more quickly.
 constexpr std::size_t crowd = 48;
-
-/// True if the edges of the triangles do not cancel: then the surface has a border somewhere.
-bool has_border(const TriMesh& surface) {
-    struct Edge {
-        int low, high, sign;
-    };
-    std::vector<Edge> edges;
-    edges.reserve(3 * surface.triangles.size());
-    for (const auto& t : surface.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int a = t[k];
-            const int b = t[(k + 1) % 3];
-            if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
-        }
-    }
-    std::sort(edges.begin(), edges.end(),
-              [](const Edge& a, const Edge& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
-    for (std::size_t i = 0; i < edges.size();) {
-        int sum = 0;
-        std::size_t j = i;
-        for (; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
-            sum += edges[j].sign;
-        if (sum != 0) return true;
-        i = j;
-    }
-    return false;
-}
 
 using Corners = std::array<Vec3, 3>;
 
@@ -105,7 +80,7 @@ std::optional<int> growth(const Corners& t, const Vec3& a, const Vec3& b) {
 }  // namespace
 
 WindingGrid::WindingGrid(TriMesh surface) : tree_(std::move(surface)), box_(bounds(tree_.surface())) {
-    if (tree_.surface().triangles.empty() || has_border(tree_.surface())) return;
+    if (tree_.surface().triangles.empty() || !border_edges(tree_.surface()).empty()) return;
     choose_cells();
     list_triangles();
     find_references();
