@@ -10,7 +10,6 @@ namespace {
 
 /// What is left of the rounding of a quantity to metres, in micrometres.
 constexpr double rounding_um = 1e-6;
-constexpr double longest_m = 1e6;
 
 /// Whether the whole text is a number of the type of `number`.
 template <class Number>
@@ -25,8 +24,9 @@ Result<double> length_um(const char* option, const std::string& text, double oth
     if (text.empty()) return otherwise;
     const Result<double> length = parse_quantity(text, Dimension::length);
     if (!length) return input_error("{}: {}", option, length.error().message);
-    if (!(std::fabs(*length) <= longest_m)) return input_error("{} {}: is longer than 1000 km", option, text);
-    return *length * 1e6;
+    const double um = *length * 1e6;
+    if (!std::isfinite(um)) return input_error("{} {}: is no length of this world", option, text);
+    return um;
 }
 
 Result<double> length_um(const char* option, const std::string& text, double otherwise, double least_um,

@@ -7,8 +7,7 @@
 
 namespace pliant::prepare {
 
-/// A length with its unit, in micrometres, at most 1000 km; `otherwise` where the text is empty. Errors name the
-/// option.
+/// A length with its unit, in micrometres; `otherwise` where the text is empty. Errors name the option.
 [[nodiscard]] Result<double> length_um(const char* option, const std::string& text, double otherwise);
 
 /// The same, from `least_um` to `most_um`.

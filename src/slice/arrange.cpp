@@ -74,7 +74,8 @@ Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Ras
             static_cast<long long>(fitting(raster.width_um(), size.x, spacing_um)) * rows);
     const std::vector<Body> part = bodies;
     for (int n = 1; n < count; ++n) {
-        const Vec3 shift{n % columns * (size.x + spacing_um), n / columns * (size.y + spacing_um), 0};
+        const int column = n % columns, row = n / columns;
+        const Vec3 shift{column * (size.x + spacing_um), row * (size.y + spacing_um), 0};
         for (std::size_t i = 0; i < part.size(); ++i) {
             bodies.push_back(part[i]);
             if (!part[i].name.empty()) bodies.back().name += fmt::format(" #{}", n + 1);
