@@ -48,6 +48,9 @@ async function bounds(job: Job, layers: number[]): Promise<number[]> {
   return box;
 }
 
+/// At the first layer, where the slider stands in the beginning, the whole part is seen.
+const isSeen = (l: number, upTo: number) => upTo === 0 || l <= upTo;
+
 export function Stack({ job }: { job: Job }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const sheets = useRef<{ layer: number; mesh: THREE.Mesh }[]>([]);
@@ -107,7 +110,7 @@ export function Stack({ job }: { job: Job }) {
           new THREE.MeshBasicMaterial({ map: texture, alphaTest: 0.5, side: THREE.DoubleSide, color: new THREE.Color(shade, shade, shade) }),
         );
         mesh.position.z = layers[l].z_um / 1000;
-        mesh.visible = l <= Math.max(layer.peek(), 0) || layer.peek() === 0;
+        mesh.visible = isSeen(l, layer.peek());
         sheets.current.push({ layer: l, mesh });
         world.add(mesh);
         setDone((100 * sheets.current.length) / shown.length);
@@ -124,19 +127,20 @@ export function Stack({ job }: { job: Job }) {
   }, [job.revision, theme.value]);
 
   useEffect(() => {
-    for (const s of sheets.current) s.mesh.visible = s.layer <= layer.value;
+    for (const s of sheets.current) s.mesh.visible = isSeen(s.layer, layer.value);
     redraw.current();
   }, [layer.value]);
 
   const count = job.manifest.layers.length;
+  const top = Math.min(layer.value, count - 1);
   return (
     <div class="layers">
       <div class="canvas">
         <canvas ref={canvas} tabIndex={0} aria-label="The layers in 3D" data-testid="stack-view" data-done={done >= 100} />
       </div>
       <div class="layer-info">
-        <b>up to layer {Math.min(layer.value, count - 1)}</b>
-        <span class="quiet">{done < 100 ? `stacking, ${Math.round(done)} %` : `${(((job.manifest.layers[Math.min(layer.value, count - 1)]?.z_um ?? 0) / 1000)).toFixed(2)} mm`}</span>
+        <b>{layer.value === 0 ? `all ${count} layers` : `up to layer ${top}`}</b>
+        <span class="quiet">{done < 100 ? `stacking, ${Math.round(done)} %` : `${((job.manifest.layers[layer.value === 0 ? count - 1 : top]?.z_um ?? 0) / 1000).toFixed(2)} mm`}</span>
       </div>
       <input class="upright" type="range" aria-label="Layer" min={0} max={Math.max(count - 1, 1)} step={1} value={layer.value} style={{ '--at': `${(100 * layer.value) / Math.max(count - 1, 1)}%` }} onInput={(e) => (layer.value = Number(e.currentTarget.value))} />
     </div>

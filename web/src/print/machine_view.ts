@@ -25,6 +25,8 @@ export class MachineView {
   private near = false; // the part alone, not all of the machine
   private seen = new THREE.Box3(); // of the part, when the camera was last placed for it
   private last: Now | null = null;
+  private shown = ''; // what of it is in the picture
+  private frame = 0;
 
   /// `colours` of what is in the vats, by resin; `materials`: those of the job.
   constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[]) {
@@ -79,6 +81,7 @@ export class MachineView {
   /// All of the machine, or the part alone.
   lookAt(near: boolean) {
     this.near = near;
+    this.shown = '';
     this.seen.makeEmpty();
     if (this.last) this.show(this.last);
     if (near) this.lookAtPart();
@@ -172,12 +175,18 @@ export class MachineView {
   showPart(part: Part | null) {
     this.part.show(part);
     if (this.near) this.lookAtPart();
+    this.shown = '';
     if (this.last) this.show(this.last);
     else this.draw();
   }
 
+  /// What has not changed is not drawn again.
   show(now: Now) {
     this.last = now;
+    const { axes, slot, pump } = now.machine;
+    const picture = JSON.stringify([Object.values(axes).map((a) => a.position), slot, pump, now.progress.lit, this.near, this.part.box.min.z]);
+    if (picture === this.shown) return;
+    this.shown = picture;
     const { carriage, tower, store } = this.machine;
     const at = (axis: string) => now.machine.axes[axis]?.position ?? 0;
     const reach = carriage.tower - carriage.print;
@@ -212,11 +221,17 @@ export class MachineView {
     this.light.scale.set(box.max.x - box.min.x, box.max.y - box.min.y, 1);
   }
 
+  /// At most once a frame.
   private draw() {
-    this.renderer.render(this.world, this.camera);
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.renderer.render(this.world, this.camera);
+    });
   }
 
   dispose() {
+    cancelAnimationFrame(this.frame);
     this.resize.disconnect();
     this.part.dispose();
     this.controls.dispose();
