@@ -18,6 +18,8 @@ export class MachineView {
   private readonly platform = new THREE.Group();
   private readonly part: PartMesh;
   private readonly shaft: THREE.Mesh;
+  private readonly plate: THREE.Mesh;
+  private readonly underside: THREE.Mesh;
   private readonly floor: THREE.Mesh;
   private readonly light: THREE.Mesh;
   private readonly spray: THREE.Points;
@@ -38,6 +40,11 @@ export class MachineView {
     const key = new THREE.DirectionalLight(0xffffff, 1.8);
     key.position.set(-1, -2, 3);
     this.world.add(key);
+    // What hangs is seen from below too.
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.9);
+    lamp.position.set(0, 0, 1);
+    this.camera.add(lamp);
+    this.world.add(this.camera);
     const { width, depth } = machine.platform;
     const [w, d, h] = [width * 1.15, depth * 1.2, Math.max(machine.wall, 20)];
     for (const vat of machine.vats) {
@@ -48,7 +55,12 @@ export class MachineView {
     this.cleaning.add(this.openBox(w, d, h, '#7fb7c9', true));
     this.world.add(this.cleaning);
     this.buildTower(w, d);
-    this.platform.add(this.box(width, depth, 8, grey, 4));
+    this.plate = this.box(width, depth, 8, grey, 4);
+    this.underside = new THREE.Mesh(
+      new THREE.PlaneGeometry(width, depth),
+      new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.14, side: THREE.DoubleSide, depthWrite: false }),
+    );
+    this.platform.add(this.plate, this.underside);
     this.shaft = this.box(22, 22, machine.platform.height, 0x6b7580, 8 + machine.platform.height / 2);
     this.platform.add(this.shaft);
     this.part = new PartMesh(machine.projector, materials.map((c) => new THREE.Color(c)));
@@ -191,7 +203,8 @@ export class MachineView {
     const at = (axis: string) => now.machine.axes[axis]?.position ?? 0;
     const reach = carriage.tower - carriage.print;
     this.cleaning.visible = store === 'tower' && !this.near;
-    this.tower.visible = this.shaft.visible = this.floor.visible = !this.near;
+    this.underside.visible = this.near;
+    this.tower.visible = this.plate.visible = this.shaft.visible = this.floor.visible = !this.near;
     this.cleaning.position.x = at('carriage') - carriage.tower;
     for (const [slot, group] of this.vats) {
       const used = slot === now.machine.slot;

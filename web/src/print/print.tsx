@@ -71,7 +71,7 @@ function Checklist() {
           </li>
         ))}
       </ul>
-      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => host('job', { command: 'start' })}>
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
         {doorOpen ? 'Shut the door first' : open > 0 ? `${open} to check` : 'Start the print'}
       </button>
     </section>
@@ -460,15 +460,23 @@ function ByHand() {
 
 function Log() {
   const list = useRef<HTMLOListElement>(null);
+  const atEnd = useRef(true); // who has scrolled up is left there
   const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
+  const last = shown[shown.length - 1]?.number;
   useEffect(() => {
-    const l = list.current;
-    if (l && l.scrollHeight - l.scrollTop - l.clientHeight < 160) l.scrollTop = l.scrollHeight;
-  }, [events.value.length]);
+    if (list.current && atEnd.current) list.current.scrollTop = list.current.scrollHeight;
+  }, [last]);
   return (
     <section class="block">
       <h3>Log</h3>
-      <ol class="log" ref={list} data-testid="log">
+      <ol
+        class="log"
+        ref={list}
+        tabIndex={0}
+        aria-label="Log of the print"
+        data-testid="log"
+        onScroll={(e) => (atEnd.current = e.currentTarget.scrollHeight - e.currentTarget.scrollTop - e.currentTarget.clientHeight < 30)}
+      >
         {shown.map((e) => (
           <li class={e.kind} key={e.number}>
             <time>{clock(e.clock)}</time>
