@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { theme } from '../theme';
 import type { Job } from '../types';
 import { layer, load } from './layers';
@@ -64,6 +65,10 @@ export function Stack({ job }: { job: Job }) {
     camera.up.set(0, 0, 1);
     const controls = new OrbitControls(camera, canvas.current!);
     const draw = () => renderer.render(world, camera);
+    let home = () => {};
+    const keys = (e: KeyboardEvent) => orbitKeys(e, (around, up, nearer) => turnAround(camera, controls, around, up, nearer), home);
+    const view = canvas.current!;
+    view.addEventListener('keydown', keys);
     redraw.current = draw;
     controls.addEventListener('change', draw);
     const resize = new ResizeObserver(() => {
@@ -92,9 +97,12 @@ export function Stack({ job }: { job: Job }) {
       );
       plate.position.z = -0.3;
       world.add(plate);
-      controls.target.set(0, 0, height / 2);
-      camera.position.set(0.7 * size, -1.5 * size, 1.0 * size);
-      controls.update();
+      home = () => {
+        controls.target.set(0, 0, height / 2);
+        camera.position.set(0.7 * size, -1.5 * size, 1.0 * size);
+        controls.update();
+      };
+      home();
       const geometry = new THREE.PlaneGeometry(width, depth);
       for (const l of shown) {
         const images = await Promise.all(job.manifest.materials.map((_, m) => load(job, l, m)));
@@ -119,6 +127,7 @@ export function Stack({ job }: { job: Job }) {
     })();
     return () => {
       gone = true;
+      view.removeEventListener('keydown', keys);
       resize.disconnect();
       controls.dispose();
       renderer.dispose();
@@ -136,7 +145,7 @@ export function Stack({ job }: { job: Job }) {
   return (
     <div class="layers">
       <div class="canvas">
-        <canvas ref={canvas} tabIndex={0} aria-label="The layers in 3D" data-testid="stack-view" data-done={done >= 100} />
+        <canvas ref={canvas} tabIndex={0} aria-label={`The layers in 3D. ${orbitHelp}`} data-testid="stack-view" data-done={done >= 100} />
       </div>
       <div class="layer-info">
         <b>{layer.value === 0 ? `all ${count} layers` : `up to layer ${top}`}</b>

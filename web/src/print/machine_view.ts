@@ -1,6 +1,7 @@
 // The machine in 3D, from simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { orbitKeys, turnAround } from '../orbit_keys';
 import type { Part } from './part';
 import { PartMesh } from './part_mesh';
 import type { MachineInfo, Now } from './state';
@@ -36,6 +37,9 @@ export class MachineView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
+    canvas.addEventListener('keydown', (e) =>
+      orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.lookAt(this.near)),
+    );
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.7));
     const key = new THREE.DirectionalLight(0xffffff, 1.8);
     key.position.set(-1, -2, 3);

@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { mayDrive, online, post, say } from '../store';
 import { clock } from '../make/plan';
+import { orbitHelp } from '../orbit_keys';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
 import { followPart, part } from './part';
@@ -380,7 +381,7 @@ function Machine3D() {
   return (
     <>
       <div class="machine-view">
-        <canvas ref={canvas} tabIndex={0} aria-label="The machine in 3D" data-testid="machine-view" />
+        <canvas ref={canvas} tabIndex={0} aria-label={`The machine in 3D. ${orbitHelp}`} data-testid="machine-view" />
       </div>
       <span class="segments view-of" role="group" aria-label="What is shown">
         {([[false, 'Machine'], [true, 'Part']] as const).map(([only, name]) => (
@@ -461,6 +462,7 @@ function ByHand() {
 function Log() {
   const list = useRef<HTMLOListElement>(null);
   const atEnd = useRef(true); // who has scrolled up is left there
+  const top = useRef(0);
   const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
   const last = shown[shown.length - 1]?.number;
   useEffect(() => {
@@ -475,7 +477,12 @@ function Log() {
         tabIndex={0}
         aria-label="Log of the print"
         data-testid="log"
-        onScroll={(e) => (atEnd.current = e.currentTarget.scrollHeight - e.currentTarget.scrollTop - e.currentTarget.clientHeight < 30)}
+        onScroll={(e) => {
+          const { scrollTop, scrollHeight, clientHeight } = e.currentTarget;
+          if (scrollHeight - scrollTop - clientHeight < 30) atEnd.current = true;
+          else if (scrollTop < top.current - 2) atEnd.current = false;
+          top.current = scrollTop;
+        }}
       >
         {shown.map((e) => (
           <li class={e.kind} key={e.number}>
