@@ -15,9 +15,9 @@ namespace {
 
 using twin::CoarsePart;
 
-constexpr int width_px = 1600, height_px = 900;
+constexpr int width_px = 1600, height_px = 720;
 constexpr Colour paper{1, 1, 1};
-constexpr Colour surplus_colour{0.80, 0.12, 0.14}, missing_colour{0.95, 0.55, 0.10};
+constexpr Colour surplus_colour{0.52, 0.04, 0.10}, missing_colour{0.94, 0.36, 0.50};  // of no material
 constexpr double seen_through = 0.22;
 
 /// Cells as a surface with flat faces, in metres; up is away from the platform, as the job has it.

@@ -32,6 +32,8 @@ constexpr std::string_view style = R"(
 .pictures { grid-template-columns: 1fr 1fr; }
 figure img { cursor: default; }
 .fault td:first-child { border-left: 4px solid var(--bad); }
+.pill + .message, p + figure, .scroll + .scroll { margin-top: 14px; }
+.scroll + h3 { margin-top: 18px; }
 td.wide { white-space: normal; text-align: left; min-width: 18em; }
 )";
 

@@ -1,6 +1,6 @@
 // From robot to job: slicing, layers, plan.
 import { signal } from '@preact/signals';
-import { useState } from 'preact/hooks';
+import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { job, mayDrive, post, say } from '../store';
 import { goal, Layers, layer } from './layers';
@@ -62,6 +62,13 @@ function Volumes() {
 export function Make() {
   const j = job.value;
   const [name, setName] = useState('');
+  const stage = useRef<HTMLElement>(null);
+  const seen = useRef(j?.revision);
+  useEffect(() => {
+    // Where form and layers stand one below the other, a new job is led to.
+    if (j && j.revision !== seen.current && window.matchMedia('(max-width: 900px)').matches) stage.current?.scrollIntoView({ behavior: 'smooth' });
+    seen.current = j?.revision;
+  }, [j?.revision]);
   return (
     <main class="make">
       <aside class="side left">
@@ -89,7 +96,7 @@ export function Make() {
           </>
         )}
       </aside>
-      <section class="stage">
+      <section class="stage" ref={stage}>
         {j ? (
           <>
             <nav class="tabs floating" role="tablist">

@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { theme } from '../theme';
 import type { Job } from '../types';
 import { layer, load } from './layers';
@@ -48,6 +49,9 @@ async function bounds(job: Job, layers: number[]): Promise<number[]> {
   return box;
 }
 
+/// At the first layer, where the slider stands in the beginning, the whole part is seen.
+const isSeen = (l: number, upTo: number) => upTo === 0 || l <= upTo;
+
 export function Stack({ job }: { job: Job }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const sheets = useRef<{ layer: number; mesh: THREE.Mesh }[]>([]);
@@ -61,6 +65,10 @@ export function Stack({ job }: { job: Job }) {
     camera.up.set(0, 0, 1);
     const controls = new OrbitControls(camera, canvas.current!);
     const draw = () => renderer.render(world, camera);
+    let home = () => {};
+    const keys = (e: KeyboardEvent) => orbitKeys(e, (around, up, nearer) => turnAround(camera, controls, around, up, nearer), home);
+    const view = canvas.current!;
+    view.addEventListener('keydown', keys);
     redraw.current = draw;
     controls.addEventListener('change', draw);
     const resize = new ResizeObserver(() => {
@@ -89,9 +97,12 @@ export function Stack({ job }: { job: Job }) {
       );
       plate.position.z = -0.3;
       world.add(plate);
-      controls.target.set(0, 0, height / 2);
-      camera.position.set(0.7 * size, -1.5 * size, 1.0 * size);
-      controls.update();
+      home = () => {
+        controls.target.set(0, 0, height / 2);
+        camera.position.set(0.7 * size, -1.5 * size, 1.0 * size);
+        controls.update();
+      };
+      home();
       const geometry = new THREE.PlaneGeometry(width, depth);
       for (const l of shown) {
         const images = await Promise.all(job.manifest.materials.map((_, m) => load(job, l, m)));
@@ -107,7 +118,7 @@ export function Stack({ job }: { job: Job }) {
           new THREE.MeshBasicMaterial({ map: texture, alphaTest: 0.5, side: THREE.DoubleSide, color: new THREE.Color(shade, shade, shade) }),
         );
         mesh.position.z = layers[l].z_um / 1000;
-        mesh.visible = l <= Math.max(layer.peek(), 0) || layer.peek() === 0;
+        mesh.visible = isSeen(l, layer.peek());
         sheets.current.push({ layer: l, mesh });
         world.add(mesh);
         setDone((100 * sheets.current.length) / shown.length);
@@ -116,6 +127,7 @@ export function Stack({ job }: { job: Job }) {
     })();
     return () => {
       gone = true;
+      view.removeEventListener('keydown', keys);
       resize.disconnect();
       controls.dispose();
       renderer.dispose();
@@ -124,19 +136,20 @@ export function Stack({ job }: { job: Job }) {
   }, [job.revision, theme.value]);
 
   useEffect(() => {
-    for (const s of sheets.current) s.mesh.visible = s.layer <= layer.value;
+    for (const s of sheets.current) s.mesh.visible = isSeen(s.layer, layer.value);
     redraw.current();
   }, [layer.value]);
 
   const count = job.manifest.layers.length;
+  const top = Math.min(layer.value, count - 1);
   return (
     <div class="layers">
       <div class="canvas">
-        <canvas ref={canvas} tabIndex={0} aria-label="The layers in 3D" data-testid="stack-view" data-done={done >= 100} />
+        <canvas ref={canvas} tabIndex={0} aria-label={`The layers in 3D. ${orbitHelp}`} data-testid="stack-view" data-done={done >= 100} />
       </div>
       <div class="layer-info">
-        <b>up to layer {Math.min(layer.value, count - 1)}</b>
-        <span class="quiet">{done < 100 ? `stacking, ${Math.round(done)} %` : `${(((job.manifest.layers[Math.min(layer.value, count - 1)]?.z_um ?? 0) / 1000)).toFixed(2)} mm`}</span>
+        <b>{layer.value === 0 ? `all ${count} layers` : `up to layer ${top}`}</b>
+        <span class="quiet">{done < 100 ? `stacking, ${Math.round(done)} %` : `${((job.manifest.layers[layer.value === 0 ? count - 1 : top]?.z_um ?? 0) / 1000).toFixed(2)} mm`}</span>
       </div>
       <input class="upright" type="range" aria-label="Layer" min={0} max={Math.max(count - 1, 1)} step={1} value={layer.value} style={{ '--at': `${(100 * layer.value) / Math.max(count - 1, 1)}%` }} onInput={(e) => (layer.value = Number(e.currentTarget.value))} />
     </div>

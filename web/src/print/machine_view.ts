@@ -1,6 +1,7 @@
 // The machine in 3D, from simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { orbitKeys, turnAround } from '../orbit_keys';
 import type { Part } from './part';
 import { PartMesh } from './part_mesh';
 import type { MachineInfo, Now } from './state';
@@ -18,6 +19,8 @@ export class MachineView {
   private readonly platform = new THREE.Group();
   private readonly part: PartMesh;
   private readonly shaft: THREE.Mesh;
+  private readonly plate: THREE.Mesh;
+  private readonly underside: THREE.Mesh;
   private readonly floor: THREE.Mesh;
   private readonly light: THREE.Mesh;
   private readonly spray: THREE.Points;
@@ -25,6 +28,8 @@ export class MachineView {
   private near = false; // the part alone, not all of the machine
   private seen = new THREE.Box3(); // of the part, when the camera was last placed for it
   private last: Now | null = null;
+  private shown = ''; // what of it is in the picture
+  private frame = 0;
 
   /// `colours` of what is in the vats, by resin; `materials`: those of the job.
   constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[]) {
@@ -32,10 +37,18 @@ export class MachineView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
+    canvas.addEventListener('keydown', (e) =>
+      orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.lookAt(this.near)),
+    );
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.7));
     const key = new THREE.DirectionalLight(0xffffff, 1.8);
     key.position.set(-1, -2, 3);
     this.world.add(key);
+    // What hangs is seen from below too.
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.9);
+    lamp.position.set(0, 0, 1);
+    this.camera.add(lamp);
+    this.world.add(this.camera);
     const { width, depth } = machine.platform;
     const [w, d, h] = [width * 1.15, depth * 1.2, Math.max(machine.wall, 20)];
     for (const vat of machine.vats) {
@@ -46,7 +59,12 @@ export class MachineView {
     this.cleaning.add(this.openBox(w, d, h, '#7fb7c9', true));
     this.world.add(this.cleaning);
     this.buildTower(w, d);
-    this.platform.add(this.box(width, depth, 8, grey, 4));
+    this.plate = this.box(width, depth, 8, grey, 4);
+    this.underside = new THREE.Mesh(
+      new THREE.PlaneGeometry(width, depth),
+      new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.14, side: THREE.DoubleSide, depthWrite: false }),
+    );
+    this.platform.add(this.plate, this.underside);
     this.shaft = this.box(22, 22, machine.platform.height, 0x6b7580, 8 + machine.platform.height / 2);
     this.platform.add(this.shaft);
     this.part = new PartMesh(machine.projector, materials.map((c) => new THREE.Color(c)));
@@ -79,6 +97,7 @@ export class MachineView {
   /// All of the machine, or the part alone.
   lookAt(near: boolean) {
     this.near = near;
+    this.shown = '';
     this.seen.makeEmpty();
     if (this.last) this.show(this.last);
     if (near) this.lookAtPart();
@@ -172,17 +191,24 @@ export class MachineView {
   showPart(part: Part | null) {
     this.part.show(part);
     if (this.near) this.lookAtPart();
+    this.shown = '';
     if (this.last) this.show(this.last);
     else this.draw();
   }
 
+  /// What has not changed is not drawn again.
   show(now: Now) {
     this.last = now;
+    const { axes, slot, pump } = now.machine;
+    const picture = JSON.stringify([Object.values(axes).map((a) => a.position), slot, pump, now.progress.lit, this.near, this.part.box.min.z]);
+    if (picture === this.shown) return;
+    this.shown = picture;
     const { carriage, tower, store } = this.machine;
     const at = (axis: string) => now.machine.axes[axis]?.position ?? 0;
     const reach = carriage.tower - carriage.print;
     this.cleaning.visible = store === 'tower' && !this.near;
-    this.tower.visible = this.shaft.visible = this.floor.visible = !this.near;
+    this.underside.visible = this.near;
+    this.tower.visible = this.plate.visible = this.shaft.visible = this.floor.visible = !this.near;
     this.cleaning.position.x = at('carriage') - carriage.tower;
     for (const [slot, group] of this.vats) {
       const used = slot === now.machine.slot;
@@ -212,11 +238,17 @@ export class MachineView {
     this.light.scale.set(box.max.x - box.min.x, box.max.y - box.min.y, 1);
   }
 
+  /// At most once a frame.
   private draw() {
-    this.renderer.render(this.world, this.camera);
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.renderer.render(this.world, this.camera);
+    });
   }
 
   dispose() {
+    cancelAnimationFrame(this.frame);
     this.resize.disconnect();
     this.part.dispose();
     this.controls.dispose();

@@ -73,7 +73,7 @@ async function fetchPart() {
 
 onEvent((event) => {
   if (event.type === 'machine') part.value = null;
-  if (wanted > 0 && (event.type === 'part' || event.type === 'machine')) void fetchPart();
+  if (wanted > 0 && event.type === 'part') void fetchPart();
 });
 
 /// While a view is open the part is kept up to date.

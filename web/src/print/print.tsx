@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { mayDrive, online, post, say } from '../store';
 import { clock } from '../make/plan';
+import { orbitHelp } from '../orbit_keys';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
 import { followPart, part } from './part';
@@ -71,7 +72,7 @@ function Checklist() {
           </li>
         ))}
       </ul>
-      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => host('job', { command: 'start' })}>
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
         {doorOpen ? 'Shut the door first' : open > 0 ? `${open} to check` : 'Start the print'}
       </button>
     </section>
@@ -380,7 +381,7 @@ function Machine3D() {
   return (
     <>
       <div class="machine-view">
-        <canvas ref={canvas} tabIndex={0} aria-label="The machine in 3D" data-testid="machine-view" />
+        <canvas ref={canvas} tabIndex={0} aria-label={`The machine in 3D. ${orbitHelp}`} data-testid="machine-view" />
       </div>
       <span class="segments view-of" role="group" aria-label="What is shown">
         {([[false, 'Machine'], [true, 'Part']] as const).map(([only, name]) => (
@@ -460,15 +461,29 @@ function ByHand() {
 
 function Log() {
   const list = useRef<HTMLOListElement>(null);
+  const atEnd = useRef(true); // who has scrolled up is left there
+  const top = useRef(0);
   const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
+  const last = shown[shown.length - 1]?.number;
   useEffect(() => {
-    const l = list.current;
-    if (l && l.scrollHeight - l.scrollTop - l.clientHeight < 160) l.scrollTop = l.scrollHeight;
-  }, [events.value.length]);
+    if (list.current && atEnd.current) list.current.scrollTop = list.current.scrollHeight;
+  }, [last]);
   return (
     <section class="block">
       <h3>Log</h3>
-      <ol class="log" ref={list} data-testid="log">
+      <ol
+        class="log"
+        ref={list}
+        tabIndex={0}
+        aria-label="Log of the print"
+        data-testid="log"
+        onScroll={(e) => {
+          const { scrollTop, scrollHeight, clientHeight } = e.currentTarget;
+          if (scrollHeight - scrollTop - clientHeight < 30) atEnd.current = true;
+          else if (scrollTop < top.current - 2) atEnd.current = false;
+          top.current = scrollTop;
+        }}
+      >
         {shown.map((e) => (
           <li class={e.kind} key={e.number}>
             <time>{clock(e.clock)}</time>

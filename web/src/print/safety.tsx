@@ -42,7 +42,7 @@ export function Safety() {
           const pressed = read[s.name];
           return (
             <li key={s.name} title={`M119 calls it ${s.name}`} data-testid={`switch-${s.name}`} data-state={pressed === undefined ? 'unknown' : pressed ? 'pressed' : 'free'}>
-              <span class={`lamp ${pressed === undefined ? 'unknown' : pressed ? 'busy' : 'good'}`} />
+              <span class={`lamp ${pressed === undefined ? 'unknown' : pressed ? 'pressed' : 'free'}`} />
               <span>
                 <b>{s.axis}</b> {s.end} {pressed === undefined ? (connected ? 'not read yet' : 'not known') : pressed ? 'pressed' : 'free'}
               </span>

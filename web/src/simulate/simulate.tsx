@@ -3,6 +3,7 @@ import { effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
+import { orbitHelp, orbitKeys } from '../orbit_keys';
 import {
   building,
   following,
@@ -108,27 +109,13 @@ function Canvas() {
       view = null;
     };
   }, []);
-  const keys = (e: KeyboardEvent) => {
-    const step = 0.12;
-    const moves: Record<string, () => void> = {
-      ArrowLeft: () => view?.turn(-step, 0, 1),
-      ArrowRight: () => view?.turn(step, 0, 1),
-      ArrowUp: () => view?.turn(0, step, 1),
-      ArrowDown: () => view?.turn(0, -step, 1),
-      '+': () => view?.turn(0, 0, 0.9),
-      '-': () => view?.turn(0, 0, 1.1),
-      Home: () => view?.lookAt('home'),
-    };
-    if (!moves[e.key]) return;
-    moves[e.key]();
-    e.preventDefault();
-  };
+  const keys = (e: KeyboardEvent) => orbitKeys(e, (around, up, nearer) => view?.turn(around, up, nearer), () => view?.lookAt('home'));
   return (
     <div class="canvas">
       <canvas
         ref={canvas}
         tabIndex={0}
-        aria-label="The robot in 3D. Arrow keys turn it, plus and minus come nearer and go away, Home shows all of it."
+        aria-label={`The robot in 3D. ${orbitHelp}`}
         onKeyDown={keys}
         data-testid="view"
       />

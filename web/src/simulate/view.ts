@@ -4,6 +4,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Line2 } from 'three/addons/lines/Line2.js';
 import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { turnAround } from '../orbit_keys';
 import type { Frame, Scene } from '../types';
 import { fieldColour } from './colormap';
 import type { FieldName } from './view_state';
@@ -232,7 +233,7 @@ export class RobotView {
     held.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * this.supportVertices.length), 3));
     this.supportPoints = new THREE.Points(
       held,
-      new THREE.PointsMaterial({ color: 0x2a2f38, size: 4, sizeAttenuation: false, transparent: true, opacity: 0.75 }),
+      new THREE.PointsMaterial({ color: 0x6b7580, size: 4, sizeAttenuation: false }),
     );
     this.supportPoints.frustumCulled = false;
     this.root.add(this.supportPoints);
@@ -482,14 +483,7 @@ export class RobotView {
   }
 
   turn(around: number, up: number, nearer: number) {
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
-    s.theta += around;
-    s.phi = Math.min(Math.max(s.phi - up, 0.05), Math.PI - 0.05);
-    s.radius *= nearer;
-    const back = new THREE.Vector3().setFromSpherical(s);
-    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(back.x, -back.z, back.y));
-    this.controls.update();
+    turnAround(this.camera, this.controls, around, up, nearer);
     this.invalidate();
   }
 

@@ -1,0 +1,34 @@
+// A view that the mouse turns is turned by the keys too.
+import * as THREE from 'three';
+import type { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+/// Around the target by so many radians, up by so many, and `nearer` times as far away.
+export function turnAround(camera: THREE.Camera, controls: OrbitControls, around: number, up: number, nearer: number) {
+  const offset = camera.position.clone().sub(controls.target);
+  const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
+  s.theta += around;
+  s.phi = Math.min(Math.max(s.phi - up, 0.05), Math.PI - 0.05);
+  s.radius *= nearer;
+  const back = new THREE.Vector3().setFromSpherical(s);
+  camera.position.copy(controls.target).add(new THREE.Vector3(back.x, -back.z, back.y));
+  controls.update();
+}
+
+/// Arrows turn, plus and minus come nearer and go away, Home shows all.
+export function orbitKeys(e: KeyboardEvent, turn: (around: number, up: number, nearer: number) => void, home: () => void) {
+  const step = 0.12;
+  const moves: Record<string, () => void> = {
+    ArrowLeft: () => turn(-step, 0, 1),
+    ArrowRight: () => turn(step, 0, 1),
+    ArrowUp: () => turn(0, step, 1),
+    ArrowDown: () => turn(0, -step, 1),
+    '+': () => turn(0, 0, 0.9),
+    '-': () => turn(0, 0, 1.1),
+    Home: home,
+  };
+  if (!moves[e.key]) return;
+  moves[e.key]();
+  e.preventDefault();
+}
+
+export const orbitHelp = 'Arrow keys turn it, plus and minus come nearer and go away, Home shows all of it.';
