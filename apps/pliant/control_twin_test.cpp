@@ -550,7 +550,7 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     b.start();
     REQUIRE(b.snapshot().finished);
     std::size_t whole = 0, broken = 0;
-    for (const Given& given : b.ended) ++(given.complete ? whole : broken);
+    for (const host::Given& given : b.ended) ++(given.complete ? whole : broken);
     CHECK(whole == 10);
     CHECK(broken == 1);
     CHECK(b.ended.front().layer == 0);

@@ -210,6 +210,44 @@ private:
     std::vector<Plane> planes_;
 };
 
+/// Twice its area times its normal, by its outline.
+Vec3 area_normal(const FacetedSurface::Loop& loop, const std::vector<Vec3>& points) {
+    Vec3 sum;
+    const Vec3& from = points[static_cast<std::size_t>(loop.front())];
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k)
+        sum += cross(points[static_cast<std::size_t>(loop[k])] - from,
+                     points[static_cast<std::size_t>(loop[k + 1])] - from);
+    return sum;
+}
+
+/// Of how many faces some neighbour lies at less than 30 degrees: as a round surface looks when it is cut into strips.
+std::size_t smooth_faces(const FacetedSurface& faceted) {
+    constexpr double cosine = 0.8660254037844387;
+    constexpr double flat = 1 - 1e-9;  // faces of several loops may be kept as triangles of one plane
+    std::map<std::pair<int, int>, std::size_t> face_of_edge;
+    std::vector<Vec3> normals;
+    for (const FacetedSurface::Piece& piece : faceted.pieces) {
+        for (const FacetedSurface::Shell& shell : piece) {
+            for (const FacetedSurface::Face& face : shell) {
+                for (const FacetedSurface::Loop& loop : face) {
+                    for (std::size_t k = 0; k < loop.size(); ++k)
+                        face_of_edge[{loop[k], loop[(k + 1) % loop.size()]}] = normals.size();
+                }
+                const Vec3 normal = area_normal(face.front(), faceted.points);
+                normals.push_back(normal / norm(normal));
+            }
+        }
+    }
+    std::set<std::size_t> smooth;
+    for (const auto& [edge, face] : face_of_edge) {
+        const auto other = face_of_edge.find({edge.second, edge.first});
+        if (other == face_of_edge.end()) continue;
+        const double turn = dot(normals[face], normals[other->second]);
+        if (turn > cosine && turn < flat) smooth.insert(face);
+    }
+    return smooth.size();
+}
+
 }  // namespace
 
 Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most) {
@@ -239,11 +277,14 @@ Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most) {
 }
 
 Result<Solid> polyhedron(const TriMesh& surface) {
-    constexpr std::size_t most = 1000;  // Open CASCADE takes a minute for as many
+    constexpr std::size_t most = 400;        // Open CASCADE takes half a minute for as many
+    constexpr std::size_t most_smooth = 40;  // more are a round thing, of which no mesh wants every strip
     TriMesh clean = surface;
     (void)remove_slivers(clean);
     Result<FacetedSurface> faceted = flat_faces(clean, most);
     if (!faceted) return tl::unexpected(faceted.error());
+    if (const std::size_t smooth = smooth_faces(*faceted); smooth > most_smooth)
+        return input_error("its surface is round: {} of its flat faces go on into another one without an edge", smooth);
     return std::make_shared<const SolidNode>(
         SolidNode{PolyhedronSolid{std::make_shared<const FacetedSurface>(std::move(*faceted)),
                                   std::make_shared<const TriangleTree>(std::move(clean))}});

@@ -25,7 +25,8 @@ struct FacetedSurface {
 /// faces.
 [[nodiscard]] Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most);
 
-/// A solid that other solids may touch, from a closed surface of at most 1000 flat faces.
+/// A solid that other solids may touch, from a closed surface of at most 400 flat faces, of which 40 at most meet
+/// another one at less than 30 degrees: more are a round surface.
 [[nodiscard]] Result<Solid> polyhedron(const TriMesh& surface);
 
 }  // namespace pliant::mesh

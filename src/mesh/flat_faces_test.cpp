@@ -121,14 +121,41 @@ TEST_CASE("surfaces that touch each other or a drawn body share the nodes of the
     CHECK(shared_area(mixed, 0, 1) == doctest::Approx(49).epsilon(1e-4));
 }
 
-TEST_CASE("of surfaces that overlap the later one has what they share; a cylinder of chords joins too") {
+TEST_CASE("of surfaces that overlap the later one has what they share") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
-    const TriMesh pin = triangles(solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3}), 0.3);
-    const TetMesh mesh = mesh_of({{"plate", plate}, {"pin", pin}}, 3);
-    const double whole = signed_volume(pin);
-    CHECK(whole == doctest::Approx(9 * std::numbers::pi * 13).epsilon(0.05));
-    CHECK(volume(mesh, 1) == doctest::Approx(whole).epsilon(1e-6));
-    CHECK(volume(mesh, 0) == doctest::Approx(2000 - whole * 3 / 13).epsilon(1e-4));  // the chords are no prism
+    const TriMesh pin = rounded(triangles(askew(box({0, 0, 0}, {4, 4, 10}))));
+    const TetMesh mesh = mesh_of({{"pin", pin}, {"plate", plate}}, 3);
+    CHECK(volume(mesh, 1) == doctest::Approx(2000).epsilon(1e-6));
     REQUIRE(mesh.notes.size() >= 1);
     CHECK(mesh.notes[0].find("overlap") != std::string::npos);
+}
+
+TEST_CASE("a prism of many corners is round, one of few is not") {
+    for (const int corners : {12, 48}) {
+        TriMesh prism{{{0, 0, 0}, {0, 0, 10}}, {}};
+        for (int i = 0; i < corners; ++i) {
+            const double turn = 2 * std::numbers::pi * i / corners;
+            for (const double z : {0.0, 10.0}) prism.points.push_back({5 * std::cos(turn), 5 * std::sin(turn), z});
+            const int a = 2 + 2 * i;
+            const int b = 2 + 2 * ((i + 1) % corners);
+            prism.triangles.insert(prism.triangles.end(),
+                                   {{a, b, b + 1}, {a, b + 1, a + 1}, {0, b, a}, {1, a + 1, b + 1}});
+        }
+        const Result<Solid> whole = polyhedron(prism);
+        CHECK(whole.has_value() == (corners == 12));
+        if (!whole) CHECK(whole.error().message.find("round: 48 of its") != std::string::npos);
+    }
+}
+
+TEST_CASE("a cylinder of chords is no polyhedron; with a plate it becomes one mesh, and what they share is told") {
+    const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
+    const TriMesh pin = triangles(solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3}), 0.3);
+    CHECK_FALSE(polyhedron(pin));
+    const TetMesh mesh = mesh_of({{"plate", plate}, {"pin", pin}}, 1.5);
+    const double whole = signed_volume(pin);
+    CHECK(whole == doctest::Approx(9 * std::numbers::pi * 13).epsilon(0.05));
+    CHECK(volume(mesh, 1) == doctest::Approx(whole).epsilon(0.02));
+    CHECK(volume(mesh, 0) == doctest::Approx(2000 - whole * 3 / 13).epsilon(0.005));
+    REQUIRE(mesh.notes.size() == 2);
+    CHECK(mesh.notes[1].find("body \"plate\" and body \"pin\" overlap by about 8") != std::string::npos);
 }

@@ -252,6 +252,11 @@ Result<Part> mesh_group(std::span<const BodyGeometry> bodies, const TouchingGrou
     mesh.notes.insert(
         mesh.notes.begin(),
         "bodies that touch were meshed together from their winding numbers; check their volumes: " + list);
+    for (const JointMesh::Overlap& overlap : joint->overlaps) {
+        if (bodies[group.bodies[overlap.keeper]].air) continue;
+        mesh.notes.push_back(fmt::format("{} and {} overlap by about {:.2g}; {} has it", names[overlap.loser],
+                                         names[overlap.keeper], overlap.volume, names[overlap.keeper]));
+    }
     for (int& region : mesh.region) region = static_cast<int>(group.bodies[static_cast<std::size_t>(region)]);
     return Part{settings.order == 2 ? to_quadratic(mesh) : std::move(mesh)};
 }

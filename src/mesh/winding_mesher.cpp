@@ -237,6 +237,24 @@ Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::sp
     return volumes;
 }
 
+/// What surfaces lose to later ones, where that is more than two samplings may differ by.
+std::vector<JointMesh::Overlap> overlaps_of(const LabelledSpace& space, const std::vector<double>& volumes) {
+    constexpr double least = 5e-3;  // of the smaller one
+    std::vector<JointMesh::Overlap> found;
+    for (std::size_t loser = 0; loser < volumes.size(); ++loser) {
+        const WindingGrid& surface = space.surfaces()[loser];
+        const Vec3 d = surface.box().size();
+        for (std::size_t keeper = loser + 1; keeper < volumes.size(); ++keeper) {
+            const auto lost = [&](const Vec3& p) {
+                return space.label(p) == static_cast<int>(keeper) + 1 && surface.winding_number(p) > surely_inside;
+            };
+            const double volume = share_of(surface.box(), lost) * d.x * d.y * d.z;
+            if (volume > least * std::min(volumes[loser], volumes[keeper])) found.push_back({loser, keeper, volume});
+        }
+    }
+    return found;
+}
+
 Status check_volumes(const TetMesh& mesh, const std::vector<double>& expected, std::span<const std::string> names) {
     for (std::size_t s = 0; s < expected.size(); ++s) {
         const double meshed = volume(mesh, static_cast<int>(s));
@@ -274,7 +292,7 @@ Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> nam
         if (rounded) complex = mesh_around_origin(task, {{}, 0.15, 20});
         if (!complex)
             return failure("the mesh of {} does not come to an end; try a smaller mesh size", fmt::join(names, ", "));
-        JointMesh result{collect(*complex, centred.middle), std::move(centred.damage)};
+        JointMesh result{collect(*complex, centred.middle), std::move(centred.damage), overlaps_of(space, *volumes)};
         improve_tets(result.mesh, {.feature_deg = angle_deg});
         if (Status status = check_volumes(result.mesh, *volumes, names); !status) return tl::unexpected(status.error());
         if (rounded)

@@ -32,6 +32,12 @@ using SizeOfSurface = std::function<double(std::size_t, const Vec3&)>;
 struct JointMesh {
     TetMesh mesh;
     std::vector<SurfaceDamage> damage;  ///< of each surface
+    /// A volume that two surfaces enclose, and which of them has it; by sampling, some thousandths of a body at least.
+    struct Overlap {
+        std::size_t loser, keeper;
+        double volume;
+    };
+    std::vector<Overlap> overlaps;
 };
 [[nodiscard]] Result<JointMesh> mesh_together(std::span<const TriMesh> surfaces, std::span<const std::string> names,
                                               double size, const SizeOfSurface& size_at, double angle_deg,
