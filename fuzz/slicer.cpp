@@ -25,7 +25,7 @@ std::vector<slice::Body> bodies_of(Bytes& bytes) {
 
 slice::Settings settings_of(Bytes& bytes) {
     slice::Settings settings;
-    settings.raster = {1 + bytes.up_to(63), 1 + bytes.up_to(63), 20 + 5.0 * bytes.up_to(40)};
+    settings.raster = {1 + bytes.up_to(23), 1 + bytes.up_to(23), 60 + 5.0 * bytes.up_to(40)};
     settings.raster.mirror_x = bytes.chance();
     settings.raster.rotation_deg = bytes.chance() ? bytes.signed_byte() : 0;
     settings.layer_um = 25 * (1 + bytes.up_to(9));
