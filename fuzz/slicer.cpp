@@ -25,13 +25,13 @@ std::vector<slice::Body> bodies_of(Bytes& bytes) {
 
 slice::Settings settings_of(Bytes& bytes) {
     slice::Settings settings;
-    settings.raster = {1 + bytes.up_to(63), 1 + bytes.up_to(63), 20 + 5.0 * bytes.up_to(40)};
+    settings.raster = {1 + bytes.up_to(23), 1 + bytes.up_to(23), 60 + 5.0 * bytes.up_to(40)};
     settings.raster.mirror_x = bytes.chance();
     settings.raster.rotation_deg = bytes.chance() ? bytes.signed_byte() : 0;
     settings.layer_um = 25 * (1 + bytes.up_to(9));
     settings.rules.anti_alias = bytes.chance();
     if (bytes.up_to(3) == 0)
-        settings.compensation["soft"] = {5.0 * bytes.signed_byte(), 1.0 * bytes.byte(), bytes.up_to(5)};
+        settings.compensation["soft"] = {1.0 * bytes.signed_byte(), 1.0 * bytes.byte(), bytes.up_to(5)};
     if (bytes.up_to(3) == 0) settings.teeth = {{"soft", "rigid", 1 + bytes.up_to(9), 1 + bytes.up_to(3)}};
     return settings;
 }
@@ -62,6 +62,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (!slice::place_on_platform(bodies, settings.raster)) return 0;
     const auto slicer = slice::Slicer::prepare(bodies, settings);
     if (!slicer) return 0;
-    for (int layer = 0; layer < std::min(slicer->layer_count(), 64); ++layer) trap_on_two_owners(slicer->layer(layer));
+    for (int layer = 0; layer < std::min(slicer->layer_count(), 16); ++layer) trap_on_two_owners(slicer->layer(layer));
     return 0;
 }

@@ -169,6 +169,7 @@ public:
         words.insert(words.end(), {"--clock", (folder / "clock").string()});
         if (resume) words.emplace_back("--resume");
         std::vector<char*> arguments;
+        arguments.reserve(words.size() + 1);
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
         const std::string log = (folder / "host.log").string();

@@ -38,9 +38,9 @@ struct MeshSettings {
 /// those that overlap the later one has what they share, and a note tells the volume. A gap of at most `close_gaps`
 /// between two is closed, and a note tells its width; one that cannot be closed is told likewise. A surface may have
 /// several shells and cavities; it is meshed anew, its sharp edges kept (or, where that fails, it keeps its triangles,
-/// and a note says so). Where it comes near another body it becomes a solid if it has few flat faces (polyhedron()); if not,
-/// all that hangs together there (touching_groups()) is meshed in one go from its winding numbers, and a note gives the
-/// volumes. The same input gives the same mesh. A mesh of more than 20 million tets is refused.
+/// and a note says so). Where it comes near another body it becomes a solid if it has few flat faces (polyhedron()); if
+/// not, all that hangs together there (touching_groups()) is meshed in one go from its winding numbers, and a note
+/// gives the volumes. The same input gives the same mesh. A mesh of more than 20 million tets is refused.
 [[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
                                           Progress& progress);
 

@@ -65,9 +65,11 @@ RunSet painted(const RunSet& set, const Brush& brush) {
     const int end = std::min(set.height_px(), set.end_row() + below);
     for (int row = first; row < end; ++row) {
         std::vector<PixelSpan> spans;
-        for (std::size_t i = 0; i < brush.rows.size(); ++i) {
-            const auto [left, right] = brush.rows[i];
-            for (const PixelSpan& s : set.row(row - static_cast<int>(i) + brush.above))
+        const int from = std::max(0, row + brush.above - (set.end_row() - 1));
+        const int to = std::min(static_cast<int>(brush.rows.size()), row + brush.above - set.first_row() + 1);
+        for (int i = from; i < to; ++i) {
+            const auto [left, right] = brush.rows[static_cast<std::size_t>(i)];
+            for (const PixelSpan& s : set.row(row - i + brush.above))
                 spans.push_back({std::max(0, s.begin - left), std::min(set.width_px(), s.end + right)});
         }
         merge(spans);
