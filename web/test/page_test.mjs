@@ -283,7 +283,7 @@ test('a print on the virtual printer is paused, goes on, and is cancelled', asyn
   const { page, wrong } = await openPage(browser, studio.address, t);
   await page.waitForFunction(() => window.pliant.job.value !== null);  // the job of the test before
   await page.getByTestId('section-print').click();
-  await page.getByTestId('take-speed').selectOption('300');
+  await page.getByTestId('take-speed').selectOption('60');
   await page.getByTestId('take-twin').click();
   await page.waitForSelector('[data-testid=print-state]');
   assert.ok(await page.getByTestId('start').isDisabled(), 'nothing starts unchecked');
@@ -295,7 +295,7 @@ test('a print on the virtual printer is paused, goes on, and is cancelled', asyn
   await page.getByTestId('resume').waitFor();
   assert.equal(await page.getByTestId('print-state').textContent(), 'Paused');
   const paused = await layer();
-  await page.waitForTimeout(1000);  // five minutes on the machine's clock
+  await page.waitForTimeout(2000);  // two minutes on the machine's clock
   assert.equal(await layer(), paused, 'nothing is printed in a pause');
   const watcher = await openPage(browser, `${studio.address}#print`, t);
   await watcher.page.waitForSelector('[data-testid=print-state]');
