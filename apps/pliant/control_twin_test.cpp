@@ -563,14 +563,15 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     b.start();
     REQUIRE(b.snapshot().finished);
     std::size_t whole = 0, broken = 0;
-    for (const Given& given : b.ended) ++(given.complete ? whole : broken);
+    for (const host::Given& given : b.ended) ++(given.complete ? whole : broken);
     CHECK(whole == 10);
     CHECK(broken == 1);
     CHECK(b.ended.front().layer == 0);
     CHECK(b.ended.back().layer == 4);
     // The seconds of one that went on are those of all its pieces.
     for (std::size_t k = 1; k < b.ended.size(); ++k) {
-        if (!b.ended[k - 1].complete) CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
+        if (b.ended[k - 1].complete) continue;
+        CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
     }
 }
 

@@ -204,6 +204,31 @@ test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; 
   assert.deepEqual(wrong, []);
 });
 
+test('a graded body has the colours of both its materials, and says which', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  assert.equal(await page.evaluate(() => window.pliant.scene.value.has('share')), false);
+  const text = readFileSync(robot, 'utf8');
+  const place = 'material = "firm"\ngeometry';
+  assert.ok(text.includes(place));
+  const put = (body) =>
+    page.evaluate(async (b) => (await fetch('/api/robot', { method: 'PUT', headers: { 'X-Pliant-Page': window.pliant.page }, body: b })).status, body);
+  assert.equal(await put(text.replace(place, 'material = "firm"\nblend = { material = "soft", from = [10, 0, 0], to = [30, 0, 0] }\ngeometry')), 200);
+  await page.getByTestId('graded-root').waitFor();
+  assert.match(await page.getByTestId('graded-root').textContent(), /root: firm to soft/);
+  const shares = await page.evaluate(() => {
+    const s = window.pliant.scene.value;
+    const at = (x) => s.f32('share').filter((_, v) => Math.abs(s.f32('rest')[3 * v] - x) < 0.01);
+    return [Math.max(...at(0)), s.f32('share').filter((v) => v > 0.3 && v < 0.7).length, Math.max(...s.f32('share'))];
+  });
+  assert.equal(shares[0], 0, 'nothing of the other where it is held');
+  assert.ok(shares[1] > 0, 'mixed in between');
+  assert.equal(shares[2], 1, 'all of the other beyond the end');
+  assert.equal(await put(text), 200);
+  await page.getByTestId('graded-root').waitFor({ state: 'detached' });
+  assert.deepEqual(wrong, []);
+});
+
 test('a lost connection comes back, still at the helm', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
