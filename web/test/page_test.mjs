@@ -304,6 +304,24 @@ test('an option that cannot be is said at its field, and supports, bonds and lig
   assert.deepEqual(wrong, []);
 });
 
+test('on a phone no button and no field is cut off', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  await page.waitForFunction(() => window.pliant.job.value !== null);
+  for (const section of ['simulate', 'make', 'print']) {
+    await page.getByTestId(`section-${section}`).click();
+    await page.waitForTimeout(500);
+    const cut = await page.evaluate(() =>
+      [...document.querySelectorAll('button, input, select, a.button')]
+        .filter((e) => e.checkVisibility())
+        .map((e) => [e.getBoundingClientRect(), e.dataset.testid ?? e.textContent ?? e.tagName])
+        .filter(([b]) => b.width > 0 && (b.left < -1 || b.right > 391))
+        .map(([b, name]) => `${name} from ${Math.round(b.left)} to ${Math.round(b.right)}`),
+    );
+    assert.deepEqual(cut, [], section);
+  }
+  assert.deepEqual(wrong, []);
+});
+
 test('a print on the virtual printer is paused, goes on, and is cancelled', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await page.waitForFunction(() => window.pliant.job.value !== null);  // the job of the test before
