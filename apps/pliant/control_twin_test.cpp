@@ -557,7 +557,8 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     CHECK(b.ended.back().layer == 4);
     // The seconds of one that went on are those of all its pieces.
     for (std::size_t k = 1; k < b.ended.size(); ++k) {
-        if (!b.ended[k - 1].complete) CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
+        if (b.ended[k - 1].complete) continue;
+        CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
     }
 }
 

@@ -700,7 +700,15 @@ void Control::State_::do_start(const StartOptions& options, bool abandon) {
     desk.wish([](Wishes& w) { w = Wishes{}; });
     (void)desk.take_changes();
     (void)desk.take_skips();
-    desk.update([](Snapshot& s) { s.failed = s.finished = false; });
+    desk.update([&](Snapshot& s) {
+        s.failed = s.finished = false;
+        if (options.resume) return;
+        s.layer = s.material = -1;
+        s.image.clear();
+        s.completion = s.seconds_done = 0;
+        s.seconds_left = times.back();
+        s.exposures_s.assign(s.exposures_s.size(), 0);
+    });
     {
         const std::scoped_lock lock(mutex);
         if (quitting) return desk.state(machine ? State::idle : State::offline);

@@ -15,7 +15,7 @@ namespace {
 
 using twin::CoarsePart;
 
-constexpr int width_px = 1600, height_px = 720;
+constexpr int width_px = 1200, height_px = 540, title_px = 64;
 constexpr Colour paper{1, 1, 1};
 constexpr Colour surplus_colour{0.52, 0.04, 0.10}, missing_colour{0.94, 0.36, 0.50};  // of no material
 constexpr double seen_through = 0.22;
@@ -187,7 +187,7 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
 
     const bool differs = !off.place.positions.empty();
     const int columns = differs ? 3 : 2;
-    const int wide = width_px / columns, high = height_px - 120;
+    const int wide = width_px / columns, high = height_px - title_px;
     const Camera camera = camera_for(points, static_cast<double>(wide) / high);
     Canvas canvas(width_px, height_px, paper);
     const double unit = 1000.0 / height_px;  // the canvas is 1000 high
@@ -199,10 +199,11 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
     const std::array<const Cells*, 3> bodies = {&asked, &cured, &off};
     for (int c = 0; c < columns; ++c) {
         const Cells& cells = *bodies[static_cast<std::size_t>(c)];
-        if (cells.place.positions.empty()) continue;
+        if (cells.place.positions.empty() || (c == 0 && !differs)) continue;
         const Result<Image> image = view_of(cells, c == 2 ? &asked : nullptr, camera, 0, wide, high);
         if (!image) return tl::unexpected(image.error());
-        canvas.image(*image, c * wide, 110);
+        canvas.image(*image, c * wide, title_px);
+        if (!differs) canvas.image(*image, 0, title_px);  // the drawing looks just so
     }
     title(0, "as drawn", nullptr);
     title(1, cured.place.positions.empty() ? "nothing has cured" : "as it has cured", nullptr);

@@ -58,7 +58,7 @@ public:
                 block_.asked.add(below_um, layer.z_um, image.material, solid);
                 wanted[resin_of_material_[static_cast<std::size_t>(image.material)]].push_back(std::move(solid));
             }
-            differ(below_um, layer.z_um, std::move(wanted));
+            differ(below_um, layer.z_um, wanted);
             below_um = layer.z_um;
         }
         for (const twin::CuredLayer& layer : twin_.cured().layers()) {
@@ -74,7 +74,7 @@ public:
 private:
     int resin(const std::string& name) { return resins_.emplace(name, static_cast<int>(resins_.size())).first->second; }
 
-    void differ(int below_um, int z_um, std::map<int, std::vector<Runs>> wanted) {
+    void differ(int below_um, int z_um, const std::map<int, std::vector<Runs>>& wanted) {
         std::map<int, std::vector<Runs>> have;
         const auto& layers = twin_.cured().layers();
         const auto cured = std::find_if(layers.begin(), layers.end(), [&](auto& l) { return l.top_um == z_um; });

@@ -22,8 +22,8 @@ struct CuredBlock {
 /// for twice. Errors: an image cannot be had.
 [[nodiscard]] Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images);
 
-/// Drawing and block side by side from above and in front, 1600 x 720 pixels, PNG; where they differ in shades of red. What is
-/// not as it should be is drawn however little it is. Errors: there is nothing to draw.
+/// Drawing and block side by side from above and in front, 1200 x 540 pixels, PNG; where they differ in shades of red.
+/// What is not as it should be is drawn however little it is. Errors: there is nothing to draw.
 [[nodiscard]] Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& job,
                                                 const machine::Projector& projector);
 

@@ -358,6 +358,9 @@ void Twin::take_part_off() {
     log_.fan_s.resize(printer_.fans.size());
     part_vat_ = last_vat_ = -1;
     residue_ = sprayed_s_ = 0;
+    machine::Interlock::State state = interlock().state();
+    state.part_height_um = 0;
+    if (auto without = machine::Interlock::restored(printer_, state)) motors_.interlock() = std::move(*without);
 }
 
 /// The vat that really is under the platform, by index; -1: none is where it should be.

@@ -204,6 +204,31 @@ test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; 
   assert.deepEqual(wrong, []);
 });
 
+test('a graded body has the colours of both its materials, and says which', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  assert.equal(await page.evaluate(() => window.pliant.scene.value.has('share')), false);
+  const text = readFileSync(robot, 'utf8');
+  const place = 'material = "firm"\ngeometry';
+  assert.ok(text.includes(place));
+  const put = (body) =>
+    page.evaluate(async (b) => (await fetch('/api/robot', { method: 'PUT', headers: { 'X-Pliant-Page': window.pliant.page }, body: b })).status, body);
+  assert.equal(await put(text.replace(place, 'material = "firm"\nblend = { material = "soft", from = [10, 0, 0], to = [30, 0, 0] }\ngeometry')), 200);
+  await page.getByTestId('graded-root').waitFor();
+  assert.match(await page.getByTestId('graded-root').textContent(), /root: firm to soft/);
+  const shares = await page.evaluate(() => {
+    const s = window.pliant.scene.value;
+    const at = (x) => s.f32('share').filter((_, v) => Math.abs(s.f32('rest')[3 * v] - x) < 0.01);
+    return [Math.max(...at(0)), s.f32('share').filter((v) => v > 0.3 && v < 0.7).length, Math.max(...s.f32('share'))];
+  });
+  assert.equal(shares[0], 0, 'nothing of the other where it is held');
+  assert.ok(shares[1] > 0, 'mixed in between');
+  assert.equal(shares[2], 1, 'all of the other beyond the end');
+  assert.equal(await put(text), 200);
+  await page.getByTestId('graded-root').waitFor({ state: 'detached' });
+  assert.deepEqual(wrong, []);
+});
+
 test('a lost connection comes back, still at the helm', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
@@ -279,11 +304,29 @@ test('an option that cannot be is said at its field, and supports, bonds and lig
   assert.deepEqual(wrong, []);
 });
 
+test('on a phone no button and no field is cut off', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  await page.waitForFunction(() => window.pliant.job.value !== null);
+  for (const section of ['simulate', 'make', 'print']) {
+    await page.getByTestId(`section-${section}`).click();
+    await page.waitForTimeout(500);
+    const cut = await page.evaluate(() =>
+      [...document.querySelectorAll('button, input, select, a.button')]
+        .filter((e) => e.checkVisibility())
+        .map((e) => [e.getBoundingClientRect(), e.dataset.testid ?? e.textContent ?? e.tagName])
+        .filter(([b]) => b.width > 0 && (b.left < -1 || b.right > 391))
+        .map(([b, name]) => `${name} from ${Math.round(b.left)} to ${Math.round(b.right)}`),
+    );
+    assert.deepEqual(cut, [], section);
+  }
+  assert.deepEqual(wrong, []);
+});
+
 test('a print on the virtual printer is paused, goes on, and is cancelled', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await page.waitForFunction(() => window.pliant.job.value !== null);  // the job of the test before
   await page.getByTestId('section-print').click();
-  await page.getByTestId('take-speed').selectOption('300');
+  await page.getByTestId('take-speed').selectOption('60');
   await page.getByTestId('take-twin').click();
   await page.waitForSelector('[data-testid=print-state]');
   assert.ok(await page.getByTestId('start').isDisabled(), 'nothing starts unchecked');
@@ -295,7 +338,7 @@ test('a print on the virtual printer is paused, goes on, and is cancelled', asyn
   await page.getByTestId('resume').waitFor();
   assert.equal(await page.getByTestId('print-state').textContent(), 'Paused');
   const paused = await layer();
-  await page.waitForTimeout(1000);  // five minutes on the machine's clock
+  await page.waitForTimeout(2000);  // two minutes on the machine's clock
   assert.equal(await layer(), paused, 'nothing is printed in a pause');
   const watcher = await openPage(browser, `${studio.address}#print`, t);
   await watcher.page.waitForSelector('[data-testid=print-state]');

@@ -94,6 +94,9 @@ test('a print at a port survives the end of the studio and is gone on with from 
   await page.getByTestId('go-on').click();
   await shown(page, (l) => Number(document.querySelector('[data-testid=print-layer]').textContent) > l, broken);
   await shown(page, () => document.querySelector('[data-testid=print-state]').textContent === 'Printed');
+  // What the first studio had exposed is remembered by the journal: the part is whole.
+  await shown(page, () => Math.abs(Number(document.querySelector('[data-testid=part]')?.dataset.height) - window.pliant.job.value.manifest.layers.at(-1).z_um / 1000) < 1e-3);
+  assert.match(await page.getByTestId('part').textContent(), /12\.00 mm exposed; nobody has looked into the vat/);
   const journal = readFileSync(join(folder, 'finger.zip.journal'), 'utf8');
   const lights = [...journal.matchAll(/ light step=\d+ layer=(\d+)/g)].map((m) => Number(m[1]));
   const layers = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);

@@ -232,6 +232,7 @@ export class MachineView {
   /// Under the part, as wide as it is; under the whole platform while nothing is there.
   private showLight(now: Now) {
     this.light.visible = now.progress.lit;
+    (this.light.material as THREE.MeshBasicMaterial).opacity = this.near ? 0.4 : 0.95; // the part is seen through it
     const { width, depth } = this.machine.platform;
     const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-0.3 * width, -0.3 * depth, 0), new THREE.Vector3(0.3 * width, 0.3 * depth, 0)) : this.part.box;
     this.light.position.set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, this.platform.position.z + box.min.z - 0.3);

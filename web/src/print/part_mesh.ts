@@ -86,7 +86,8 @@ export class PartMesh {
     private readonly projector: MachineInfo['projector'],
     private readonly colours: THREE.Color[],
   ) {
-    this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ roughness: 0.62, vertexColors: true }));
+    // Faces of different lengths meet; through the hair between them the other side of the part is seen, not the background.
+    this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ roughness: 0.62, vertexColors: true, side: THREE.DoubleSide }));
     this.mesh.frustumCulled = false;
     this.group.add(this.mesh);
     // Images are turned with the part.
