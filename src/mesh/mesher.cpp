@@ -209,7 +209,9 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
     const bool damaged = !meshes;
     if (damaged) {
         if (progress.cancelled()) return cancelled();
-        Result<TetMesh> mesh = mesh_by_winding(drawn, settings.size, settings.angle_deg, progress);
+        // Without its slivers it may still be closed, and then its winding numbers are known at once.
+        const TriMesh& known = border_edges(surface).empty() ? surface : drawn;
+        Result<TetMesh> mesh = mesh_by_winding(known, settings.size, settings.angle_deg, progress);
         if (!mesh && mesh.error().cause == Cause::cancelled) return tl::unexpected(mesh.error());
         if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
         if (std::string& note = mesh->notes.front(); note.find("is damaged") == std::string::npos)
