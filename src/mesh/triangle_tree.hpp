@@ -16,7 +16,8 @@ public:
 
     /// How often the surface winds around a point: 1 inside a closed surface, 0 outside, and in between where it has
     /// holes (generalised winding number: Jacobson, Kavan, Sorkine-Hornung 2013). Far triangles count as one dipole
-    /// (Barill, Dickson, Schmidt, Levin, Jacobson 2018), which changes it by some hundredths at most. Cost: about log n.
+    /// (Barill, Dickson, Schmidt, Levin, Jacobson 2018), which changes it by some hundredths at most. Cost: about log
+    /// n.
     [[nodiscard]] double winding_number(const Vec3& point) const;
 
     /// Distance along the ray to the first triangle beyond `from` times the length of `direction`, and which one.
