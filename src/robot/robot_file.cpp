@@ -1,9 +1,14 @@
+#include <algorithm>
+#include <fstream>
+
+#include "mesh/surface_file.hpp"
 #include "robot/actuator_file.hpp"
 #include "robot/body_file.hpp"
 #include "robot/contact_file.hpp"
 #include "robot/place_file.hpp"
 #include "robot/program_file.hpp"
 #include "robot/robot.hpp"
+#include "threemf/read_3mf.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -53,10 +58,25 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     return robot;
 }
 
+/// Told by the beginning of the file: people hand over the drawing itself.
+bool is_geometry(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string head(4096, '\0');
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    const bool binary = head.find('\0') != std::string::npos;  // a robot file with a slip may look like much else
+    return head.starts_with("ISO-10303-21") || head.starts_with("solid ") || head.starts_with("ply\n") ||
+           threemf::looks_like_zip(head) || (binary && mesh::looks_like_surface(head));
+}
+
 }  // namespace
 
 Result<Robot> load_robot(const fs::path& file, const std::vector<std::string>& assignments) {
     Result<config::Document> document = config::load(file);
+    if (!document && is_geometry(file))
+        return input_error(
+            "{}: is geometry, no robot file; write a robot file that names it, as in geometry = \"{}\" of a [[body]]",
+            file.string(), file.filename().string());
     if (!document) return tl::unexpected(document.error());
     return read_robot(std::move(*document), assignments);
 }

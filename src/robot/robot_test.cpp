@@ -526,3 +526,17 @@ TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box")
                        "geometry = { box = [[20, 0, 0], [40, 10, 10]] }\nbox = [[20, 0, 0], [40, 10, 10]]"),
                   "body[1].box: nobody reads this key");
 }
+
+TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robot file with a slip is not") {
+    const pliant::test::Folder folder("robot_drawing");
+    const auto message = [&](const std::string& name, const std::string& content) {
+        std::ofstream(folder / name, std::ios::binary) << content;
+        const auto robot = load_robot(folder / name);
+        REQUIRE_FALSE(robot);
+        return robot.error().message;
+    };
+    for (const std::string& content :
+         {std::string("solid x\nfacet normal 0 0 1\n"), std::string("ISO-10303-21;\n"), std::string("PK\x03\x04...")})
+        CHECK(message("part.stl", content).find("is geometry, no robot file") != std::string::npos);
+    CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
+}
