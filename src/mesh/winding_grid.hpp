@@ -24,7 +24,6 @@ public:
     /// box is crowded, and where rounding may decide on which side of a triangle a point lies.
     [[nodiscard]] double winding_number(const Vec3& point) const;
 
-    [[nodiscard]] const TriangleTree& tree() const { return tree_; }
     [[nodiscard]] const TriMesh& surface() const { return tree_.surface(); }
     [[nodiscard]] const Box3& box() const { return box_; }
 

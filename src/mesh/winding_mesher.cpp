@@ -41,20 +41,21 @@ Kernel::Point_3 cgal(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
+constexpr int samples = 60000;
+
 /// The share of a box for which `holds` is true, by points spread evenly over it (Roberts' R3 sequence; no plane holds
 /// many of them, where a sheet could lie).
 template <class Holds>
 double share_of(const Box3& box, const Holds& holds) {
-    constexpr int count = 60000;
     constexpr double g = 1.22074408460475947536;  // x^4 = x + 1
     int held = 0;
-    for (int i = 1; i <= count; ++i) {
+    for (int i = 1; i <= samples; ++i) {
         const auto along = [&](double step) { return std::fmod(0.5 + i * step, 1.0); };
         const Vec3 d = box.size();
         const Vec3 p = box.low + Vec3{d.x * along(1 / g), d.y * along(1 / (g * g)), d.z * along(1 / (g * g * g))};
         held += holds(p) ? 1 : 0;
     }
-    return static_cast<double>(held) / count;
+    return static_cast<double>(held) / samples;
 }
 
 /// A little larger, so that a flat surface does not fill its box.
@@ -241,14 +242,17 @@ Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::sp
 std::vector<JointMesh::Overlap> overlaps_of(const LabelledSpace& space, const std::vector<double>& volumes) {
     constexpr double least = 5e-3;  // of the smaller one
     std::vector<JointMesh::Overlap> found;
-    for (std::size_t loser = 0; loser < volumes.size(); ++loser) {
+    for (std::size_t loser = 0; loser + 1 < volumes.size(); ++loser) {
         const WindingGrid& surface = space.surfaces()[loser];
+        std::vector<int> held(volumes.size() + 1);  // points of the loser by their label
+        (void)share_of(surface.box(), [&](const Vec3& p) {
+            const bool its = surface.winding_number(p) > surely_inside;
+            if (its) ++held[static_cast<std::size_t>(space.label(p))];
+            return its;
+        });
         const Vec3 d = surface.box().size();
         for (std::size_t keeper = loser + 1; keeper < volumes.size(); ++keeper) {
-            const auto lost = [&](const Vec3& p) {
-                return space.label(p) == static_cast<int>(keeper) + 1 && surface.winding_number(p) > surely_inside;
-            };
-            const double volume = share_of(surface.box(), lost) * d.x * d.y * d.z;
+            const double volume = static_cast<double>(held[keeper + 1]) / samples * d.x * d.y * d.z;
             if (volume > least * std::min(volumes[loser], volumes[keeper])) found.push_back({loser, keeper, volume});
         }
     }
