@@ -207,29 +207,42 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     return ended;
 }
 
-/// The page about the print, as far as it went; `twin`: that it was printed on, or null.
+/// The page about the print, as far as it went; `block`: what has cured in the virtual printer, or null.
 Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, const host::Snapshot& last,
-                    twin::Twin* twin) {
+                    std::shared_ptr<const report::CuredBlock> block) {
     if (options.report.empty()) return {};
-    report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware, last.lines_sent,
-                               last.resends, nullptr};
-    if (twin != nullptr) {
-        const twin::RunSource runs = [&](int layer, int material) {
-            return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
-        };
-        Result<report::CuredBlock> block = report::cured_block(*twin, ready.archive->manifest(), runs);
-        if (!block) return tl::unexpected(block.error());
-        extras.block = std::make_shared<const report::CuredBlock>(std::move(*block));
-    }
+    const report::PrintExtras extras{options.port.empty() ? "virtual printer" : options.port, last.firmware,
+                                     last.lines_sent, last.resends, std::move(block)};
     const Result<std::string> page = report::print_report(options.job, ready.job.journal, extras);
     if (!page) return tl::unexpected(page.error());
     return write_file(options.report, *page);
 }
 
-/// The virtual printer's block against the job.
-Result<twin::Report> inspect_twin(twin::Twin& twin, const operate::ReadyJob& ready) {
-    const auto images = [&](int layer, int material) { return operate::image_of(*ready.archive, layer, material); };
-    return twin::inspect(twin, ready.archive->manifest(), twin::ImageSource(images));
+/// Says what the virtual printer has found, and gives the exit status.
+int verdict(const LiveOptions& options, const twin::Report& report, int status) {
+    if (options.output.json)
+        fmt::print("{}\n", twin::report_json(report));
+    else if (!options.output.quiet)
+        fmt::print("{}", twin::report_text(report));
+    return report.passed ? status : static_cast<int>(exit_failed);
+}
+
+/// The virtual printer's block against the job; a page about it holds it whole.
+Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, const Ended& ended, twin::Twin& twin) {
+    const job::Manifest& manifest = ready.archive->manifest();
+    const twin::RunSource images = [&](int layer, int material) {
+        return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
+    };
+    if (options.report.empty())
+        return twin::inspect(twin, manifest, images).map([&](const twin::Report& report) {
+            return verdict(options, report, ended.status);
+        });
+    Result<report::CuredBlock> made = report::cured_block(twin, manifest, images);
+    if (!made) return tl::unexpected(made.error());
+    const auto block = std::make_shared<const report::CuredBlock>(std::move(*made));
+    if (Status written = write_report(options, ready, ended.last, block); !written)
+        return tl::unexpected(written.error());
+    return verdict(options, block->report, ended.status);
 }
 
 /// A journal for the report alone, gone with it.
@@ -259,16 +272,7 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     host::Control control(std::move(setup));
     const Result<Ended> ended = run(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
-    twin::Twin& twin = machine.end();
-    const Result<twin::Report> report = inspect_twin(twin, ready);
-    if (!report) return tl::unexpected(report.error());
-    if (Status written = write_report(options, ready, ended->last, &twin); !written)
-        return tl::unexpected(written.error());
-    if (options.output.json)
-        fmt::print("{}\n", twin::report_json(*report));
-    else if (!options.output.quiet)
-        fmt::print("{}", twin::report_text(*report));
-    return report->passed ? ended->status : static_cast<int>(exit_failed);
+    return judge(options, ready, *ended, machine.end());
 }
 
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {

@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/test_text.hpp"
+
 using namespace pliant;
 using namespace pliant::report;
+using pliant::test::holds;
 
 namespace {
 
@@ -70,10 +73,6 @@ double volume_mm3(const twin::CoarsePart& part, int material) {
         if (run.material == material) sum += (run.end - run.begin) * 0.25 * (slab.top_um - slab.bottom_um) / 1000;
     }
     return sum;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "mesh/step_file.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/actuator_file.hpp"
 #include "robot/body_file.hpp"
@@ -65,7 +66,7 @@ bool is_geometry(const fs::path& file) {
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
     const bool binary = head.find('\0') != std::string::npos;  // a robot file with a slip may look like much else
-    return head.starts_with("ISO-10303-21") || head.starts_with("solid ") || head.starts_with("ply\n") ||
+    return mesh::looks_like_step(head) || head.starts_with("solid ") || head.starts_with("ply\n") ||
            threemf::looks_like_zip(head) || (binary && mesh::looks_like_surface(head));
 }
 
