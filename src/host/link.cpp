@@ -93,19 +93,30 @@ Status Link::wait_until_quiet() {
     return {};
 }
 
+/// Returns when it has answered, or after a silence in which the line or its answer must have been lost. One that is
+/// busy answers when it has a place for the line; one that only talks is none that can be printed with.
+Status Link::wait_for_answer(double begin_s, const std::function<bool()>& answered) {
+    double end = clock_.now() + options_.boot_s;
+    while (!answered() && clock_.now() < end) {
+        if (clock_.now() > std::max(begin_s, busy_s_) + options_.talk_s)
+            return failure("the printer talks but does not answer; is this its port and its baud rate?");
+        const auto heard = hear(end - clock_.now());
+        if (!heard) return tl::unexpected(heard.error());
+        if (*heard) end = clock_.now() + options_.boot_s;
+    }
+    return {};
+}
+
 Result<long> Link::last_line() {
     if (Status status = wait_for_boot(); !status) return tl::unexpected(status.error());
+    const double begin_s = clock_.now();
     for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
         if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
         wanted_.reset();
         // Number 0 follows no line: it is refused, and the refusal names the last one.
         if (Status status = put(framed(0, "M400")); !status) return tl::unexpected(status.error());
-        double end = clock_.now() + options_.boot_s;
-        while (!wanted_ && clock_.now() < end) {
-            const auto heard = hear(end - clock_.now());
-            if (!heard) return tl::unexpected(heard.error());
-            if (*heard) end = clock_.now() + options_.boot_s;  // a busy one answers when it has a place for the line
-        }
+        if (Status status = wait_for_answer(begin_s, [this] { return wanted_.has_value(); }); !status)
+            return tl::unexpected(status.error());
         if (!wanted_ || *wanted_ < 1) continue;
         const long last = *wanted_ - 1;
         wanted_.reset();
@@ -119,6 +130,7 @@ Status Link::connect(long base) {
     if (Status status = wait_for_boot(); !status) return status;
     base_ = base;
     next_number_ = next_to_send_ = base + 1;
+    const double begin_s = clock_.now();
     for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
         if (Status status = wait_until_quiet(); !status) return status;
         drop_outstanding([](long) { return true; });
@@ -126,12 +138,8 @@ Status Link::connect(long base) {
         ignore_ok_ = false;
         wanted_.reset();
         if (Status status = put(framed(base, fmt::format("M110 N{}", base))); !status) return status;
-        double end = clock_.now() + options_.boot_s;
-        while (!outstanding_.empty() && !wanted_ && clock_.now() < end) {
-            const auto heard = hear(end - clock_.now());
-            if (!heard) return tl::unexpected(heard.error());
-            if (*heard) end = clock_.now() + options_.boot_s;
-        }
+        const auto answered = [this] { return outstanding_.empty() || wanted_.has_value(); };
+        if (Status status = wait_for_answer(begin_s, answered); !status) return status;
         connected_ = outstanding_.empty() && !wanted_;
         if (connected_) return {};
     }
@@ -255,6 +263,7 @@ void Link::drop_outstanding(const std::function<bool(long number)>& which) {
 }
 
 Status Link::run_until(const std::function<bool()>& done) {
+    answer_s_ = clock_.now();
     for (;;) {
         if (Status status = transmit(); !status) return status;
         if (done()) return {};
@@ -264,12 +273,14 @@ Status Link::run_until(const std::function<bool()>& done) {
 
 // --- listening -----------------------------------------------------------------------------------------------------
 
-/// Handles the next answers; a long silence means that one was lost.
+/// Handles the next answers; a long time without one means that it was lost, whatever else is said meanwhile.
 Status Link::listen() {
-    const auto heard = hear(outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s);
+    const double patience_s = outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s;
+    const auto heard = hear(patience_s);
     if (!heard) return tl::unexpected(heard.error());
-    if (!*heard) return give_up_waiting();
-    return wanted_ ? resynchronise() : Status{};
+    if (wanted_) return resynchronise();
+    const bool is_late = clock_.now() - answer_s_ > patience_s;
+    return *heard && !is_late ? Status{} : give_up_waiting();
 }
 
 /// Reads once and handles every complete line; false if nothing came in time. The watch is asked meanwhile.
@@ -309,10 +320,13 @@ Status Link::handle(std::string_view line) {
     } else if (begins(line, "Resend:")) {
         if (const auto number = whole_number(line.substr(7))) wanted_ = *number;
         ignore_ok_ = true;
+        answer_s_ = clock_.now();
     } else if (begins(line, "Error:")) {
         return handle_error(line);
     } else if (begins(line, "echo:Unknown command:")) {
         return handle_unknown(line);
+    } else if (begins(line, "echo:busy:")) {
+        busy_s_ = answer_s_ = clock_.now();
     } else if (line == "wait") {
         handle_wait();
     } else if (!awaited_.empty() && line == awaited_) {
@@ -384,6 +398,7 @@ Status Link::handle_error(std::string_view line) {
 }
 
 void Link::handle_ok(std::string_view line) {
+    answer_s_ = clock_.now();
     if (std::exchange(ignore_ok_, false)) return;
     silences_ = 0;
     probing_ = false;
@@ -461,6 +476,7 @@ Status Link::go_back_to(long number) {
 /// Asks by repeating the oldest line that has had no ok: if it was executed, the firmware asks for the next one.
 Status Link::give_up_waiting() {
     if (++silences_ > options_.most_repeats) return failure("the printer has stopped answering");
+    answer_s_ = clock_.now();
     if (outstanding_.empty()) {
         silent_ = true;
         return {};

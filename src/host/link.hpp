@@ -30,6 +30,7 @@ struct LinkOptions {
     /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
     /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
     double most_refused = 0.2;
+    double talk_s = 60;  ///< how long one that is not busy may say other things before it answers connect()
 };
 
 /// What M115 says.
@@ -109,6 +110,7 @@ private:
     [[nodiscard]] Status wait_for_boot();
     [[nodiscard]] Status put(std::string_view bytes);
     [[nodiscard]] Status wait_until_quiet();
+    [[nodiscard]] Status wait_for_answer(double begin_s, const std::function<bool()>& answered);
     [[nodiscard]] Status handle(std::string_view line);
     [[nodiscard]] Status handle_error(std::string_view line);
     [[nodiscard]] Status handle_unknown(std::string_view line);
@@ -154,6 +156,8 @@ private:
     bool no_start_ = false;
     bool wire_failed_ = false;
     double last_write_s_ = 0;
+    double busy_s_ = 0;    ///< when it last said that it is
+    double answer_s_ = 0;  ///< when it last answered a line or was busy; other talk is no answer
     long resends_ = 0;
     long token_ = 0;
     std::string awaited_;  ///< the echo of the fence
