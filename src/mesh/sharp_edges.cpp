@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -20,6 +22,9 @@ struct Chain {
 
 /// Between edges that do not meet, as a share of the mesh size.
 constexpr double least_room = 0.1;
+
+/// Chains shorter than this share of the mesh size become points: the mesh would have to be as fine around them.
+constexpr double least_length = 0.1;
 
 /// One number for each point in space, whatever surface it is of.
 class Welder {
@@ -162,6 +167,71 @@ private:
     std::set<std::pair<int, int>> done_;
 };
 
+/// Joins ends of chains that short chains lie between.
+class Contraction {
+public:
+    Contraction(const std::vector<Vec3>& points, double width)
+        : points_(points), width_(width), sets_(points.size()), boxes_(points.size()) {
+        for (std::size_t i = 0; i < points.size(); ++i) boxes_[i].add(points[i]);
+    }
+
+    /// Shortest first; no more ends than fit into the width become one.
+    std::vector<Chain> contract(std::vector<Chain> chains) {
+        std::vector<std::pair<double, std::size_t>> order;
+        for (std::size_t c = 0; c < chains.size(); ++c) {
+            const double its = length(chains[c]);
+            if (its < width_) order.emplace_back(its, c);
+        }
+        std::sort(order.begin(), order.end());
+        for (const auto& [its, c] : order) join(chains[c].points.front(), chains[c].points.back());
+        for (Chain& chain : chains) move_ends(chain);
+        std::set<std::pair<int, int>> seen;  // edges that have become the same
+        std::erase_if(chains, [&](const Chain& c) {
+            if (length(c) < width_) return true;
+            return c.points.size() == 2 && !seen.insert(std::minmax(c.points[0], c.points[1])).second;
+        });
+        return chains;
+    }
+
+private:
+    [[nodiscard]] const Vec3& at(int node) const { return points_[static_cast<std::size_t>(node)]; }
+    [[nodiscard]] double length(const Chain& chain) const {
+        double sum = 0;
+        for (std::size_t i = 0; i + 1 < chain.points.size(); ++i)
+            sum += norm(at(chain.points[i + 1]) - at(chain.points[i]));
+        return sum;
+    }
+    Box3& box(int node) { return boxes_[static_cast<std::size_t>(sets_.find(node))]; }
+
+    void join(int a, int b) {
+        Box3 both = box(a);
+        both.add(box(b).low);
+        both.add(box(b).high);
+        if (both.diagonal() > 1.5 * width_) return;
+        sets_.join(a, b);
+        box(a) = both;
+    }
+
+    /// Points that are no farther from the new ends than these may have moved would lead the chain back and forth.
+    void move_ends(Chain& chain) {
+        std::vector<int> moved = {sets_.find(chain.points.front())};
+        const int last = sets_.find(chain.points.back());
+        const bool stays = moved.front() == chain.points.front() && last == chain.points.back();
+        for (std::size_t i = 1; i + 1 < chain.points.size(); ++i) {
+            const Vec3& p = at(chain.points[i]);
+            const bool is_near = norm(p - at(moved.front())) < width_ || norm(p - at(last)) < width_;
+            if (stays || !is_near) moved.push_back(chain.points[i]);
+        }
+        moved.push_back(last);
+        chain.points = std::move(moved);
+    }
+
+    const std::vector<Vec3>& points_;
+    double width_;
+    DisjointSets sets_;
+    std::vector<Box3> boxes_;  ///< (points) of the set that the point stands for
+};
+
 /// Distance between two segments (Ericson, Real-Time Collision Detection, 5.1.9).
 double distance_between(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
     const Vec3 d1 = q1 - p1;
@@ -189,6 +259,9 @@ struct Segment {
     double low, high;   ///< in x, with room
     bool dropped = false;
 };
+
+/// Between edges that meet, in radians; and as a share of the way from one to the other by where they meet.
+constexpr double small_angle = 0.25;
 
 class CollisionFinder {
 public:
@@ -237,7 +310,17 @@ private:
                 std::min(b.from[k], b.to[k]) > std::max(a.from[k], a.to[k]) + room_)
                 return false;
         }
-        return path_between(a, b) > 3 * room_ && distance_between(a.from, a.to, b.from, b.to) < room_;
+        const double path = path_between(a, b);
+        if (path == 0) return part_at_small_angle(a, b);
+        return distance_between(a.from, a.to, b.from, b.to) < (path > 3 * room_ ? room_ : small_angle * path);
+    }
+
+    /// For segments with a common end.
+    [[nodiscard]] static bool part_at_small_angle(const Segment& a, const Segment& b) {
+        const Vec3& common = a.from == b.from || a.from == b.to ? a.from : a.to;
+        const Vec3 one = a.from + a.to - 2 * common;
+        const Vec3 other = b.from + b.to - 2 * common;
+        return dot(one, other) > 0 && norm(cross(one, other)) < small_angle * norm(one) * norm(other);
     }
 
     /// How far it is from one to the other along the chains, by way of at most one common end.
@@ -268,7 +351,8 @@ private:
 
 SharpEdges sharp_edges(const LabelledSpace& space, double size, double angle_deg) {
     EdgeFinder edge_finder(space, size, angle_deg);
-    const std::vector<Chain> chains = edge_finder.find();
+    std::vector<Chain> found = edge_finder.find();
+    const std::vector<Chain> chains = Contraction(edge_finder.points(), least_length * size).contract(std::move(found));
     SharpEdges edges;
     std::vector<Vec3> chain;
     const auto end_chain = [&] {

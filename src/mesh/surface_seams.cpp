@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <unordered_map>
+#include <utility>
 
 #include "core/disjoint_sets.hpp"
 
@@ -13,11 +15,11 @@ namespace {
 /// Of the surface's size: 32 bits hold 6e-8 of a coordinate, and what was reckoned before added to that.
 constexpr double rounding = 1e-6;
 
-std::vector<int> ends_of(const std::vector<std::pair<int, int>>& edges) {
+std::vector<int> ends_of(const std::vector<BorderEdge>& edges) {
     std::vector<int> points;
-    for (const auto& [a, b] : edges) {
-        points.push_back(a);
-        points.push_back(b);
+    for (const BorderEdge& edge : edges) {
+        points.push_back(edge.from);
+        points.push_back(edge.to);
     }
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -49,7 +51,7 @@ DisjointSets joined(const TriMesh& surface, const std::vector<int>& points, doub
 
 }  // namespace
 
-std::vector<std::pair<int, int>> border_edges(const TriMesh& surface) {
+std::vector<BorderEdge> border_edges(const TriMesh& surface) {
     std::vector<std::array<int, 3>> ways;  // from, to, and which way
     ways.reserve(3 * surface.triangles.size());
     for (const auto& t : surface.triangles) {
@@ -60,18 +62,37 @@ std::vector<std::pair<int, int>> border_edges(const TriMesh& surface) {
         }
     }
     std::sort(ways.begin(), ways.end());
-    std::vector<std::pair<int, int>> border;
+    std::vector<BorderEdge> border;
     for (std::size_t i = 0; i < ways.size();) {
         int sum = 0;
         const auto [low, high, way] = ways[i];
         for (; i < ways.size() && ways[i][0] == low && ways[i][1] == high; ++i) sum += ways[i][2];
-        if (sum != 0) border.emplace_back(low, high);
+        if (sum > 0) border.push_back({low, high, sum});
+        if (sum < 0) border.push_back({high, low, -sum});
     }
     return border;
 }
 
+TriMesh border_caps(const TriMesh& surface) {
+    const std::vector<BorderEdge> border = border_edges(surface);
+    DisjointSets pieces(surface.points.size());
+    for (const BorderEdge& edge : border) pieces.join(edge.from, edge.to);
+    TriMesh caps{surface.points, {}};
+    std::unordered_map<int, Box3> around;  // of each piece
+    for (const BorderEdge& edge : border)
+        around[pieces.find(edge.from)].add(surface.points[static_cast<std::size_t>(edge.from)]);
+    std::unordered_map<int, int> middle;
+    for (const BorderEdge& edge : border) {
+        const int piece = pieces.find(edge.from);
+        const auto [entry, fresh] = middle.try_emplace(piece, static_cast<int>(caps.points.size()));
+        if (fresh) caps.points.push_back(around[piece].center());
+        for (int i = 0; i < edge.times; ++i) caps.triangles.push_back({edge.to, edge.from, entry->second});
+    }
+    return caps;
+}
+
 std::size_t close_seams(TriMesh& surface) {
-    const std::vector<std::pair<int, int>> before = border_edges(surface);
+    const std::vector<BorderEdge> before = border_edges(surface);
     const double reach = 2 * rounding * bounds(surface).diagonal();
     if (before.empty() || !(reach > 0)) return 0;
     DisjointSets sets = joined(surface, ends_of(before), reach);

@@ -14,6 +14,8 @@ constexpr double most_cells = 4e6;
 constexpr double most_work = 5e7;
 /// Of a box with more triangles the tree knows more quickly.
 constexpr std::size_t crowd = 48;
+/// Edges of the border for each triangle: with more, the caps are as much to ask as the surface.
+constexpr double longest_border = 0.25;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -79,8 +81,12 @@ std::optional<int> growth(const Corners& t, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-WindingGrid::WindingGrid(TriMesh surface) : tree_(std::move(surface)), box_(bounds(tree_.surface())) {
-    if (tree_.surface().triangles.empty() || !border_edges(tree_.surface()).empty()) return;
+WindingGrid::WindingGrid(TriMesh surface)
+    : tree_(std::move(surface)), caps_(border_caps(tree_.surface())), closed_(caps_.surface()) {
+    const std::vector<std::array<int, 3>>& triangles = tree_.surface().triangles;
+    box_ = bounds(tree_.surface());
+    if (triangles.empty() || closed_.triangles.size() > longest_border * static_cast<double>(triangles.size())) return;
+    closed_.triangles.insert(closed_.triangles.end(), triangles.begin(), triangles.end());
     choose_cells();
     list_triangles();
     find_references();
@@ -88,12 +94,12 @@ WindingGrid::WindingGrid(TriMesh surface) : tree_(std::move(surface)), box_(boun
 
 double WindingGrid::winding_number(const Vec3& point) const {
     if (count_[0] == 0) return tree_.winding_number(point);
-    if (!box_.contains(point)) return 0;
+    if (!box_.contains(point)) return -caps_.winding_number(point);
     const Place place = places_of({point, point}).first;
     const std::size_t cell = index(place);
     if (triangles(cell).size() > crowd) return tree_.winding_number(point);
     const std::optional<int> more = change(cell, reference(place), point);
-    return more ? winding_[cell] + *more : tree_.winding_number(point);
+    return more ? winding_[cell] + *more - caps_.winding_number(point) : tree_.winding_number(point);
 }
 
 std::span<const int> WindingGrid::triangles(std::size_t cell) const {
@@ -135,7 +141,7 @@ void WindingGrid::choose_cells() {
     constexpr double least = 32;
     const Vec3 size = box_.size();
     const double longest = std::max({size.x, size.y, size.z});
-    const double triangle = std::sqrt(area(surface()) / static_cast<double>(surface().triangles.size()));
+    const double triangle = std::sqrt(area(closed_) / static_cast<double>(closed_.triangles.size()));
     double wanted = std::min(triangle, longest / least);
     while (true) {
         double cells = 1;
@@ -151,8 +157,8 @@ void WindingGrid::choose_cells() {
 
 double WindingGrid::work() const {
     double sum = 0;
-    for (int i = 0; i < static_cast<int>(surface().triangles.size()); ++i) {
-        const auto [low, high] = places_of(box_of(corners(surface(), i)));
+    for (int i = 0; i < static_cast<int>(closed_.triangles.size()); ++i) {
+        const auto [low, high] = places_of(box_of(corners(closed_, i)));
         double cells = 1;
         for (std::size_t k = 0; k < 3; ++k) cells *= high[k] - low[k] + 1;
         sum += cells;
@@ -168,8 +174,8 @@ void WindingGrid::list_triangles() {
     const double rounding = 1e-12 * (norm(box_.low) + norm(box_.high));
     const Vec3 margin = 1e-9 * side_ + Vec3{rounding, rounding, rounding};
     const auto for_each_pair = [&](const auto& take) {
-        for (int i = 0; i < static_cast<int>(surface().triangles.size()); ++i) {
-            const Corners t = corners(surface(), i);
+        for (int i = 0; i < static_cast<int>(closed_.triangles.size()); ++i) {
+            const Corners t = corners(closed_, i);
             const Box3 around = box_of(t);
             const auto [low, high] = places_of({around.low - margin, around.high + margin});
             Place at{};
@@ -210,7 +216,7 @@ void WindingGrid::find_references() {
                     const std::optional<int> first = change(index(before), reference(before), face);
                     more = first ? std::optional(*first + *more) : std::nullopt;
                 }
-                winding = more ? winding + *more : asked_of_tree(end);
+                winding = more ? winding + *more : asked_of_trees(end);
                 winding_[index(at)] = static_cast<std::int16_t>(winding);
             }
         }
@@ -220,15 +226,15 @@ void WindingGrid::find_references() {
 std::optional<int> WindingGrid::change(std::size_t cell, const Vec3& a, const Vec3& b) const {
     int sum = 0;
     for (const int triangle : triangles(cell)) {
-        const std::optional<int> more = growth(corners(surface(), triangle), a, b);
+        const std::optional<int> more = growth(corners(closed_, triangle), a, b);
         if (!more) return std::nullopt;
         sum += *more;
     }
     return sum;
 }
 
-int WindingGrid::asked_of_tree(const Vec3& point) const {
-    return static_cast<int>(std::lround(tree_.winding_number(point)));
+int WindingGrid::asked_of_trees(const Vec3& point) const {
+    return static_cast<int>(std::lround(tree_.winding_number(point) + caps_.winding_number(point)));
 }
 
 }  // namespace pliant::mesh

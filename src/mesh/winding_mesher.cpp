@@ -8,9 +8,7 @@
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
-#include <CGAL/perturb_mesh_3.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,6 +18,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/disjoint_sets.hpp"
 #include "mesh/gmsh_kernel.hpp"
 #include "mesh/labelled_space.hpp"
 #include "mesh/sharp_edges.hpp"
@@ -36,6 +35,10 @@ using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 /// Somewhere inside a surface must wind this often: a sheet reaches a half on its very face.
 constexpr double surely_inside = 0.6;
+
+/// Tets with smaller dihedral angles are worked on after CGAL, whose own ways to be rid of them leave as many and may
+/// take minutes.
+constexpr double wanted_deg = 12;
 
 Kernel::Point_3 cgal(const Vec3& p) {
     return {p.x, p.y, p.z};
@@ -64,10 +67,47 @@ Box3 grown(const Box3& box) {
     return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}};
 }
 
-TetMesh collect(const Complex& complex, const Vec3& offset) {
+using Cells = std::vector<Complex::Cell_handle>;
+
+double volume_of(const Complex::Cell_handle& cell) {
+    const auto at = [&](int k) {
+        const auto& p = cell->vertex(k)->point();
+        return Vec3{p.x(), p.y(), p.z()};
+    };
+    return std::fabs(signed_tet_volume(at(0), at(1), at(2), at(3)));
+}
+
+/// The cells of the complex without crumbs: what hangs together by faces and is less than a hundredth of a tet. Where a
+/// surface cuts through itself they cling to the rest by an edge, or nothing.
+Cells cells_without_crumbs(const Complex& complex, double size) {
+    const double least = 1e-3 * size * size * size;
+    Cells cells;
+    std::unordered_map<Complex::Cell_handle, int> number;
+    for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
+        number.emplace(cell, static_cast<int>(cells.size()));
+        cells.push_back(cell);
+    }
+    DisjointSets pieces(cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        for (int k = 0; k < 4; ++k) {
+            const auto other = number.find(cells[c]->neighbor(k));
+            if (other != number.end()) pieces.join(static_cast<int>(c), other->second);
+        }
+    }
+    std::vector<double> volumes(cells.size());  // of the piece, at its lowest cell
+    const auto piece = [&](std::size_t c) { return static_cast<std::size_t>(pieces.find(static_cast<int>(c))); };
+    for (std::size_t c = 0; c < cells.size(); ++c) volumes[piece(c)] += volume_of(cells[c]);
+    Cells kept;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        if (volumes[piece(c)] >= least) kept.push_back(cells[c]);
+    }
+    return kept;
+}
+
+TetMesh collect(const Complex& complex, const Vec3& offset, double size) {
     TetMesh mesh;
     std::unordered_map<Triangulation::Vertex_handle, int> index;
-    for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
+    for (const Complex::Cell_handle& cell : cells_without_crumbs(complex, size)) {
         std::array<int, 4> nodes{};
         for (int k = 0; k < 4; ++k) {
             const auto vertex = cell->vertex(k);
@@ -84,15 +124,21 @@ TetMesh collect(const Complex& complex, const Vec3& offset) {
     return mesh;
 }
 
-/// Several times what a mesh of this size has where nothing is finer than it, and room for what is.
-std::size_t node_limit(const TriMesh& surface, double size) {
+/// About what a mesh of this size has where nothing is finer than it.
+double expected_nodes(const TriMesh& surface, double size) {
     double area = 0;
     for (const auto& [a, b, c] : surface.triangles) {
         const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
         area += norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
     }
-    const double nodes = std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
-    return 6000 + static_cast<std::size_t>(std::min(6 * nodes, 20e6));
+    return std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
+}
+
+/// Several times as many, and room for what is finer than the size.
+std::size_t node_limit(const LabelledSpace& space, double size) {
+    double sum = 0;
+    for (const WindingGrid& surface : space.surfaces()) sum += 6000 + 6 * expected_nodes(surface.surface(), size);
+    return static_cast<std::size_t>(std::min(sum, 20e6));
 }
 
 /// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
@@ -123,6 +169,7 @@ struct Demands {
     std::vector<std::vector<Vec3>> edges;  ///< that stay
     double distance;                       ///< of the mesh's surface from the true one, as a share of the size
     double facet_angle_deg;
+    double share = 1;  ///< of all sizes, which is how long edges become
 };
 
 /// Edge lengths as CGAL asks for them, `share` of what is wanted: of cells by their region, of facets and curves by the
@@ -158,8 +205,9 @@ private:
 /// Surfaces around the origin, and what is wanted of their mesh.
 struct Task {
     const LabelledSpace& space;
+    std::span<const std::string> names;
+    std::vector<double> volumes;  ///< that the regions should have
     Box3 box;
-    std::size_t node_limit;
     double size;
     const SizeOfSurface& size_at;
     Asked& asked;
@@ -185,18 +233,17 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
     }
     domain.add_features(lines.begin(), lines.end());
     const std::size_t surfaces = task.space.surfaces().size();
-    const auto sizes = [&](double share) { return Sizes(task.size_at, surfaces, share); };
+    const auto sizes = [&](double share) { return Sizes(task.size_at, surfaces, demands.share * share); };
     const Criteria criteria(params::edge_size = sizes(1), params::facet_angle = demands.facet_angle_deg,
-                            params::facet_size = sizes(0.65), params::facet_distance = demands.distance * task.size,
+                            params::facet_size = sizes(0.65),
+                            params::facet_distance = demands.share * demands.distance * task.size,
                             params::cell_radius_edge_ratio = 2, params::cell_size = sizes(0.75));
     CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
-    Complex complex =
-        CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude(),
-                                   params::mesh_3_options(params::maximal_number_of_vertices = task.node_limit,
-                                                          params::pointer_to_error_code = &code));
+    Complex complex = CGAL::make_mesh_3<Complex>(
+        domain, criteria, params::no_perturb(), params::no_exude(),
+        params::mesh_3_options(params::maximal_number_of_vertices = node_limit(task.space, demands.share * task.size),
+                               params::pointer_to_error_code = &code));
     if (code != CGAL::CGAL_MESH_3_NO_ERROR) return std::nullopt;
-    CGAL::perturb_mesh_3(complex, domain, params::sliver_bound = 12);
-    CGAL::exude_mesh_3(complex, params::sliver_bound = 12);
     return complex;
 }
 
@@ -259,14 +306,49 @@ std::vector<JointMesh::Overlap> overlaps_of(const LabelledSpace& space, const st
     return found;
 }
 
-Status check_volumes(const TetMesh& mesh, const std::vector<double>& expected, std::span<const std::string> names) {
-    for (std::size_t s = 0; s < expected.size(); ++s) {
+Status check_volumes(const TetMesh& mesh, const Task& task) {
+    for (std::size_t s = 0; s < task.volumes.size(); ++s) {
         const double meshed = volume(mesh, static_cast<int>(s));
-        if (std::fabs(meshed - expected[s]) <= 0.1 * expected[s]) continue;
-        return failure("the mesh of {} has a volume of {:.6g} instead of about {:.6g}; try another mesh size", names[s],
-                       meshed, expected[s]);
+        const double expected = task.volumes[s];
+        if (std::fabs(meshed - expected) <= 0.1 * expected) continue;
+        return failure("the mesh of {} has a volume of {:.6g} instead of about {:.6g}; try another mesh size",
+                       task.names[s], meshed, expected);
     }
     return {};
+}
+
+/// The mesh with edges of `share` of the sizes asked, its sharp edges rounded off if it does not come to an end with
+/// them.
+Result<TetMesh> try_mesh(const Task& task, const SharpEdges& edges, const Vec3& offset, double angle_deg,
+                         double share) {
+    std::optional<Complex> complex = mesh_around_origin(task, {edges.chains, 0.05, 25, share});
+    const bool rounded = !complex;
+    if (rounded) complex = mesh_around_origin(task, {{}, 0.15, 20, share});
+    if (!complex)
+        return failure("the mesh of {} does not come to an end; try a smaller mesh size", fmt::join(task.names, ", "));
+    TetMesh mesh = collect(*complex, offset, share * task.size);
+    improve_tets(mesh, {.wanted_deg = wanted_deg, .feature_deg = angle_deg});
+    if (Status status = check_volumes(mesh, task); !status) return tl::unexpected(status.error());
+    if (rounded)
+        mesh.notes.emplace_back("its sharp edges are rounded off: with them the mesh does not come to an end");
+    else if (edges.dropped > 0)
+        mesh.notes.push_back(
+            fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
+    return mesh;
+}
+
+/// The mesh with the sizes asked or, where they are too coarse to follow the surface, with somewhat smaller ones.
+Result<TetMesh> mesh_finely_enough(const Task& task, const SharpEdges& edges, const Vec3& offset, double angle_deg) {
+    constexpr std::array<double, 2> shares = {0.7, 0.5};
+    Result<TetMesh> mesh = try_mesh(task, edges, offset, angle_deg, 1);
+    for (std::size_t i = 0; !mesh && i < shares.size(); ++i) {
+        Result<TetMesh> finer = try_mesh(task, edges, offset, angle_deg, shares[i]);
+        if (!finer) continue;
+        mesh = std::move(finer);
+        mesh->notes.push_back(fmt::format(
+            "its edges are {:g} times as long as the mesh size asks: longer ones cannot follow its shape", shares[i]));
+    }
+    return mesh;
 }
 
 Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> names, double size,
@@ -275,12 +357,12 @@ Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> nam
     const Result<std::vector<double>> volumes = expected_volumes(space, names);
     if (!volumes) return tl::unexpected(volumes.error());
     double whole = 0;
-    std::size_t nodes = 0;
+    double nodes = 0;
     Box3 box;
     for (std::size_t s = 0; s < space.surfaces().size(); ++s) {
         const WindingGrid& surface = space.surfaces()[s];
         whole += (*volumes)[s];
-        nodes += node_limit(surface.surface(), size);
+        nodes += expected_nodes(surface.surface(), size);
         box.add(surface.box().low);
         box.add(surface.box().high);
     }
@@ -288,24 +370,12 @@ Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> nam
     if (!few) return tl::unexpected(few.error());
     try {
         const SharpEdges edges = sharp_edges(space, size, angle_deg);
-        Asked asked(1 + static_cast<double>(nodes) / 6, progress);
+        Asked asked(1000 + nodes, progress);
         const SizeOfSurface size_here = [&](std::size_t s, const Vec3& p) { return size_at(s, p + centred.middle); };
-        const Task task{space, grown(box), nodes, size, size_here, asked};
-        std::optional<Complex> complex = mesh_around_origin(task, {edges.chains, 0.05, 25});
-        const bool rounded = !complex;
-        if (rounded) complex = mesh_around_origin(task, {{}, 0.15, 20});
-        if (!complex)
-            return failure("the mesh of {} does not come to an end; try a smaller mesh size", fmt::join(names, ", "));
-        JointMesh result{collect(*complex, centred.middle), std::move(centred.damage), overlaps_of(space, *volumes)};
-        improve_tets(result.mesh, {.feature_deg = angle_deg});
-        if (Status status = check_volumes(result.mesh, *volumes, names); !status) return tl::unexpected(status.error());
-        if (rounded)
-            result.mesh.notes.emplace_back(
-                "its sharp edges are rounded off: with them the mesh does not come to an end");
-        else if (edges.dropped > 0)
-            result.mesh.notes.push_back(
-                fmt::format("{} sharp edges that cross or nearly touch others are rounded off", edges.dropped));
-        return result;
+        const Task task{space, names, *volumes, grown(box), size, size_here, asked};
+        Result<TetMesh> mesh = mesh_finely_enough(task, edges, centred.middle, angle_deg);
+        if (!mesh) return tl::unexpected(mesh.error());
+        return JointMesh{std::move(*mesh), std::move(centred.damage), overlaps_of(space, *volumes)};
     } catch (const Cancelled&) {
         return cancelled();
     } catch (const std::exception& error) {

@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "mesh/mesh_report.hpp"
 #include "mesh/sharp_edges.hpp"
@@ -17,6 +19,30 @@ using namespace pliant::mesh::test;
 namespace {
 
 Progress silent;
+
+/// A convex or slightly notched outline, counter-clockwise in x and y, drawn out along z.
+TriMesh extruded(const std::vector<std::array<double, 2>>& outline, double height) {
+    TriMesh mesh;
+    const int n = static_cast<int>(outline.size());
+    for (const double z : {0.0, height}) {
+        for (const auto& [x, y] : outline) mesh.points.push_back({x, y, z});
+    }
+    for (int i = 0; i < n; ++i) {
+        const int j = (i + 1) % n;
+        mesh.triangles.push_back({i, j, n + j});
+        mesh.triangles.push_back({i, n + j, n + i});
+        if (i < 1 || j == 0) continue;
+        mesh.triangles.push_back({0, j, i});
+        mesh.triangles.push_back({n, n + i, n + j});
+    }
+    return mesh;
+}
+
+double length(const std::vector<Vec3>& chain) {
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) sum += norm(chain[i + 1] - chain[i]);
+    return sum;
+}
 
 /// The mesh's volume, and that its shapes are usable.
 double meshed_volume(const TriMesh& surface, double size) {
@@ -115,6 +141,40 @@ TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesh
     const SharpEdges clean = sharp_edges(LabelledSpace({cube()}), 2, 30);
     CHECK(clean.dropped == 0);
     CHECK(clean.chains.size() == 12);
+}
+
+TEST_CASE("edges that the mesh size cannot tell apart become one, and those that part at a small angle are left out") {
+    constexpr double size = 2;
+    const TriMesh step = extruded({{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 10.002}, {0, 10.002}}, 10);
+    const SharpEdges edges = sharp_edges(LabelledSpace({step}), size, 30);
+    CHECK(edges.dropped == 0);
+    CHECK(edges.chains.size() == 5 + 5 + 5);
+    for (const auto& chain : edges.chains) CHECK(length(chain) > 0.1 * size);
+    const Result<TetMesh> mesh = mesh_by_winding(step, size, 30, silent);
+    REQUIRE(mesh);
+    CHECK(mesh->notes.size() == 1);
+    CHECK(mesh->tet_count() < 2 * mesh_by_winding(cube(), size, 30, silent)->tet_count());
+    CHECK(volume(*mesh) == doctest::Approx(1000.01).epsilon(1e-3));
+
+    const TriMesh wedge = extruded({{0, 0}, {10, 0}, {10, 0.5}}, 10);
+    const SharpEdges acute = sharp_edges(LabelledSpace({wedge}), size, 30);
+    CHECK(acute.dropped == 4);
+    CHECK_FALSE(acute.chains.empty());
+    const TriMesh roof = extruded({{0, 0}, {10, 0}, {10, 5}}, 10);
+    CHECK(sharp_edges(LabelledSpace({roof}), size, 30).dropped == 0);
+}
+
+TEST_CASE("a mesh size that cannot follow the surface gives way to a smaller one, and the mesh says so") {
+    TriMesh frame = cube({0, 0, 0}, 20);
+    TriMesh room = cube({2, 2, -5}, 16);
+    for (auto& t : room.triangles) std::swap(t[0], t[1]);
+    for (Vec3& p : frame.points) p.z *= 0.1;
+    for (Vec3& p : room.points) p.z = p.z < 0 ? 0 : 2;
+    // The lids of frame and room lie in one plane and wind against each other.
+    const Result<TetMesh> mesh = mesh_by_winding(joined(frame, room), 9, 180, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume(*mesh) == doctest::Approx(2 * (400 - 256)).epsilon(0.1));
+    CHECK(mesh->notes.back().find("cannot follow its shape") != std::string::npos);
 }
 
 TEST_CASE("meshing from the winding number can be stopped") {
