@@ -569,8 +569,10 @@ constexpr double sliver_deg = 5;
 
 /// One attempt of mesh_surface().
 Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
+    // Of a shell of few triangles Gmsh may try to cut a part in two for ever.
+    constexpr std::size_t enough = 64;
     const auto anew = [&]() -> Result<TetMesh> {
-        add_triangles(surface);
+        add_triangles(with_enough_triangles(surface, enough));
         gmsh::model::mesh::classify_surfaces(angle_deg * std::numbers::pi / 180, true, true, std::numbers::pi);
         gmsh::model::mesh::create_geometry();
         return mesh_enclosed(size, size_at);
@@ -601,6 +603,8 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
     Result<TetMesh> best = try_mesh_surface(surface, size, angle_deg, size_at);
     if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
     double angle = smallest_dihedral_deg(*best);
+    constexpr std::size_t many = 20;  // one tet in so many: not by chance, walls are thinner than edges are long
+    if (many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
     // Slivers come by chance: a slightly smaller size gives other points, and as a rule none.
     for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
         SizeAt smaller;

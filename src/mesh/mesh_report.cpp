@@ -104,6 +104,15 @@ double smallest_dihedral_deg(const TetMesh& mesh) {
     return smallest;
 }
 
+std::size_t sliver_count(const TetMesh& mesh, double below_deg) {
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const std::array<double, 6> angles = dihedral_angles(mesh, t);
+        count += *std::min_element(angles.begin(), angles.end()) < below_deg ? 1 : 0;
+    }
+    return count;
+}
+
 MeshReport report_on(const TetMesh& mesh) {
     MeshReport report;
     report.order = mesh.order;

@@ -40,6 +40,9 @@ struct MeshReport {
 [[nodiscard]] MeshReport report_on(const TetMesh& mesh);
 /// The smallest angle between two faces of a tet, of all tets; 180 where there are none.
 [[nodiscard]] double smallest_dihedral_deg(const TetMesh& mesh);
+
+/// Tets with a dihedral angle below so many degrees.
+[[nodiscard]] std::size_t sliver_count(const TetMesh& mesh, double below_deg);
 [[nodiscard]] std::string report_text(const MeshReport& report);
 /// The same as a JSON object; docs/reference/geometry.md names its keys.
 [[nodiscard]] std::string report_json(const MeshReport& report);

@@ -1,6 +1,7 @@
 #include "mesh/surface_shells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -135,6 +136,33 @@ Result<std::vector<TriMesh>> solid_pieces(const TriMesh& surface) {
             append(pieces[static_cast<std::size_t>(piece_of[static_cast<std::size_t>(parents[s])])], shells[s].mesh);
     }
     return pieces;
+}
+
+TriMesh with_enough_triangles(TriMesh surface, std::size_t least) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+        const auto [entry, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<int>(surface.points.size()));
+        const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
+        if (fresh) surface.points.push_back(0.5 * (at(a) + at(b)));
+        return entry->second;
+    };
+    for (const std::vector<std::size_t>& shell : shell_triangles(surface)) {
+        std::vector<std::size_t> triangles = shell;
+        while (triangles.size() < least) {
+            for (std::size_t i = triangles.size(); i-- > 0;) {
+                const auto [a, b, c] = surface.triangles[triangles[i]];
+                const int ab = middle(a, b);
+                const int bc = middle(b, c);
+                const int ca = middle(c, a);
+                surface.triangles[triangles[i]] = {ab, bc, ca};
+                for (const std::array<int, 3>& corner : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}}) {
+                    triangles.push_back(surface.triangles.size());
+                    surface.triangles.push_back(corner);
+                }
+            }
+        }
+    }
+    return surface;
 }
 
 }  // namespace pliant::mesh

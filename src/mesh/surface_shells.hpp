@@ -28,4 +28,8 @@ void append(TriMesh& surface, const TriMesh& other);
 /// van Oosterom and Strackee 1983). Cost: all triangles.
 [[nodiscard]] double winding_number(const TriMesh& surface, const Vec3& point);
 
+/// The same surface with at least so many triangles in each shell: those of smaller shells are split at the middles of
+/// their edges, as often as it takes.
+[[nodiscard]] TriMesh with_enough_triangles(TriMesh surface, std::size_t least);
+
 }  // namespace pliant::mesh

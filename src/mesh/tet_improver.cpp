@@ -85,10 +85,14 @@ public:
 
     void run() {
         constexpr int rounds = 12;
+        // Where so many are bad, walls are thinner than edges are long, and more nodes here and there do not help.
+        constexpr std::size_t many = 10;
         for (int round = 0; round < rounds; ++round) {
             bool better = false;
-            for (const int t : bad_tets()) {
-                if (alive(t) && quality(t) < wanted_) better = improve(t, round >= 2) || better;
+            const std::vector<int> bad = bad_tets();
+            const bool may_add_nodes = round >= 2 && many * bad.size() < tets_.size();
+            for (const int t : bad) {
+                if (alive(t) && quality(t) < wanted_) better = improve(t, may_add_nodes) || better;
             }
             if (!better) break;
         }

@@ -28,7 +28,27 @@ namespace pliant::mesh {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
+using Labeled = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
+
+/// CGAL begins at points where random rays meet the surface, for which it may look very long if the body fills little
+/// of its box. Here it is told of some.
+class Domain : public Labeled {
+public:
+    using Labeled::Labeled;
+
+    std::vector<std::pair<Kernel::Point_3, Surface_patch_index>> begin;
+
+    struct Construct_initial_points {
+        const Domain& domain;
+        template <class Output>
+        Output operator()(Output output, int = 0) const {
+            for (const auto& [point, patch] : domain.begin)
+                *output++ = std::pair(point, domain.index_from_surface_patch_index(patch));
+            return output;
+        }
+    };
+    [[nodiscard]] Construct_initial_points construct_initial_points_object() const { return {*this}; }
+};
 using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
@@ -213,6 +233,39 @@ struct Task {
     Asked& asked;
 };
 
+/// Points where labels meet, far from each other: of the middles of triangles.
+std::vector<std::pair<Kernel::Point_3, Domain::Surface_patch_index>> spread_points(const LabelledSpace& space,
+                                                                                   double diagonal) {
+    constexpr std::size_t most_tried = 2000;  // of each surface
+    constexpr std::size_t wanted = 20;
+    const double step = 1e-7 * diagonal;
+    std::vector<std::pair<Vec3, std::pair<int, int>>> found;
+    for (const WindingGrid& grid : space.surfaces()) {
+        const TriMesh& surface = grid.surface();
+        const std::size_t stride = 1 + surface.triangles.size() / most_tried;
+        for (std::size_t t = 0; t < surface.triangles.size(); t += stride) {
+            const auto& [a, b, c] = surface.triangles[t];
+            const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
+            const Vec3 middle = (at(a) + at(b) + at(c)) / 3;
+            const Vec3 normal = cross(at(b) - at(a), at(c) - at(a));
+            const Vec3 away = (step / norm(normal)) * normal;
+            const auto labels = std::minmax({space.label(middle + away), space.label(middle - away)});
+            if (labels.first != labels.second) found.emplace_back(middle, labels);
+        }
+    }
+    std::vector<std::pair<Kernel::Point_3, Domain::Surface_patch_index>> chosen;
+    std::vector<double> distance(found.size(), std::numeric_limits<double>::infinity());
+    while (!found.empty() && chosen.size() < wanted) {
+        const auto farthest =
+            static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+        if (distance[farthest] == 0) break;
+        const Vec3 p = found[farthest].first;
+        chosen.emplace_back(cgal(p), found[farthest].second);
+        for (std::size_t i = 0; i < found.size(); ++i) distance[i] = std::min(distance[i], norm(found[i].first - p));
+    }
+    return chosen;
+}
+
 /// Nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of circumradius r is up to
 /// sqrt(3) r long, that of a cell up to 1.63 r.
 std::optional<Complex> mesh_around_origin(const Task& task, const Demands& demands) {
@@ -226,6 +279,7 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
             return task.space.label({p.x(), p.y(), p.z()});
         },
         Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * task.size / radius);
+    domain.begin = spread_points(task.space, 2 * radius);
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
