@@ -1,43 +1,45 @@
 #include "core/base64.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace pliant {
+namespace {
+
+constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr std::int8_t blank = -1;
+constexpr std::int8_t padding = -2;
+constexpr std::int8_t foreign = -3;
+
+/// What each character stands for.
+constexpr std::array<std::int8_t, 256> values = [] {
+    std::array<std::int8_t, 256> table{};
+    table.fill(foreign);
+    const auto at = [&](char c) -> std::int8_t& { return table[static_cast<unsigned char>(c)]; };
+    for (std::size_t i = 0; i < alphabet.size(); ++i) at(alphabet[i]) = static_cast<std::int8_t>(i);
+    for (const char c : {' ', '\n', '\r', '\t'}) at(c) = blank;
+    at('=') = padding;
+    return table;
+}();
+
+}  // namespace
 
 std::string base64(std::string_view bytes) {
-    static constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
+    std::string text((bytes.size() + 2) / 3 * 4, '=');
+    std::size_t end = 0;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
         std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += i + k > bytes.size() ? '=' : alphabet[group >> (18 - 6 * k) & 63U];
-        }
+        for (std::size_t k = 0; k < count; ++k)
+            group |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) << (16 - 8 * k);
+        for (std::size_t k = 0; k <= count; ++k) text[end + k] = alphabet[group >> (18 - 6 * k) & 63U];
+        end += 4;
     }
     return text;
 }
-
-namespace {
-
-constexpr int blank = -1;
-constexpr int padding = -2;
-constexpr int foreign = -3;
-
-int value_of(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+') return 62;
-    if (c == '/') return 63;
-    if (c == '=') return padding;
-    return c == ' ' || c == '\n' || c == '\r' || c == '\t' ? blank : foreign;
-}
-
-}  // namespace
 
 std::optional<std::string> base64_decoded(std::string_view text, std::size_t count) {
     if (count > text.size()) return std::nullopt;
@@ -46,7 +48,7 @@ std::optional<std::string> base64_decoded(std::string_view text, std::size_t cou
     std::uint32_t group = 0;
     int bits = 0;
     for (std::size_t i = 0; i < text.size() && bytes.size() < count; ++i) {
-        const int value = value_of(text[i]);
+        const int value = values[static_cast<unsigned char>(text[i])];
         if (value == blank) continue;
         if (value == foreign) return std::nullopt;
         if (value == padding) {  // the group is over, what is left of it are filling bits

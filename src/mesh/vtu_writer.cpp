@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the files are declared LittleEndian");
 
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
-constexpr int compression_level = 6;
+constexpr int compression_level = 1;
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_quadratic_tetra = 24;
 
