@@ -233,34 +233,54 @@ struct Task {
     Asked& asked;
 };
 
-/// Points where labels meet, far from each other: of the middles of triangles.
-std::vector<std::pair<Kernel::Point_3, Domain::Surface_patch_index>> spread_points(const LabelledSpace& space,
-                                                                                   double diagonal) {
-    constexpr std::size_t most_tried = 2000;  // of each surface
-    constexpr std::size_t wanted = 20;
-    const double step = 1e-7 * diagonal;
-    std::vector<std::pair<Vec3, std::pair<int, int>>> found;
-    for (const WindingGrid& grid : space.surfaces()) {
-        const TriMesh& surface = grid.surface();
-        const std::size_t stride = 1 + surface.triangles.size() / most_tried;
-        for (std::size_t t = 0; t < surface.triangles.size(); t += stride) {
-            const auto& [a, b, c] = surface.triangles[t];
-            const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
-            const Vec3 middle = (at(a) + at(b) + at(c)) / 3;
-            const Vec3 normal = cross(at(b) - at(a), at(c) - at(a));
-            const Vec3 away = (step / norm(normal)) * normal;
-            const auto labels = std::minmax({space.label(middle + away), space.label(middle - away)});
-            if (labels.first != labels.second) found.emplace_back(middle, labels);
+using SurfacePoint = std::pair<Vec3, Domain::Surface_patch_index>;
+
+/// Points where labels meet, spread evenly over the triangles (Roberts' R2 sequence, by area), at least one for each of
+/// some of them.
+std::vector<SurfacePoint> points_on(const LabelledSpace& space, const TriMesh& surface, double step) {
+    constexpr double g = 1.32471795724474602596;  // x^3 = x + 1
+    constexpr double tried = 4000;
+    const auto corner = [&](std::size_t t, std::size_t k) {
+        return surface.points[static_cast<std::size_t>(surface.triangles[t][k])];
+    };
+    const auto normal = [&](std::size_t t) { return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)); };
+    double whole = 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) whole += norm(normal(t));
+    std::vector<SurfacePoint> found;
+    double due = 0;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Vec3 n = normal(t);
+        due += tried * norm(n) / whole;
+        for (int i = 1; due >= 1; ++i, --due) {
+            double u = std::fmod(0.5 + i / g, 1.0);
+            double v = std::fmod(0.5 + i / (g * g), 1.0);
+            if (u + v > 1) u = 1 - u, v = 1 - v;
+            const Vec3 p = corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) + v * (corner(t, 2) - corner(t, 0));
+            const Vec3 away = (step / norm(n)) * n;
+            const auto labels = std::minmax({space.label(p + away), space.label(p - away)});
+            if (labels.first != labels.second) found.emplace_back(p, labels);
         }
     }
-    std::vector<std::pair<Kernel::Point_3, Domain::Surface_patch_index>> chosen;
+    return found;
+}
+
+/// Of all surfaces `least` points as far from each other as can be, and more until they would be nearer than `apart`.
+/// Where walls are thinner than points are apart there may be no tet that meets the surface.
+std::vector<SurfacePoint> spread_points(const LabelledSpace& space, double diagonal, double apart, std::size_t least) {
+    constexpr std::size_t most = 200;
+    std::vector<SurfacePoint> found;
+    for (const WindingGrid& grid : space.surfaces()) {
+        const std::vector<SurfacePoint> its = points_on(space, grid.surface(), 1e-7 * diagonal);
+        found.insert(found.end(), its.begin(), its.end());
+    }
+    std::vector<SurfacePoint> chosen;
     std::vector<double> distance(found.size(), std::numeric_limits<double>::infinity());
-    while (!found.empty() && chosen.size() < wanted) {
-        const auto farthest =
-            static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
-        if (distance[farthest] == 0) break;
-        const Vec3 p = found[farthest].first;
-        chosen.emplace_back(cgal(p), found[farthest].second);
+    while (!found.empty() && chosen.size() < most) {
+        const auto farthest = std::max_element(distance.begin(), distance.end()) - distance.begin();
+        const double its = distance[static_cast<std::size_t>(farthest)];
+        if (its == 0 || (its < apart && chosen.size() >= least)) break;
+        chosen.push_back(found[static_cast<std::size_t>(farthest)]);
+        const Vec3 p = chosen.back().first;
         for (std::size_t i = 0; i < found.size(); ++i) distance[i] = std::min(distance[i], norm(found[i].first - p));
     }
     return chosen;
@@ -279,7 +299,9 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
             return task.space.label({p.x(), p.y(), p.z()});
         },
         Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * task.size / radius);
-    domain.begin = spread_points(task.space, 2 * radius);
+    const auto least = static_cast<std::size_t>(20 / std::pow(demands.share, 3));
+    for (const auto& [point, patch] : spread_points(task.space, 2 * radius, demands.share * task.size, least))
+        domain.begin.emplace_back(cgal(point), patch);
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
@@ -393,7 +415,7 @@ Result<TetMesh> try_mesh(const Task& task, const SharpEdges& edges, const Vec3& 
 
 /// The mesh with the sizes asked or, where they are too coarse to follow the surface, with somewhat smaller ones.
 Result<TetMesh> mesh_finely_enough(const Task& task, const SharpEdges& edges, const Vec3& offset, double angle_deg) {
-    constexpr std::array<double, 2> shares = {0.7, 0.5};
+    constexpr std::array<double, 3> shares = {0.7, 0.5, 0.35};
     Result<TetMesh> mesh = try_mesh(task, edges, offset, angle_deg, 1);
     for (std::size_t i = 0; !mesh && i < shares.size(); ++i) {
         Result<TetMesh> finer = try_mesh(task, edges, offset, angle_deg, shares[i]);
