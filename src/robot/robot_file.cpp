@@ -1,6 +1,4 @@
-#include <algorithm>
-#include <fstream>
-
+#include "core/files.hpp"
 #include "mesh/step_file.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/actuator_file.hpp"
@@ -59,15 +57,13 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     return robot;
 }
 
-/// Told by the beginning of the file: people hand over the drawing itself.
+/// Told by its content: people hand over the drawing itself.
 bool is_geometry(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(4096, '\0');
-    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
-    const bool binary = head.find('\0') != std::string::npos;  // a robot file with a slip may look like much else
-    return mesh::looks_like_step(head) || head.starts_with("solid ") || head.starts_with("ply\n") ||
-           threemf::looks_like_zip(head) || (binary && mesh::looks_like_surface(head));
+    const Result<std::string> bytes = read_file(file);
+    if (!bytes) return false;
+    const bool binary = bytes->find('\0') != std::string::npos;  // a robot file with a slip may look like much else
+    return mesh::looks_like_step(*bytes) || bytes->starts_with("solid ") || bytes->starts_with("ply\n") ||
+           threemf::looks_like_zip(*bytes) || (binary && mesh::looks_like_surface(*bytes));
 }
 
 }  // namespace

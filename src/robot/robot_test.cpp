@@ -538,5 +538,8 @@ TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robo
     for (const std::string& content :
          {std::string("solid x\nfacet normal 0 0 1\n"), std::string("ISO-10303-21;\n"), std::string("PK\x03\x04...")})
         CHECK(message("part.stl", content).find("is geometry, no robot file") != std::string::npos);
+    std::string binary = std::string(80, ' ') + std::string("\x64\0\0\0", 4);  // 100 facets
+    binary += std::string(100 * 50, '\0');
+    CHECK(message("part.stl", binary).find("is geometry, no robot file") != std::string::npos);
     CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
 }
