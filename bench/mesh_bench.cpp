@@ -1,5 +1,5 @@
-// Speed of meshing, and of reading and writing mesh files: in bytes of the file per second, and in bytes of points, nodes
-// and regions, which a compressed file has fewer of.
+// Speed of meshing, and of reading and writing mesh files: in bytes of the file per second, and in bytes of points,
+// nodes and regions, which a compressed file has fewer of.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>

@@ -10,16 +10,16 @@ namespace {
 
 constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-constexpr std::int8_t blank = -1;
-constexpr std::int8_t padding = -2;
-constexpr std::int8_t foreign = -3;
+constexpr int blank = -1;
+constexpr int padding = -2;
+constexpr int foreign = -3;
 
 /// What each character stands for.
-constexpr std::array<std::int8_t, 256> values = [] {
-    std::array<std::int8_t, 256> table{};
+constexpr std::array<int, 256> values = [] {
+    std::array<int, 256> table{};
     table.fill(foreign);
-    const auto at = [&](char c) -> std::int8_t& { return table[static_cast<unsigned char>(c)]; };
-    for (std::size_t i = 0; i < alphabet.size(); ++i) at(alphabet[i]) = static_cast<std::int8_t>(i);
+    const auto at = [&](char c) -> int& { return table[static_cast<unsigned char>(c)]; };
+    for (std::size_t i = 0; i < alphabet.size(); ++i) at(alphabet[i]) = static_cast<int>(i);
     for (const char c : {' ', '\n', '\r', '\t'}) at(c) = blank;
     at('=') = padding;
     return table;
