@@ -456,7 +456,8 @@ Status Link::resynchronise() {
 }
 
 Status Link::go_back_to(long number) {
-    if (number == 1 && base_ > 0) return handle_restart();  // its `start` was not heard
+    // Its `start` was not heard: line 1 is wanted though more were sent than it takes without having had that one.
+    if (number == 1 && (base_ > 0 || next_to_send_ > 1 + options_.window_lines)) return handle_restart();
     if (number > next_number_ || number <= base_) {
         return failure("the printer asks for line {}, lines {} to {} are at hand", number, base_ + 1, next_number_ - 1);
     }

@@ -137,6 +137,11 @@ TEST_CASE("what means that the machine is not where we think ends the print") {
     CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
+    // A reset whose `start` got lost: the numbers begin anew, long after line 1 was taken.
+    const std::string anew = "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
+    Bench reset(Once{"X6*", "oksta" + anew});
+    CHECK(holds(reset.error_of_print(), "restarted"));
+    CHECK(reset.times_written("X1*") == 1);
     CHECK(holds(Bench(Once{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
 }
 
