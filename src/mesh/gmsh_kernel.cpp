@@ -1,8 +1,13 @@
 // Gmsh keeps one global state: every use holds the lock of a Session.
 #include "mesh/gmsh_kernel.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -640,8 +645,34 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
     });
 }
 
+namespace {
+
+/// Open CASCADE follows pointers that a damaged file has left empty: a process of its own tries first. Precondition: in
+/// a session, so that no other thread is in these libraries while this one forks.
+Status can_be_imported(const std::string& file, double scale) {
+    const pid_t child = ::fork();
+    if (child < 0) return failure("{}: no process can be started to read it", file);
+    if (child == 0) {
+        for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
+        try {
+            (void)import_solids(file, scale);
+        } catch (...) {  // who reads it will be told
+            ::_exit(0);
+        }
+        ::_exit(0);
+    }
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+    return input_error("the STEP file is damaged: Open CASCADE crashes on it; export it anew");
+}
+
+}  // namespace
+
 Result<StepContent> read_step(const std::string& file, double scale) {
     return in_session("reading", [&]() -> Result<StepContent> {
+        if (Status status = can_be_imported(file, scale); !status) return tl::unexpected(status.error());
         const Entities solids = import_solids(file, scale);
         if (solids.empty()) return input_error("{}: holds no solid", file);
         occ::synchronize();
