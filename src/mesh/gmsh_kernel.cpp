@@ -647,15 +647,25 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
 
 namespace {
 
-/// Open CASCADE follows pointers that a damaged file has left empty: a process of its own tries first. Precondition: in
-/// a session, so that no other thread is in these libraries while this one forks.
+/// The solids of a STEP file, their surfaces meshed.
+Entities import_surfaces(const std::string& file, double scale) {
+    Entities solids = import_solids(file, scale);
+    occ::synchronize();
+    gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 32);
+    if (!solids.empty()) gmsh::model::mesh::generate(2);
+    return solids;
+}
+
+/// Open CASCADE follows pointers that a damaged file has left empty, and Gmsh throws where nobody can catch: a process
+/// of its own tries first. Precondition: in a session, so that no other thread is in these libraries while this one
+/// forks.
 Status can_be_imported(const std::string& file, double scale) {
     const pid_t child = ::fork();
     if (child < 0) return failure("{}: no process can be started to read it", file);
     if (child == 0) {
         for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
         try {
-            (void)import_solids(file, scale);
+            (void)import_surfaces(file, scale);
         } catch (...) {  // who reads it will be told
             ::_exit(0);
         }
@@ -665,7 +675,7 @@ Status can_be_imported(const std::string& file, double scale) {
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-    return input_error("the STEP file is damaged: Open CASCADE crashes on it; export it anew");
+    return input_error("the STEP file is damaged: Open CASCADE or Gmsh crashes on it; export it anew");
 }
 
 }  // namespace
@@ -673,11 +683,8 @@ Status can_be_imported(const std::string& file, double scale) {
 Result<StepContent> read_step(const std::string& file, double scale) {
     return in_session("reading", [&]() -> Result<StepContent> {
         if (Status status = can_be_imported(file, scale); !status) return tl::unexpected(status.error());
-        const Entities solids = import_solids(file, scale);
+        const Entities solids = import_surfaces(file, scale);
         if (solids.empty()) return input_error("{}: holds no solid", file);
-        occ::synchronize();
-        gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 32);
-        gmsh::model::mesh::generate(2);
         StepContent content;
         for (const auto& solid : solids) {
             const std::string path = gmsh::model::get_entity_name(3, solid.second);
