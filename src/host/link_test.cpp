@@ -160,46 +160,30 @@ TEST_CASE("endless refusal and endless silence end") {
 }
 
 TEST_CASE("talk is no answer") {
-    struct TalkingWire final : Wire {
-        TalkingWire(CountingClock& c, std::function<std::string(const std::string&)> a)
-            : clock(c), answer(std::move(a)) {}
-        Status write(std::string_view bytes) override {
-            written.emplace_back(bytes.substr(1, bytes.size() - 2));
-            pending += answer(written.back());
-            return {};
-        }
-        Result<std::string> read(double timeout_s) override {
-            if (!pending.empty()) return std::exchange(pending, {});
-            clock.now_s += std::min(timeout_s, 1.0);
-            return std::string(timeout_s < 1 ? "" : "T:20.0 /0.0 B:20.0 /0.0\n");
-        }
-        CountingClock& clock;
-        std::function<std::string(const std::string&)> answer;
-        std::vector<std::string> written;
-        std::string pending = "start\n";
-    };
-    CountingClock clock;
+    constexpr const char* talk = "T:20.0 /0.0 B:20.0 /0.0\n";
     SUBCASE("one that never answers is given up") {
-        TalkingWire wire(clock, [](const std::string&) { return std::string(); });
-        Link link(wire, clock);
-        const Status connected = link.connect();
+        Bench b([](const std::string&) { return std::string(); });
+        b.wire.talk = talk;
+        const Status connected = b.link.connect();
         REQUIRE_FALSE(connected);
         CHECK(holds(connected.error().message, "talks but does not answer"));
-        CHECK_FALSE(link.last_line());
-        CHECK(clock.now_s < 200);
+        CHECK_FALSE(b.link.last_line());
+        CHECK(b.clock.now_s < 200);
     }
     SUBCASE("a lost ok is found out meanwhile") {
         int seen = 0;
-        TalkingWire wire(clock, [&](const std::string& line) -> std::string {
-            if (line.find("X3*") == std::string::npos) return good_answer(line);
-            return ++seen == 1 ? "" : "Error:Line Number is not Last Line Number+1, Last Line: 2\nResend: 3\nok\n";
-        });
-        Link link(wire, clock, {1, 120, 3, 12, 0.2, 3});
-        REQUIRE(link.connect());
-        for (int i = 1; i <= 3; ++i) REQUIRE(link.send(fmt::format("G1 X{}", i)));
-        CHECK_FALSE(link.fence());
+        Bench b(
+            [&](const std::string& line) -> std::string {
+                if (line.find("X3*") == std::string::npos) return good_answer(line);
+                return ++seen == 1 ? "" : "Error:Line Number is not Last Line Number+1, Last Line: 2\nResend: 3\nok\n";
+            },
+            {1, 120, 3, 12, 0.2, 3});
+        b.wire.talk = talk;
+        REQUIRE(b.link.connect());
+        for (int i = 1; i <= 3; ++i) REQUIRE(b.link.send(fmt::format("G1 X{}", i)));
+        CHECK_FALSE(b.link.fence());
         CHECK(seen > 1);
-        CHECK(clock.now_s < 200);
+        CHECK(b.clock.now_s < 200);
     }
 }
 

@@ -39,11 +39,14 @@ public:
         return {};
     }
     Result<std::string> read(double timeout_s) override {
-        if (pending_.empty()) clock_.now_s += timeout_s;
-        return std::exchange(pending_, {});
+        if (!pending_.empty()) return std::exchange(pending_, {});
+        const bool talks = !talk.empty() && timeout_s >= 1;
+        clock_.now_s += talks ? 1 : timeout_s;
+        return talks ? talk : "";
     }
 
     std::vector<std::string> written;
+    std::string talk;  ///< what it says every second, asked or not
 
 private:
     CountingClock& clock_;

@@ -609,7 +609,7 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
     if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
     double angle = smallest_dihedral_deg(*best);
     constexpr std::size_t many = 20;  // one tet in so many: not by chance, walls are thinner than edges are long
-    if (many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
+    if (angle >= sliver_deg || many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
     // Slivers come by chance: a slightly smaller size gives other points, and as a rule none.
     for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
         SizeAt smaller;
@@ -661,13 +661,12 @@ Entities import_surfaces(const std::string& file, double scale) {
 /// forks.
 Status can_be_imported(const std::string& file, double scale) {
     const pid_t child = ::fork();
-    if (child < 0) return failure("{}: no process can be started to read it", file);
+    if (child < 0) return failure("no process can be started to try the STEP file");
     if (child == 0) {
         for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
         try {
             (void)import_surfaces(file, scale);
-        } catch (...) {  // who reads it will be told
-            ::_exit(0);
+        } catch (...) {  // whoever reads it after this is told
         }
         ::_exit(0);
     }

@@ -31,19 +31,20 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Labeled = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
 
 /// CGAL begins at points where random rays meet the surface, for which it may look very long if the body fills little
-/// of its box. Here it is told of some.
+/// of its box, unless sharp edges are enough. Here it is told of some when it asks.
 class Domain : public Labeled {
 public:
     using Labeled::Labeled;
 
-    std::vector<std::pair<Kernel::Point_3, Surface_patch_index>> begin;
+    using Start = std::pair<Vec3, Surface_patch_index>;
+    std::function<std::vector<Start>()> starts;
 
     struct Construct_initial_points {
         const Domain& domain;
         template <class Output>
         Output operator()(Output output, int = 0) const {
-            for (const auto& [point, patch] : domain.begin)
-                *output++ = std::pair(point, domain.index_from_surface_patch_index(patch));
+            for (const auto& [p, patch] : domain.starts())
+                *output++ = std::pair(Kernel::Point_3(p.x, p.y, p.z), domain.index_from_surface_patch_index(patch));
             return output;
         }
     };
@@ -233,11 +234,9 @@ struct Task {
     Asked& asked;
 };
 
-using SurfacePoint = std::pair<Vec3, Domain::Surface_patch_index>;
-
-/// Points where labels meet, spread evenly over the triangles (Roberts' R2 sequence, by area), at least one for each of
-/// some of them.
-std::vector<SurfacePoint> points_on(const LabelledSpace& space, const TriMesh& surface, double step) {
+/// Points where labels meet, about 4000 at most, spread evenly over the triangles (within each by Roberts' R2
+/// sequence).
+std::vector<Domain::Start> points_on(const LabelledSpace& space, const TriMesh& surface, double step) {
     constexpr double g = 1.32471795724474602596;  // x^3 = x + 1
     constexpr double tried = 4000;
     const auto corner = [&](std::size_t t, std::size_t k) {
@@ -246,7 +245,7 @@ std::vector<SurfacePoint> points_on(const LabelledSpace& space, const TriMesh& s
     const auto normal = [&](std::size_t t) { return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)); };
     double whole = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) whole += norm(normal(t));
-    std::vector<SurfacePoint> found;
+    std::vector<Domain::Start> found;
     double due = 0;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         const Vec3 n = normal(t);
@@ -266,14 +265,14 @@ std::vector<SurfacePoint> points_on(const LabelledSpace& space, const TriMesh& s
 
 /// Of all surfaces `least` points as far from each other as can be, and more until they would be nearer than `apart`.
 /// Where walls are thinner than points are apart there may be no tet that meets the surface.
-std::vector<SurfacePoint> spread_points(const LabelledSpace& space, double diagonal, double apart, std::size_t least) {
+std::vector<Domain::Start> spread_points(const LabelledSpace& space, double diagonal, double apart, std::size_t least) {
     constexpr std::size_t most = 200;
-    std::vector<SurfacePoint> found;
+    std::vector<Domain::Start> found;
     for (const WindingGrid& grid : space.surfaces()) {
-        const std::vector<SurfacePoint> its = points_on(space, grid.surface(), 1e-7 * diagonal);
+        const std::vector<Domain::Start> its = points_on(space, grid.surface(), 1e-7 * diagonal);
         found.insert(found.end(), its.begin(), its.end());
     }
-    std::vector<SurfacePoint> chosen;
+    std::vector<Domain::Start> chosen;
     std::vector<double> distance(found.size(), std::numeric_limits<double>::infinity());
     while (!found.empty() && chosen.size() < most) {
         const auto farthest = std::max_element(distance.begin(), distance.end()) - distance.begin();
@@ -299,9 +298,10 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
             return task.space.label({p.x(), p.y(), p.z()});
         },
         Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), params::relative_error_bound = exact * task.size / radius);
-    const auto least = static_cast<std::size_t>(20 / std::pow(demands.share, 3));
-    for (const auto& [point, patch] : spread_points(task.space, 2 * radius, demands.share * task.size, least))
-        domain.begin.emplace_back(cgal(point), patch);
+    domain.starts = [&] {
+        const auto least = static_cast<std::size_t>(20 / std::pow(demands.share, 3));
+        return spread_points(task.space, 2 * radius, demands.share * task.size, least);
+    };
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const std::vector<Vec3>& chain : demands.edges) {
         auto& line = lines.emplace_back();
