@@ -80,6 +80,18 @@ void Cholesky::solve(std::span<double> right_hand_sides, int columns) const {
     }
 }
 
+void Cholesky::solve_fields(std::span<double> fields, int count) const {
+    assert(state_->pattern.block == 1);
+    const std::size_t n = 3 * static_cast<std::size_t>(state_->pattern.size());
+    assert(fields.size() == n * static_cast<std::size_t>(count));
+    constexpr int together = 2;
+    for (int c = 0; c < count && n > 0; c += together) {
+        double* first = fields.data() + static_cast<std::size_t>(c) * n;
+        std::visit([&](const auto& factor) { factor.solve_fields(first, std::min(together, count - c)); },
+                   state_->factor);
+    }
+}
+
 std::optional<int> Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides,
                                               int columns, double tolerance, int limit) const {
     const SymmetricPattern& pattern = state_->pattern;

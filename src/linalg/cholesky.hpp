@@ -38,9 +38,13 @@ public:
     /// Solves in place for `columns` right-hand sides, stored one after the other, (columns, size).
     void solve(std::span<double> right_hand_sides, int columns) const;
 
-    /// Likewise, by conjugate gradients with the factor as preconditioner, until the error, in the norm of the matrix,
-    /// is about `tolerance` of the solution; `values` are those of the factor. How many it took beyond the first, or
-    /// nothing if `limit` leave more.
+    /// Solves in place for `count` fields of three components a node, (count, nodes, 3): each component is a right-hand
+    /// side. Quicker than solve() with all of them. Precondition: block 1.
+    void solve_fields(std::span<double> fields, int count) const;
+
+    /// As solve(), by conjugate gradients with the factor as preconditioner, until the error, in the norm of the
+    /// matrix, is about `tolerance` of the solution; `values` are those of the factor. How many it took beyond the
+    /// first, or nothing if `limit` leave more.
     [[nodiscard]] std::optional<int> solve_and_refine(std::span<const double> values,
                                                       std::span<double> right_hand_sides, int columns, double tolerance,
                                                       int limit) const;

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <array>
 #include <random>
 
 using namespace pliant::linalg;
@@ -103,6 +104,36 @@ TEST_CASE("grids of many shapes agree with Eigen's solver, for one to seven righ
             add_product(pattern, values, {x.col(c).data(), n}, 1, {product.col(c).data(), n});
         CHECK((product - right).norm() < 1e-9 * right.norm());
         count = count % 7 + 2;
+    }
+}
+
+TEST_CASE("fields of three components agree with Eigen's solver, in both precisions, on one core and on several") {
+    for (const auto& [nx, ny, nz] : {std::array{2, 2, 2}, {60, 3, 3}, {17, 16, 12}}) {
+        const auto pattern = grid(nx, ny, nz, 1);
+        std::vector<double> values;
+        const auto matrix = springs(pattern, values, 1e-1);
+        const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(matrix);
+        for (const Precision precision : {Precision::single_, Precision::double_}) {
+            Cholesky cholesky(pattern, precision);
+            REQUIRE(cholesky.factorise(values));
+            for (const int count : {1, 2, 3, 5}) {
+                const Eigen::MatrixXd fields = Eigen::MatrixXd::Random(3 * pattern.nodes, count);
+                Eigen::MatrixXd found[2] = {fields, fields};
+                for (const int threads : {1, 3}) {
+                    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+                    Eigen::MatrixXd& x = found[threads / 2];
+                    cholesky.solve_fields({x.data(), static_cast<std::size_t>(x.size())}, count);
+                }
+                CHECK(found[0] == found[1]);
+                for (int c = 0; c < count; ++c) {
+                    const Eigen::MatrixXd expected = independent.solve(
+                        Eigen::Map<const Eigen::MatrixXd>(fields.col(c).data(), 3, pattern.nodes).transpose());
+                    const Eigen::Map<const Eigen::MatrixXd> x(found[0].col(c).data(), 3, pattern.nodes);
+                    CHECK((x.transpose() - expected).norm() <
+                          (precision == Precision::single_ ? 1e-4 : 1e-10) * expected.norm());
+                }
+            }
+        }
     }
 }
 

@@ -25,6 +25,9 @@ public:
     [[nodiscard]] bool factorise(std::span<const double> values);
     /// In place, for at most four right-hand sides of nodes * block each, one after the other.
     void solve(double* right_side, int count) const;
+    /// In place, for at most two fields of three components a node, (count, nodes, 3): each component is a right-hand
+    /// side. Precondition: block 1.
+    void solve_fields(double* fields, int count) const;
 
     /// For one that will not factorise again: the work space goes, the factor stays.
     void release_work_space();
@@ -43,7 +46,8 @@ private:
     void add_to_panel(int child, const Real* update, const std::vector<Stretch>& stretches, int s) const;
     void add_to_update(int child, const Real* update, const std::vector<Stretch>& stretches, int s, Real* to) const;
 
-    class Sweep;  ///< the right-hand sides on their way through the tree
+    class Sweep;       ///< right-hand sides on their way through the tree
+    class FieldSweep;  ///< the same for fields
 
     std::shared_ptr<const Analysis> analysis_;
     int block_;

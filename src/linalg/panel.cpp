@@ -353,6 +353,112 @@ void solve_upper_any(const Panel<Real>& panel, int count, Real* x, const Real* y
     }
 }
 
+/// Eight rows of a panel against vectors of lanes.
+template <class Real>
+struct Lanes {
+    using D = hn::CappedTag<Real, lanes>;
+    using V = hn::Vec<D>;
+    static constexpr int rows = 8;
+    static constexpr int width = static_cast<int>(hn::MaxLanes(D()));
+
+    /// Of the rows r .. r + rows - 1 of one packet, column 0; columns follow at steps of a packet.
+    static HWY_INLINE const Real* rows_at(const Panel<Real>& panel, int r) { return panel.at(r, 0); }
+    static HWY_INLINE V load(const Real* x, int row, int part) { return hn::Load(D(), x + row * lanes + part); }
+    static HWY_INLINE void store(V v, Real* x, int row, int part) { hn::Store(v, D(), x + row * lanes + part); }
+
+    /// sums (rows) += or -= rows of the panel times x, over the first `depth` columns.
+    template <bool subtract>
+    static HWY_INLINE void multiply(const Real* a, int depth, const Real* x, int part, V* sums) {
+        for (int k = 0; k < depth; ++k) {
+            const V xk = load(x, k, part);
+            for (int r = 0; r < rows; ++r) {
+                const V entry = hn::Set(D(), a[k * packet<Real> + r]);
+                sums[r] = subtract ? hn::NegMulAdd(entry, xk, sums[r]) : hn::MulAdd(entry, xk, sums[r]);
+            }
+        }
+    }
+    /// x (columns from `first` to `last`) -= transposed rows of the panel times y (rows).
+    static HWY_INLINE void subtract_transposed(const Real* a, int first, int last, const V* y, Real* x, int part) {
+        for (int k = first; k < last; ++k) {
+            V even = load(x, k, part), odd = hn::Zero(D());
+            for (int r = 0; r < rows; r += 2) {
+                even = hn::NegMulAdd(hn::Set(D(), a[k * packet<Real> + r]), y[r], even);
+                odd = hn::NegMulAdd(hn::Set(D(), a[k * packet<Real> + r + 1]), y[r + 1], odd);
+            }
+            store(hn::Add(even, odd), x, k, part);
+        }
+    }
+};
+
+template <class Real>
+void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, Real* y) {
+    using L = Lanes<Real>;
+    using V = typename L::V;
+    constexpr int P = packet<Real>;
+    for (int part = 0; part < lanes; part += L::width) {
+        for (int first = 0; first < panel.columns; first += L::rows) {
+            const int width = std::min(L::rows, panel.columns - first);
+            const Real* a = L::rows_at(panel, first);
+            V sums[L::rows];
+            for (int r = 0; r < L::rows; ++r)
+                sums[r] = r < width ? L::load(x, first + r, part) : hn::Zero(typename L::D());
+            L::template multiply<true>(a, first, x, part, sums);
+            for (int j = 0; j < width; ++j) {
+                const Real* column = a + (first + j) * P;
+                sums[j] = hn::Mul(sums[j], hn::Set(typename L::D(), 1 / column[j]));
+                for (int r = j + 1; r < width; ++r)
+                    sums[r] = hn::NegMulAdd(hn::Set(typename L::D(), column[r]), sums[j], sums[r]);
+                L::store(sums[j], x, first + j, part);
+            }
+        }
+    }
+    const int start = panel.first_below();
+    share_reading(0, whole_packets<Real>(panel.below) / L::rows, L::rows * panel.columns, [&](int begin, int end) {
+        for (int part = 0; part < lanes; part += L::width) {
+            for (int row = begin * L::rows; row < end * L::rows; row += L::rows) {
+                V sums[L::rows];
+                for (V& sum : sums) sum = hn::Zero(typename L::D());
+                L::template multiply<false>(L::rows_at(panel, start + row), panel.columns, x, part, sums);
+                for (int r = 0; r < L::rows; ++r) L::store(sums[r], y, row + r, part);
+            }
+        }
+    });
+}
+
+template <class Real>
+void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const Real* y) {
+    using L = Lanes<Real>;
+    using V = typename L::V;
+    constexpr int P = packet<Real>;
+    const int start = panel.first_below(), below = whole_packets<Real>(panel.below);
+    share_reading(0, panel.columns, below, [&](int begin, int end) {
+        for (int part = 0; part < lanes; part += L::width) {
+            for (int row = 0; row < below; row += L::rows) {
+                V rows[L::rows];
+                for (int r = 0; r < L::rows; ++r) rows[r] = L::load(y, row + r, part);
+                L::subtract_transposed(L::rows_at(panel, start + row), begin, end, rows, x, part);
+            }
+        }
+    });
+    for (int part = 0; part < lanes; part += L::width) {
+        for (int first = (panel.columns - 1) / L::rows * L::rows; first >= 0; first -= L::rows) {
+            const int width = std::min(L::rows, panel.columns - first);
+            const Real* a = L::rows_at(panel, first);
+            V solved[L::rows];
+            for (int r = 0; r < L::rows; ++r)
+                solved[r] = r < width ? L::load(x, first + r, part) : hn::Zero(typename L::D());
+            for (int j = width - 1; j >= 0; --j) {
+                const Real* column = a + (first + j) * P;
+                for (int r = j + 1; r < width; ++r)
+                    solved[j] = hn::NegMulAdd(hn::Set(typename L::D(), column[r]), solved[r], solved[j]);
+                solved[j] = hn::Mul(solved[j], hn::Set(typename L::D(), 1 / column[j]));
+                L::store(solved[j], x, first + j, part);
+            }
+            L::subtract_transposed(a, 0, first, solved, x, part);
+        }
+    }
+}
+
 template <class Real>
 void add_lower_any(const Real* from, std::size_t from_leading, Real* to, std::size_t to_leading,
                    std::span<const Stretch> stretches, int first, int block) {
@@ -410,6 +516,18 @@ void upper_double(const Panel<double>& p, int n, double* x, const double* y) {
 void upper_float(const Panel<float>& p, int n, float* x, const float* y) {
     solve_upper_any(p, n, x, y);
 }
+void lower_lanes_double(const Panel<double>& p, double* x, double* y) {
+    solve_lower_lanes_of(p, x, y);
+}
+void lower_lanes_float(const Panel<float>& p, float* x, float* y) {
+    solve_lower_lanes_of(p, x, y);
+}
+void upper_lanes_double(const Panel<double>& p, double* x, const double* y) {
+    solve_upper_lanes_of(p, x, y);
+}
+void upper_lanes_float(const Panel<float>& p, float* x, const float* y) {
+    solve_upper_lanes_of(p, x, y);
+}
 
 }  // namespace pliant::linalg::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -427,6 +545,10 @@ HWY_EXPORT(lower_double);
 HWY_EXPORT(lower_float);
 HWY_EXPORT(upper_double);
 HWY_EXPORT(upper_float);
+HWY_EXPORT(lower_lanes_double);
+HWY_EXPORT(lower_lanes_float);
+HWY_EXPORT(upper_lanes_double);
+HWY_EXPORT(upper_lanes_float);
 
 template <>
 bool factorise(const Panel<double>& panel) {
@@ -469,6 +591,22 @@ void solve_upper(const Panel<double>& panel, int count, double* x, const double*
 template <>
 void solve_upper(const Panel<float>& panel, int count, float* x, const float* y) {
     HWY_DYNAMIC_DISPATCH(upper_float)(panel, count, x, y);
+}
+template <>
+void solve_lower_lanes(const Panel<double>& panel, double* x, double* y) {
+    HWY_DYNAMIC_DISPATCH(lower_lanes_double)(panel, x, y);
+}
+template <>
+void solve_lower_lanes(const Panel<float>& panel, float* x, float* y) {
+    HWY_DYNAMIC_DISPATCH(lower_lanes_float)(panel, x, y);
+}
+template <>
+void solve_upper_lanes(const Panel<double>& panel, double* x, const double* y) {
+    HWY_DYNAMIC_DISPATCH(upper_lanes_double)(panel, x, y);
+}
+template <>
+void solve_upper_lanes(const Panel<float>& panel, float* x, const float* y) {
+    HWY_DYNAMIC_DISPATCH(upper_lanes_float)(panel, x, y);
 }
 
 }  // namespace pliant::linalg

@@ -61,4 +61,13 @@ void solve_lower(const Panel<Real>& panel, int count, Real* x, Real* y);
 template <class Real>
 void solve_upper(const Panel<Real>& panel, int count, Real* x, const Real* y);
 
+/// Right-hand sides that lie next to one another, unknown by unknown.
+inline constexpr int lanes = 8;
+/// As above with (columns, lanes) and (rows below, padded to packets, lanes): each number of the panel is read once for
+/// all, and narrow panels cost little. Both arrays are aligned to whole unknowns.
+template <class Real>
+void solve_lower_lanes(const Panel<Real>& panel, Real* x, Real* y);
+template <class Real>
+void solve_upper_lanes(const Panel<Real>& panel, Real* x, const Real* y);
+
 }  // namespace pliant::linalg

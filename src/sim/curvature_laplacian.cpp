@@ -12,22 +12,15 @@ struct FactoredLaplacian::State {
 
 namespace {
 
-/// Interleaved x y z of one vector <-> three right-hand sides of the scalar matrix.
-void solve_components(const linalg::Cholesky& factor, Eigen::Ref<Eigen::VectorXd> vector) {
-    const Eigen::Index n = vector.size() / 3;
-    Eigen::Map<Eigen::MatrixXd> interleaved(vector.data(), 3, n);
-    Eigen::MatrixXd columns = interleaved.transpose();
-    factor.solve({columns.data(), static_cast<std::size_t>(columns.size())}, 3);
-    interleaved = columns.transpose();
-}
-
 /// The thesis' iteration: every tet's target shape against the current one, reconciled by the constant matrix.
 class LocalGlobal final : public Curvature {
 public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
     [[nodiscard]] Solver solver() const override { return Solver::local_global; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
-    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care) override { return care != Care::exact; }
+    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care, double) override {
+        return care != Care::exact;
+    }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }
 
 private:
@@ -65,7 +58,8 @@ double FactoredLaplacian::work() const {
 }
 
 void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) solve_components(state_->factor, columns.col(k));
+    state_->factor.solve_fields({columns.data(), static_cast<std::size_t>(columns.size())},
+                                static_cast<int>(columns.cols()));
 }
 
 Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const {
@@ -73,7 +67,7 @@ Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen
     state_->model->elements().apply_laplacian({support_motion.data(), static_cast<std::size_t>(support_motion.size())},
                                               {coupling.data(), static_cast<std::size_t>(coupling.size())});
     Eigen::VectorXd motion = -system.restrict_to_free(coupling);
-    solve_components(state_->factor, motion);
+    solve(motion);
     return motion;
 }
 
@@ -82,7 +76,7 @@ Eigen::VectorXd FactoredLaplacian::turn(const Equilibrium& system, const Turning
     Eigen::VectorXd turned = Eigen::VectorXd::Zero(end.size());
     state_->model->elements().add_turning(turning, {turned.data(), static_cast<std::size_t>(turned.size())});
     Eigen::VectorXd correction = system.restrict_to_free(turned);
-    solve_components(state_->factor, correction);
+    solve(correction);
     system.add_free(correction, 1, end);
     return end;
 }

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "linalg/gmres.hpp"
+#include "sim/body_turn.hpp"
 #include "sim/curvature.hpp"
 #include "sim/elements.hpp"
 #include "sim/step_memory.hpp"
@@ -20,29 +22,33 @@ public:
           layout_(laplacian.tangent_layout()),
           analysis_(laplacian.analysis()),
           two_levels_(!system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work())),
-          inverse_(make_inverse()) {}
+          inverse_(make_inverse()),
+          turn_(system, laplacian) {}
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
 
     [[nodiscard]] double smallest_share() const override { return reused_ ? smallest_reused_share : 1e-7; }
 
-    /// A step of the program turns the body, and turning makes the factor of the last step a poor one: a new step
-    /// begins with a new factor, but for a try now and then, which shows whether its steps are small.
+    /// In the step of the program after its own, an inverse is expected to do what the one before it did there; that
+    /// fades, so that it is tried again some day.
     void restart() override {
         hasty_ = false;
-        stale_ = wait_ > 0;
-        trying_ = wait_ == 0;
-        if (wait_ > 0) --wait_;
+        if (age_++ > 0) return;
+        left_ = left_at_first_;
+        left_at_first_ = hoped_left * std::pow(left_at_first_ / hoped_left, memory_of_first);
     }
 
-    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care) override {
-        // The skew part belongs to the state at which it was made, and GMRES wants one matrix.
-        const bool reuse = care == Care::usual && usable_ && !stale_ && !system_->has_skew();
+    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, double far) override {
+        const bool reuse = care == Care::usual && usable_ && !hasty_ && pays(far);
         if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
+        if (reused_ && care != Care::usual) judge_old(most_left);
         reused_ = reuse;
-        if (!reuse) at_ = {&state, &controls};
-        return reuse || take_tangent(care == Care::cautious);
+        at_ = {&state, &controls};
+        if (!reuse) return take_tangent(care == Care::cautious);
+        remember();
+        turn_.follow(state.x);
+        return true;
     }
 
     [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
@@ -50,22 +56,20 @@ public:
         return laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
     }
 
-    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { memory_.learn(step, change); }
+    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
 
     void judge(double before, double after) override {
-        const bool slow = after > inverse_->worth_another() * before;
-        hasty_ = hasty_ || (slow && reused_);
-        stale_ = slow || hasty_;
-        if (trying_ && reused_) {
-            patience_ = stale_ ? std::min(2 * patience_ + 1, longest_wait) : 0;
-            wait_ = patience_;
-        }
-        trying_ = false;
+        if (reused_) return judge_old(std::clamp(after / before, least_left, most_left));
+        left_ = std::clamp(after / before, hoped_left, most_left);
+        age_ = 0;
+        tried_later_ = false;
     }
 
     void solve(Eigen::MatrixXd& columns) override {
         if (!system_->has_skew()) {
+            turn_.forces_back(columns);
             memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_inverse(c); });
+            turn_.motions_on(columns);
             return;
         }
         for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
@@ -77,6 +81,30 @@ private:
         if (two_levels_) return make_two_level_inverse(layout_->pattern);
         if (!analysis_) analysis_ = linalg::analyse(layout_->pattern);
         return make_direct_inverse(analysis_, system_->has_skew());
+    }
+
+    /// True if a factor from an earlier state is expected to bring the error, which is `far` times what is wanted, down
+    /// for less than a new one costs. The skew part belongs to the state at which it was made, and GMRES wants one
+    /// matrix.
+    [[nodiscard]] bool pays(double far) const {
+        if (system_->has_skew()) return false;
+        return std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
+    }
+
+    /// A step with an inverse from an earlier state left so much of the error.
+    void judge_old(double left) {
+        left_ = left;
+        hasty_ = left > slow;
+        if (age_ > 0 && !std::exchange(tried_later_, true)) left_at_first_ = left;
+    }
+
+    /// What the last step taught, as it would have been where the factor was made.
+    void remember() {
+        if (learnt_.step.size() == 0) return;
+        Eigen::MatrixXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
+        turn_.motions_back(step);
+        turn_.forces_back(change);
+        memory_.learn(step, change);
     }
 
     void solve_with_inverse(Eigen::MatrixXd& columns) {
@@ -101,7 +129,8 @@ private:
     [[nodiscard]] bool take_tangent(bool cautious) {
         make_room_for_contact();
         memory_.clear();
-        stale_ = false;
+        learnt_ = {};
+        turn_.begin(at_.state->x);
         if (system_->has_skew()) state_ = *at_.state;
         positions_ = system_->restrict_to_free(at_.state->x);
         assemble(false, values_);
@@ -174,7 +203,8 @@ private:
     static constexpr double smallest_share_of_projection = 1.0 / 16;
     static constexpr double smallest_reused_share = 0.2;
     static constexpr std::size_t most_steps = 8;
-    static constexpr int longest_wait = 31;
+    static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
+    static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4;
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -193,16 +223,21 @@ private:
     struct {
         const State* state;
         const Controls* controls;
-    } at_{};                                  ///< where the tangent was made; good until it is solved with
-    Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
-    StepMemory memory_{most_steps};           ///< of the steps since the factor was made
-    bool usable_ = false;                     ///< the inverse solves
-    bool hasty_ = false;                      ///< in this step of the program an old inverse has led astray
-    bool stale_ = false;                      ///< it did not lead on quickly
-    bool reused_ = false;                     ///< the present direction is not from the tangent at hand
-    bool trying_ = false;                     ///< this step of the program began with the factor of the last one
-    int wait_ = 0;                            ///< steps of the program until the next try
-    int patience_ = 0;                        ///< what the last try left of it
+    } at_{};                         ///< what is at hand, until it is solved with
+    Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
+    BodyTurn turn_;                  ///< since the factor was made
+    StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then
+    struct {
+        Eigen::VectorXd step, change;
+    } learnt_;             ///< not yet in the memory
+    bool usable_ = false;  ///< the inverse solves
+    bool hasty_ = false;   ///< in this step of the program an old inverse has led astray
+    bool reused_ = false;  ///< the present direction is not from the tangent at hand
+    // Of the error, what a step with an inverse from an earlier state leaves.
+    double left_ = hoped_left;           ///< by the next one, as far as is known
+    double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
+    int age_ = 0;                        ///< of the inverse, in steps of the program
+    bool tried_later_ = false;           ///< in a later one than its own
     std::vector<std::vector<int>> touching_;  ///< pairs in contact that the pattern has room for
     State state_;                             ///< where the tangent was made; kept only where its skew part is needed
 };

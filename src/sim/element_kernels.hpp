@@ -1,6 +1,9 @@
 // Forces and stiffness of several tets at once, in SIMD, for the laws in the invariants of F.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "material/law.hpp"
 
 namespace pliant::sim {
@@ -38,18 +41,28 @@ void batch_projected_tangent(const TetBatch& batch, const material::InvariantFor
 /// A motion in which every tet turns by a rate M instead of growing: from F at `now` to exp(M) F. `end` is where the
 /// nodes would be without that. All positions (3n).
 struct Turning {
+    static constexpr std::size_t most_past = 3;
+
     const double* now;
     const double* end;
-    /// Null: M F is the gradient of the motion from `now` to `end`. Else M = onward L1 + earlier L0 with the rates L1
-    /// from `before` to `now` and L0 from `first` to `before` (L1 where `first` is null): F_now = exp(L1) F_before.
-    const double* before = nullptr;
-    const double* first = nullptr;
-    double onward = 1;
-    double earlier = 0;
+    /// States that came before, the latest first, up to a null. None: M F is the gradient of the motion from `now` to
+    /// `end`. Else M = sum of weights[k] L_k with the rate L_k from past[k] to the state after it, F_after = exp(L_k)
+    /// F.
+    std::array<const double*, most_past> past{};
+    std::array<double, most_past> weights{};
 };
 
 /// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * (exp(M) F - F_end) grad N_a.
-/// Preconditions: F is regular at `now` and, where given, at `before`.
+/// Precondition: F is regular at `now` and at all states of the past but the first.
 void batch_turning(const TetBatch& batch, const Turning& turning, double stiffness, double* forces);
+
+/// How each point has turned between two states: the rotation nearest to F_now F_before^-1, (points, 9, lanes), by
+/// columns. Precondition: det F > 0 in both.
+void batch_rotations(const TetBatch& batch, const double* before, const double* now, double* rotations);
+
+/// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * R grad u grad N_a, with the
+/// rotations R or, to turn `back`, their transposes. `u` (3n).
+void batch_turned(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                  double* forces);
 
 }  // namespace pliant::sim

@@ -174,7 +174,7 @@ TEST_CASE("a motion that turns the whole body carries it round without stretchin
 
             // And on again, from where it came.
             const Eigen::VectorXd further =
-                laplacian.turn(system, {turned.data(), turned.data(), rest.x.data(), nullptr, 0.5, 0});
+                laplacian.turn(system, {turned.data(), turned.data(), {rest.x.data()}, {0.5}});
             Eigen::VectorXd expected = rest.x;
             const Matrix3 half_again = Eigen::AngleAxisd(1.5 * angle, axis).toRotationMatrix();
             for (int n = 0; n < model->node_count(); ++n)
@@ -183,4 +183,33 @@ TEST_CASE("a motion that turns the whole body carries it round without stretchin
             if (angle < 1) CHECK((further - expected).norm() < 5e-4 * rest.x.norm());
         }
     }
+}
+
+TEST_CASE("a motion goes on by shares of the turns between the states before it") {
+    Description d = mixed(1);
+    d.supports = {{"point", {0}, {}}};
+    const auto model = Model::create(std::move(d));
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(system);
+    const Eigen::VectorXd rest = system.rest().x;
+    const auto turned = [&](double angle) {
+        const Matrix3 Q = Eigen::AngleAxisd(angle, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix();
+        Eigen::VectorXd x = rest;
+        for (int n = 0; n < model->node_count(); ++n)
+            x.segment<3>(3 * n) = rest.head<3>() + Q * (rest.segment<3>(3 * n) - rest.head<3>());
+        return x;
+    };
+    // Angles t + t^2 + t^3 at t = 0, 0.1, 0.2, 0.3: by finite differences the turn from 0.3 to 0.4 is three times the
+    // last one, less three times the one before, and the first.
+    const auto angle = [](double t) { return t + t * t + t * t * t; };
+    const Eigen::VectorXd a = turned(angle(0)), b = turned(angle(0.1)), c = turned(angle(0.2)),
+                          now = turned(angle(0.3));
+    const Eigen::VectorXd found = laplacian.turn(
+        system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data(), a.data()}, .weights = {3, -3, 1}});
+    CHECK((found - turned(angle(0.4))).norm() < 1e-5 * rest.norm());
+    // With what two turns know it would be off by the third difference.
+    const Eigen::VectorXd less = laplacian.turn(
+        system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data()}, .weights = {2, -1}});
+    CHECK((less - turned(angle(0.4) - 0.006)).norm() < 1e-5 * rest.norm());
 }

@@ -244,6 +244,20 @@ void Elements::gather_forces(const double* buffer, std::span<double> forces) con
     });
 }
 
+/// result (3n) += what `forces_of(batch, bound of its stiffness, forces)` writes for the nodes of each batch.
+template <class ForcesOf>
+void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) const {
+    const std::size_t stride = 3 * width() * lanes;
+    const auto buffer = scratch_.lend(batches() * stride);
+    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
+            forces_of(b, stiffness, buffer.data() + b * stride);
+        }
+    });
+    gather_forces(buffer.data(), result);
+}
+
 Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces,
                                         std::span<const material::Law> laws) const {
     const std::size_t pieces = (batches() + batches_per_piece - 1) / batches_per_piece;
@@ -311,15 +325,28 @@ void Elements::apply_laplacian(std::span<const double> u, std::span<double> resu
 }
 
 void Elements::add_turning(const Turning& turning, std::span<double> result) const {
-    const std::size_t stride = 3 * width() * lanes;
-    const auto buffer = scratch_.lend(batches() * stride);
-    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
-            batch_turning(batch(b), turning, stiffness, buffer.data() + b * stride);
-        }
+    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
+        batch_turning(batch(b), turning, stiffness, forces);
     });
-    gather_forces(buffer.data(), result);
+}
+
+void Elements::find_rotations(std::span<const double> before, std::span<const double> now,
+                              AlignedArray<double>& rotations) const {
+    const std::size_t stride = 9 * points() * lanes;
+    rotations.resize(batches() * stride);
+    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+            batch_rotations(batch(b), before.data(), now.data(), rotations.data() + b * stride);
+    });
+}
+
+void Elements::add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+                          std::span<double> result) const {
+    const std::size_t stride = 9 * points() * lanes;
+    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
+        batch_turned(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
+                     forces);
+    });
 }
 
 void Elements::add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,

@@ -51,6 +51,14 @@ public:
     /// one. W as in the Laplacian.
     void add_turning(const Turning& turning, std::span<double> result) const;
 
+    /// How each point has turned from `before` to `now` (3n), for add_turned. Precondition: min_J > 0 in both.
+    void find_rotations(std::span<const double> before, std::span<const double> now,
+                        AlignedArray<double>& rotations) const;
+    enum class Direction { on, back };
+    /// result (3n) += G^T W R G u, or with R^T: what the Laplacian makes into u turned on or back.
+    void add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+                    std::span<double> result) const;
+
     /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
     /// block 3, and result (3n) += M u.
     void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
@@ -110,6 +118,8 @@ private:
                             double* blocks) const;
     /// Adds what each batch wrote for its nodes, (batches, nodes_per_tet, 3, lanes), in the order of the batches.
     void gather_forces(const double* buffer, std::span<double> forces) const;
+    template <class ForcesOf>
+    void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
     void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
                     std::span<double> values) const;
 

@@ -254,7 +254,7 @@ private:
         const State& before = before_->state;
         state = {state_.x, state_.multiplier + onward * (state_.multiplier - before.multiplier)};
         system_.place_supports(controls, state.x);
-        const Turning turning{state_.x.data(), state.x.data(), before.x.data(), nullptr, onward, 0};
+        const Turning turning{state_.x.data(), state.x.data(), {before.x.data()}, {onward}};
         state.x = laplacian_.turn(system_, turning);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             double& tension = state.multiplier[static_cast<Eigen::Index>(c)];
@@ -352,7 +352,7 @@ private:
         }
         const Eigen::MatrixXd forces = columns;
         const auto tangent = make_newton(system_, laplacian_);
-        if (tangent->refresh(state_, controls_, Care::cautious))
+        if (tangent->refresh(state_, controls_, Care::cautious, 1))
             tangent->solve(columns);
         else
             laplacian_.solve(columns);

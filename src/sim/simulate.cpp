@@ -72,7 +72,7 @@ public:
             if (outcome.converged) {
                 if (program_.dynamics) remember(next, target - time_);
                 past_.push_back({time_, std::move(state_)});
-                if (past_.size() > 2) past_.pop_front();
+                if (past_.size() > Turning::most_past) past_.pop_front();
                 state_ = std::move(next);
                 controls_ = solved_controls_;
                 time_ = target;
@@ -265,26 +265,21 @@ private:
         return best;
     }
 
-    /// The multipliers follow the polynomial through the last `count` states, 2 or 3. Every tet goes on turning and
-    /// growing at its rate between the last two or, with three, at the rate that theirs lead to: a bent body keeps its
-    /// length, where its nodes, on straight lines, would stretch it.
+    /// On along the polynomial through the last `count` states, at least 2: the multipliers as they are, and for each
+    /// tet how far it has turned and grown. A bent body keeps its length so, where its nodes, on straight lines, would
+    /// stretch it.
     [[nodiscard]] State onward(double time, std::size_t count, const Controls& controls) const {
-        const Known& before = past_.back();
-        const double last = time_ - before.time;
-        const double ahead = time - time_;
-        State next{state_.x, state_.multiplier + ahead / last * (state_.multiplier - before.state.multiplier)};
+        const std::vector<double> shares = shares_at(time, count);
+        State next{state_.x, shares[0] * state_.multiplier};
         system_.place_supports(controls, next.x);
-        Turning turning{state_.x.data(), next.x.data(), before.state.x.data(), nullptr, ahead / last, 0};
-        if (count == 3) {
-            const Known& first = past_[past_.size() - 2];
-            const double earlier = before.time - first.time;
-            const double bend = (time - before.time) / (time_ - first.time);  // rates are known half-way between states
-            turning.first = first.state.x.data();
-            turning.onward = (1 + bend) * ahead / last;
-            turning.earlier = -bend * ahead / earlier;
-            const Eigen::VectorXd slope = (state_.multiplier - before.state.multiplier) / last;
-            const Eigen::VectorXd slope_before = (before.state.multiplier - first.state.multiplier) / earlier;
-            next.multiplier += ahead * bend * (slope - slope_before);
+        Turning turning{.now = state_.x.data(), .end = next.x.data()};
+        double beyond = 0;  // the shares of all states before the turn in question
+        for (std::size_t k = count - 1; k > 0; --k) {
+            const State& before = past_[past_.size() - k].state;
+            next.multiplier += shares[k] * before.multiplier;
+            beyond += shares[k];
+            turning.past[k - 1] = before.x.data();
+            turning.weights[k - 1] = -beyond;
         }
         next.x = laplacian_.turn(system_, turning);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
@@ -292,6 +287,18 @@ private:
             tension = std::max(tension, 0.0);
         }
         return next;
+    }
+
+    /// Lagrange's polynomials for the last `count` states, the latest first, at a time: they sum up to 1.
+    [[nodiscard]] std::vector<double> shares_at(double time, std::size_t count) const {
+        const auto time_of = [&](std::size_t k) { return k == 0 ? time_ : past_[past_.size() - k].time; };
+        std::vector<double> shares(count, 1.0);
+        for (std::size_t k = 0; k < count; ++k) {
+            for (std::size_t other = 0; other < count; ++other) {
+                if (other != k) shares[k] *= (time - time_of(other)) / (time_of(k) - time_of(other));
+            }
+        }
+        return shares;
     }
 
     /// True if the way from the last state to `next` meets nothing.

@@ -94,8 +94,9 @@ public:
     }
 
     /// One iteration; false if no acceptable step was found.
-    bool iterate(Care care) {
-        if (!curvature_.refresh(state_, controls_, care)) return false;
+    bool iterate(Care care, double tolerance) {
+        const double far = std::max(1.0, evaluation_.residual / tolerance);
+        if (!curvature_.refresh(state_, controls_, care, far)) return false;
         const Direction direction = find_direction();
         if (!direction.dx.allFinite()) return false;
         return search(direction);
@@ -342,7 +343,8 @@ StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Co
             break;
         }
         ++outcome.iterations;
-        if (!solver.iterate(Care::usual) && !solver.iterate(Care::exact) && !solver.iterate(Care::cautious)) {
+        if (!solver.iterate(Care::usual, settings.tolerance) && !solver.iterate(Care::exact, settings.tolerance) &&
+            !solver.iterate(Care::cautious, settings.tolerance)) {
             outcome.reason = stuck(solver);
             break;
         }

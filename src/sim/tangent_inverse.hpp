@@ -25,8 +25,8 @@ public:
     /// columns (3 nodes, k) <- H^-1 columns, to some three digits. Indefinite, slow: they hold how far it got, which
     /// still is a direction in which the energy falls.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns) = 0;
-    /// How far one more step with this matrix must bring the error down to be worth more than a new matrix.
-    [[nodiscard]] virtual double worth_another() const = 0;
+    /// What it costs to take a matrix and solve with it, in steps with one that is at hand.
+    [[nodiscard]] virtual double price() const = 0;
 };
 
 /// `exact`: in double precision throughout.

@@ -115,47 +115,143 @@ HWY_INLINE Matrix logarithm(const Matrix& M) {
     return of_M.of(sum);
 }
 
+/// Positions of the nodes of several tets in the states of a Turning.
 template <int nodes>
-void turn(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    for (int part = 0; part < batch_lanes; part += N) {
-        V now[nodes][3], end[nodes][3], before[nodes][3], first[nodes][3];
+struct States {
+    V now[nodes][3], end[nodes][3], past[Turning::most_past][nodes][3];
+    std::size_t past_count = 0;
+
+    HWY_INLINE States(const TetBatch& batch, const Turning& turning, int part) {
         load_positions<nodes>(batch, turning.now, part, now);
         load_positions<nodes>(batch, turning.end, part, end);
-        if (turning.before != nullptr) load_positions<nodes>(batch, turning.before, part, before);
-        if (turning.first != nullptr) load_positions<nodes>(batch, turning.first, part, first);
-        V sum[nodes][3];
-        for (auto& row : sum) {
-            for (V& entry : row) entry = hn::Zero(d);
-        }
+        for (; past_count < Turning::most_past && turning.past[past_count] != nullptr; ++past_count)
+            load_positions<nodes>(batch, turning.past[past_count], part, past[past_count]);
+    }
+};
+
+/// M of a Turning at one point; `F` and `E` are the deformation gradients now and at the end of the straight way.
+template <int nodes>
+HWY_INLINE Matrix rate_of(const TetBatch& batch, const Turning& turning, const States<nodes>& states, int point,
+                          int part, const Matrix& F, const Matrix& E) {
+    if (states.past_count == 0) return product(combine(1, E, -1, F), inverse(F));
+    Matrix sum = identity(0);
+    Matrix after = F;
+    for (std::size_t k = 0; k < states.past_count; ++k) {
+        const Matrix before = deformation_gradient<nodes>(batch, point, part, states.past[k]);
+        const Matrix rate = logarithm(combine(1, identity(1), -1, product(before, inverse(after))));
+        sum = combine(1, sum, turning.weights[k], rate);
+        after = before;
+    }
+    return sum;
+}
+
+/// Clears (nodes, 3).
+template <int nodes>
+HWY_INLINE void clear(V (*sums)[3]) {
+    for (int a = 0; a < nodes; ++a) {
+        for (int k = 0; k < 3; ++k) sums[a][k] = hn::Zero(Tag());
+    }
+}
+
+/// Adds the forces of a stress that is integrated at one point: sums_a += weight P grad N_a.
+template <int nodes>
+HWY_INLINE void add_forces(const TetBatch& batch, int point, int part, const Matrix& P, V weight, V (*sums)[3]) {
+    for (int a = 0; a < nodes; ++a) {
+        const Vector f = times(P, gradient(batch, point, a, part));
+        for (int k = 0; k < 3; ++k) sums[a][k] = hn::MulAdd(weight, f.v[k], sums[a][k]);
+    }
+}
+
+HWY_INLINE V weight_of(const TetBatch& batch, int point, int part, double stiffness) {
+    return hn::Mul(set(stiffness), hn::Load(Tag(), batch.volumes + point * batch_lanes + part));
+}
+
+template <int nodes>
+HWY_INLINE void store(const V (*sums)[3], int part, double* forces) {
+    for (int a = 0; a < nodes; ++a) {
+        for (int k = 0; k < 3; ++k) hn::Store(sums[a][k], Tag(), forces + (3 * a + k) * batch_lanes + part);
+    }
+}
+
+template <int nodes>
+void turn(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
+    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
+    for (int part = 0; part < batch_lanes; part += N) {
+        const States<nodes> states(batch, turning, part);
+        V sums[nodes][3];
+        clear<nodes>(sums);
         for (int q = 0; q < batch.points; ++q) {
-            const Matrix F = deformation_gradient<nodes>(batch, q, part, now);
-            const Matrix E = deformation_gradient<nodes>(batch, q, part, end);
-            const Matrix back = inverse(F);
-            Matrix rate;
-            if (turning.before == nullptr) {
-                rate = product(combine(1, E, -1, F), back);
-            } else {
-                const Matrix B = deformation_gradient<nodes>(batch, q, part, before);
-                rate = logarithm(combine(1, identity(1), -1, product(B, back)));
-                Matrix earlier = rate;
-                if (turning.first != nullptr) {
-                    const Matrix A = deformation_gradient<nodes>(batch, q, part, first);
-                    earlier = logarithm(combine(1, identity(1), -1, product(A, inverse(B))));
-                }
-                rate = combine(turning.onward, rate, turning.earlier, earlier);
-            }
+            const Matrix F = deformation_gradient<nodes>(batch, q, part, states.now);
+            const Matrix E = deformation_gradient<nodes>(batch, q, part, states.end);
+            const Matrix rate = rate_of<nodes>(batch, turning, states, q, part, F, E);
             const Matrix D = combine(1, product(exponential(rate), F), -1, E);
-            const V weight = hn::Mul(set(stiffness), hn::Load(d, batch.volumes + q * batch_lanes + part));
-            for (int a = 0; a < nodes; ++a) {
-                const Vector f = times(D, gradient(batch, q, a, part));
-                for (int k = 0; k < 3; ++k) sum[a][k] = hn::MulAdd(weight, f.v[k], sum[a][k]);
+            add_forces<nodes>(batch, q, part, D, weight_of(batch, q, part, stiffness), sums);
+        }
+        store<nodes>(sums, part, forces);
+    }
+}
+
+/// The rotation nearest to F, by Newton's iteration (Higham 1986): twelve digits for stretches from a half to two.
+HWY_INLINE Matrix rotation_of(const Matrix& F) {
+    constexpr int iterations = 5;
+    Matrix R = F;
+    for (int k = 0; k < iterations; ++k) {
+        const Matrix G = cofactor(R);
+        const V J = hn::MulAdd(R.m[0][2], G.m[0][2], hn::MulAdd(R.m[0][1], G.m[0][1], hn::Mul(R.m[0][0], G.m[0][0])));
+        const V share = hn::Div(set(0.5), J);
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) R.m[j][i] = hn::MulAdd(share, G.m[j][i], hn::Mul(set(0.5), R.m[j][i]));
+        }
+    }
+    return R;
+}
+
+template <int nodes>
+void find_rotations(const TetBatch& batch, const double* before, const double* now, double* rotations) {
+    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
+    for (int part = 0; part < batch_lanes; part += N) {
+        V x[nodes][3], y[nodes][3];
+        load_positions<nodes>(batch, before, part, x);
+        load_positions<nodes>(batch, now, part, y);
+        for (int q = 0; q < batch.points; ++q) {
+            const Matrix F = deformation_gradient<nodes>(batch, q, part, x);
+            const Matrix G = deformation_gradient<nodes>(batch, q, part, y);
+            const Matrix R = rotation_of(product(G, inverse(F)));
+            for (int j = 0; j < 3; ++j) {
+                for (int i = 0; i < 3; ++i)
+                    hn::Store(R.m[j][i], Tag(), rotations + ((9 * q + 3 * j + i) * batch_lanes) + part);
             }
         }
-        for (int a = 0; a < nodes; ++a) {
-            for (int k = 0; k < 3; ++k) hn::Store(sum[a][k], d, forces + (3 * a + k) * batch_lanes + part);
+    }
+}
+
+/// R, or its transpose.
+HWY_INLINE Matrix load_rotation(const double* rotations, int point, int part, bool back) {
+    Matrix R;
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+            const int entry = back ? 3 * i + j : 3 * j + i;
+            R.m[j][i] = hn::Load(Tag(), rotations + (9 * point + entry) * batch_lanes + part);
         }
+    }
+    return R;
+}
+
+template <int nodes>
+void turn_field(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                double* forces) {
+    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
+    for (int part = 0; part < batch_lanes; part += N) {
+        V field[nodes][3];
+        load_positions<nodes>(batch, u, part, field);
+        V sums[nodes][3];
+        clear<nodes>(sums);
+        for (int q = 0; q < batch.points; ++q) {
+            const Matrix G = deformation_gradient<nodes>(batch, q, part, field);
+            const Matrix turned = product(load_rotation(rotations, q, part, back), G);
+            add_forces<nodes>(batch, q, part, turned, weight_of(batch, q, part, stiffness), sums);
+        }
+        store<nodes>(sums, part, forces);
     }
 }
 
@@ -166,6 +262,21 @@ void turning_forces(const TetBatch& batch, const Turning& turning, double stiffn
         turn<10>(batch, turning, stiffness, forces);
 }
 
+void rotations(const TetBatch& batch, const double* before, const double* now, double* result) {
+    if (batch.nodes_per_tet == 4)
+        find_rotations<4>(batch, before, now, result);
+    else
+        find_rotations<10>(batch, before, now, result);
+}
+
+void turned_forces(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                   double* forces) {
+    if (batch.nodes_per_tet == 4)
+        turn_field<4>(batch, rotations, back, u, stiffness, forces);
+    else
+        turn_field<10>(batch, rotations, back, u, stiffness, forces);
+}
+
 }  // namespace pliant::sim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -173,9 +284,20 @@ HWY_AFTER_NAMESPACE();
 namespace pliant::sim {
 
 HWY_EXPORT(turning_forces);
+HWY_EXPORT(rotations);
+HWY_EXPORT(turned_forces);
 
 void batch_turning(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
     HWY_DYNAMIC_DISPATCH(turning_forces)(batch, turning, stiffness, forces);
+}
+
+void batch_rotations(const TetBatch& batch, const double* before, const double* now, double* result) {
+    HWY_DYNAMIC_DISPATCH(rotations)(batch, before, now, result);
+}
+
+void batch_turned(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                  double* forces) {
+    HWY_DYNAMIC_DISPATCH(turned_forces)(batch, rotations, back, u, stiffness, forces);
 }
 
 }  // namespace pliant::sim
