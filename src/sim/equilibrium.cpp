@@ -70,6 +70,9 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     add_plates(stiffest, volume);
     force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
     energy_rounding_ = 1e-16 * stiffest * volume;
+    // A node is a share of where it is off its place, and pulls at that with the stiffness of a tet, times its size.
+    const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
+    force_rounding_ = 1e-16 * stiffest * rest_.cwiseAbs().maxCoeff() * size * std::sqrt(static_cast<double>(n));
 }
 
 void Equilibrium::add_actuators() {
@@ -302,7 +305,7 @@ void Equilibrium::fill_residual(const State& state, const Controls& controls, co
     e.out_of_balance = internal + driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
     const double balancing = std::max({internal.norm(), driving.norm(), force_floor_});
-    e.residual = balancing > 0 ? unbalanced / balancing : 0;
+    e.residual = balancing > 0 && unbalanced > force_rounding_ ? unbalanced / balancing : 0;
 }
 
 double Equilibrium::potential_energy(const State& state, const Controls& controls) const {

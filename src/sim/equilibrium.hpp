@@ -161,6 +161,7 @@ private:
     bool conservative_ = true;
     double force_floor_ = 0;  ///< forces below this are rounding, not load
     double energy_rounding_ = 0;
+    double force_rounding_ = 0;  ///< out of balance by no more than this is in balance
 };
 
 }  // namespace pliant::sim

@@ -394,3 +394,19 @@ TEST_CASE("friction: the same length takes more tension, and letting go takes le
     CHECK(pulled > 1.05 * pulled_free);
     CHECK(let_go < 0.97 * let_go_free);
 }
+
+TEST_CASE("what rounding pulls at a body without load is balance, a load of a nanonewton is not") {
+    for (const int order : {1, 2}) {
+        Description d = bar(order);
+        const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+        d.loads = {{"tip", tip, std::vector<double>(tip.size(), 1.0 / static_cast<double>(tip.size())), {0, 0, 1e-9}}};
+        const auto model = Model::create(std::move(d));
+        REQUIRE(model);
+        const Equilibrium system(*model);
+        State state = system.rest();
+        for (Eigen::Index i = 0; i < state.x.size(); ++i)
+            state.x[i] = std::nextafter(state.x[i], i % 3 == 0 ? 1.0 : -1.0);
+        CHECK(system.evaluate(state, system.controls(0)).residual == 0);
+        CHECK(system.evaluate(state, system.controls(1)).residual > 1e-4);
+    }
+}
