@@ -60,7 +60,8 @@ public:
 
     void judge(double before, double after) override {
         if (reused_) return judge_old(std::clamp(after / before, least_left, most_left));
-        left_ = std::clamp(after / before, hoped_left, most_left);
+        // Where the very tangent does not lead far, the state is changing too much for an old one.
+        left_ = after > hoped_left * before ? most_left : hoped_left;
         age_ = 0;
         tried_later_ = false;
     }
