@@ -140,14 +140,14 @@ public:
 
     void solve(double* x) {
         permute([&](std::size_t given, Real& in_order) { in_order = static_cast<Real>(x[given]); });
-        for_branches([&](std::size_t k) { go_down_branch(k); });
+        factor_.for_branches([&](std::size_t k) { go_down_branch(k); });
         for (std::size_t k = 0; k < branches_.size(); ++k)
             for_handed(k, all_.data(), [](Real sum, Real& all) { all += sum; });
         Front front;
         const std::vector<int>& trunk = factor_.layout_.trunk;
         for (const int s : trunk) go_down(s, front, e_.row_start[s + 1], nullptr);
         for (auto s = trunk.rbegin(); s != trunk.rend(); ++s) go_up(*s, front);
-        for_branches([&](std::size_t k) {
+        factor_.for_branches([&](std::size_t k) {
             Front own;
             for (int s = branches_[k].last - 1; s >= branches_[k].first; --s) go_up(s, own);
         });
@@ -169,12 +169,6 @@ private:
                     move(start + node * block_ + u, all_.data()[start + e_.position[node] * block_ + u]);
             }
         }
-    }
-    template <class Work>
-    void for_branches(const Work& work) {
-        parallel_for(branches_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) work(k);
-        });
     }
     void go_down_branch(std::size_t k) {
         const FrontLayout::Branch& branch = branches_[k];

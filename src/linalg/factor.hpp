@@ -8,6 +8,7 @@
 
 #include "core/aligned_array.hpp"
 #include "core/array_pool.hpp"
+#include "core/parallel.hpp"
 #include "linalg/analysis.hpp"
 #include "linalg/multifrontal.hpp"
 #include "linalg/panel.hpp"
@@ -45,6 +46,14 @@ private:
     void add_sources(int s, std::span<const double> values) const;
     void add_to_panel(int child, const Real* update, const std::vector<Stretch>& stretches, int s) const;
     void add_to_update(int child, const Real* update, const std::vector<Stretch>& stretches, int s, Real* to) const;
+
+    /// Calls work(k) for all branches, at once.
+    template <class Work>
+    void for_branches(const Work& work) const {
+        parallel_for(layout_.branches.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) work(k);
+        });
+    }
 
     class Sweep;       ///< right-hand sides on their way through the tree
     class FieldSweep;  ///< the same for fields

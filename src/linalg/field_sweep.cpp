@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/parallel.hpp"
 #include "linalg/factor.hpp"
 
 namespace pliant::linalg {
@@ -23,7 +22,7 @@ public:
 
     void solve(double* fields, int count) {
         take(fields, count);
-        for_branches([&](std::size_t k) { go_down_branch(k); });
+        factor_.for_branches([&](std::size_t k) { go_down_branch(k); });
         for (std::size_t k = 0; k < branches_.size(); ++k) {
             const auto rows = rows_below(branches_[k].last - 1);
             for (std::size_t r = 0; r < rows.size(); ++r) add(handed_[k].data() + r * lanes, row(all_.data(), rows[r]));
@@ -32,7 +31,7 @@ public:
         const std::vector<int>& trunk = factor_.layout_.trunk;
         for (const int s : trunk) go_down(s, below.data(), e_.position.size(), nullptr);
         for (auto s = trunk.rbegin(); s != trunk.rend(); ++s) go_up(*s, below.data());
-        for_branches([&](std::size_t k) {
+        factor_.for_branches([&](std::size_t k) {
             const auto own = lend_below();
             for (int s = branches_[k].last - 1; s >= branches_[k].first; --s) go_up(s, own.data());
         });
@@ -50,12 +49,6 @@ private:
     [[nodiscard]] std::span<const int> rows_below(int s) const {
         return std::span(e_.row).subspan(static_cast<std::size_t>(e_.row_start[s]),
                                          static_cast<std::size_t>(e_.rows_below(s)));
-    }
-    template <class Work>
-    void for_branches(const Work& work) {
-        parallel_for(branches_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) work(k);
-        });
     }
 
     /// Room for the rows below any supernode.

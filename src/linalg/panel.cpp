@@ -361,12 +361,11 @@ struct Lanes {
     static constexpr int rows = 8;
     static constexpr int width = static_cast<int>(hn::MaxLanes(D()));
 
-    /// Of the rows r .. r + rows - 1 of one packet, column 0; columns follow at steps of a packet.
-    static HWY_INLINE const Real* rows_at(const Panel<Real>& panel, int r) { return panel.at(r, 0); }
     static HWY_INLINE V load(const Real* x, int row, int part) { return hn::Load(D(), x + row * lanes + part); }
     static HWY_INLINE void store(V v, Real* x, int row, int part) { hn::Store(v, D(), x + row * lanes + part); }
 
-    /// sums (rows) += or -= rows of the panel times x, over the first `depth` columns.
+    /// sums (rows) += or -= rows of the panel times x, over the first `depth` columns; `a` is the first of them in
+    /// column 0.
     template <bool subtract>
     static HWY_INLINE void multiply(const Real* a, int depth, const Real* x, int part, V* sums) {
         for (int k = 0; k < depth; ++k) {
@@ -398,7 +397,7 @@ void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, Real* y) {
     for (int part = 0; part < lanes; part += L::width) {
         for (int first = 0; first < panel.columns; first += L::rows) {
             const int width = std::min(L::rows, panel.columns - first);
-            const Real* a = L::rows_at(panel, first);
+            const Real* a = panel.at(first, 0);
             V sums[L::rows];
             for (int r = 0; r < L::rows; ++r)
                 sums[r] = r < width ? L::load(x, first + r, part) : hn::Zero(typename L::D());
@@ -418,7 +417,7 @@ void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, Real* y) {
             for (int row = begin * L::rows; row < end * L::rows; row += L::rows) {
                 V sums[L::rows];
                 for (V& sum : sums) sum = hn::Zero(typename L::D());
-                L::template multiply<false>(L::rows_at(panel, start + row), panel.columns, x, part, sums);
+                L::template multiply<false>(panel.at(start + row, 0), panel.columns, x, part, sums);
                 for (int r = 0; r < L::rows; ++r) L::store(sums[r], y, row + r, part);
             }
         }
@@ -436,14 +435,14 @@ void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const Real* y) {
             for (int row = 0; row < below; row += L::rows) {
                 V rows[L::rows];
                 for (int r = 0; r < L::rows; ++r) rows[r] = L::load(y, row + r, part);
-                L::subtract_transposed(L::rows_at(panel, start + row), begin, end, rows, x, part);
+                L::subtract_transposed(panel.at(start + row, 0), begin, end, rows, x, part);
             }
         }
     });
     for (int part = 0; part < lanes; part += L::width) {
         for (int first = (panel.columns - 1) / L::rows * L::rows; first >= 0; first -= L::rows) {
             const int width = std::min(L::rows, panel.columns - first);
-            const Real* a = L::rows_at(panel, first);
+            const Real* a = panel.at(first, 0);
             V solved[L::rows];
             for (int r = 0; r < L::rows; ++r)
                 solved[r] = r < width ? L::load(x, first + r, part) : hn::Zero(typename L::D());

@@ -38,6 +38,18 @@ Eigen::VectorXd bent(const Eigen::VectorXd& rest, double radius_m) {
     return x;
 }
 
+struct Bar {
+    explicit Bar(int order) : model(Model::create(bar(order)).value()) {}
+    Bar(const Bar&) = delete;
+    Bar& operator=(const Bar&) = delete;
+
+    Model model;
+    Equilibrium system{model};
+    FactoredLaplacian laplacian{system};
+    Eigen::VectorXd rest = system.rest().x;
+    BodyTurn turn{system, laplacian};
+};
+
 Eigen::VectorXd anything(Eigen::Index size, double seed) {
     return Eigen::VectorXd::NullaryExpr(size,
                                         [seed](Eigen::Index i) { return std::sin(seed * static_cast<double>(i)); });
@@ -78,17 +90,14 @@ struct Tangent {
 
 TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
     for (const int order : {1, 2}) {
-        const auto model = Model::create(bar(order));
-        REQUIRE(model);
-        const Equilibrium system(*model);
-        const FactoredLaplacian laplacian(system);
-        const Eigen::VectorXd rest = system.rest().x;
+        Bar body(order);
+        const Eigen::VectorXd& rest = body.rest;
+        BodyTurn& turn = body.turn;
         const Matrix3 Q = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
         Eigen::VectorXd now = rest;
         for (Eigen::Index i = 0; i < now.size(); i += 3) now.segment<3>(i) = Q * rest.segment<3>(i);
-        BodyTurn turn(system, laplacian);
         turn.begin(rest);
-        const Eigen::MatrixXd before = anything(system.restrict_to_free(rest).size(), 3.1);
+        const Eigen::MatrixXd before = anything(body.system.restrict_to_free(rest).size(), 3.1);
         Eigen::MatrixXd motion = before, force = before;
         turn.motions_on(motion);
         CHECK(motion == before);  // it has not turned yet
@@ -109,14 +118,10 @@ TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
 
 TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one; as it was, it does not") {
     for (const int order : {1, 2}) {
-        const auto model = Model::create(bar(order));
-        REQUIRE(model);
-        const Equilibrium system(*model);
-        const FactoredLaplacian laplacian(system);
-        const Eigen::VectorXd rest = system.rest().x;
-        const Eigen::VectorXd before = bent(rest, 0.2), now = bent(rest, 0.15);  // the end turns by 8 degrees
-        const Tangent old(system, before), present(system, now);
-        BodyTurn turn(system, laplacian);
+        Bar body(order);
+        BodyTurn& turn = body.turn;
+        const Eigen::VectorXd before = bent(body.rest, 0.2), now = bent(body.rest, 0.15);  // the end turns by 8 degrees
+        const Tangent old(body.system, before), present(body.system, now);
         turn.begin(before);
         turn.follow(now);
 

@@ -36,9 +36,14 @@ HWY_INLINE Matrix identity(double scale) {
     return I;
 }
 
+/// Of F with the cofactors G.
+HWY_INLINE V determinant(const Matrix& F, const Matrix& G) {
+    return hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
+}
+
 HWY_INLINE Matrix inverse(const Matrix& F) {
     const Matrix G = cofactor(F);
-    const V J = hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
+    const V J = determinant(F, G);
     const V scale = hn::Div(set(1), J);
     Matrix result;
     for (int j = 0; j < 3; ++j) {
@@ -58,9 +63,7 @@ public:
     HWY_INLINE explicit Polynomials(const Matrix& A) : A_(A), square_(product(A, A)) {
         trace_ = trace(A);
         second_ = hn::Mul(set(0.5), hn::MulSub(trace_, trace_, trace(square_)));
-        const Matrix G = cofactor(A);
-        determinant_ =
-            hn::MulAdd(A.m[0][2], G.m[0][2], hn::MulAdd(A.m[0][1], G.m[0][1], hn::Mul(A.m[0][0], G.m[0][0])));
+        determinant_ = determinant(A, cofactor(A));
     }
     /// scale p A + constant, by A^3 = trace A^2 - second A + determinant I.
     [[nodiscard]] HWY_INLINE Coefficients times_A_plus(const Coefficients& p, double scale, double constant) const {
@@ -197,8 +200,7 @@ HWY_INLINE Matrix rotation_of(const Matrix& F) {
     Matrix R = F;
     for (int k = 0; k < iterations; ++k) {
         const Matrix G = cofactor(R);
-        const V J = hn::MulAdd(R.m[0][2], G.m[0][2], hn::MulAdd(R.m[0][1], G.m[0][1], hn::Mul(R.m[0][0], G.m[0][0])));
-        const V share = hn::Div(set(0.5), J);
+        const V share = hn::Div(set(0.5), determinant(R, G));
         for (int j = 0; j < 3; ++j) {
             for (int i = 0; i < 3; ++i) R.m[j][i] = hn::MulAdd(share, G.m[j][i], hn::Mul(set(0.5), R.m[j][i]));
         }
