@@ -31,7 +31,6 @@ function(pliant_find_plain target header library)
   target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
 endfunction()
 
-pliant_find_plain(metis metis.h metis)
 pliant_find_plain(gmsh gmshc.h gmsh)
 
 # Gmsh is not linked but loaded when it is needed (src/mesh/gmsh_library.hpp): under the name that the loader knows.

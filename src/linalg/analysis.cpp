@@ -60,6 +60,7 @@ std::vector<Stretch> Analysis::stretches(int child, int s) const {
 std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern) {
     Analysis a{pattern, eliminate(pattern), {}, {}, {}};
     a.pattern.block = 1;
+    a.pattern.points = {};
     a.children.resize(static_cast<std::size_t>(a.e.supernodes()));
     for (int s = 0; s < a.e.supernodes(); ++s) {
         if (a.e.parent[s] >= 0) a.children[a.e.parent[s]].push_back(s);

@@ -1,35 +1,16 @@
 #include "linalg/elimination.hpp"
 
-#include <metis.h>
-
 #include <algorithm>
-#include <numeric>
-#include <type_traits>
+#include <iterator>
 #include <utility>
+
+#include "linalg/dissection.hpp"
+#include "linalg/graph.hpp"
 
 namespace pliant::linalg {
 namespace {
 
-/// Who is next to whom, compressed.
-struct Graph {
-    std::vector<int> start;  ///< (nodes + 1)
-    std::vector<int> other;
-};
-
-/// The graph of the pairs (node, other) that `visit` gives to a function; it is called twice and must give the same.
-template <class Visit>
-Graph graph_of(int nodes, const Visit& visit) {
-    Graph graph;
-    graph.start.assign(static_cast<std::size_t>(nodes) + 1, 0);
-    visit([&](int i, int) { ++graph.start[i + 1]; });
-    std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
-    graph.other.resize(graph.start.back());
-    std::vector<int> next(graph.start.begin(), graph.start.end() - 1);
-    visit([&](int i, int j) { graph.other[next[i]++] = j; });
-    return graph;
-}
-
-/// Both triangles without the diagonal, as METIS wants a graph.
+/// Both triangles without the diagonal.
 Graph neighbours(const SymmetricPattern& pattern) {
     return graph_of(pattern.nodes, [&](const auto& use) {
         for (int j = 0; j < pattern.nodes; ++j) {
@@ -39,21 +20,6 @@ Graph neighbours(const SymmetricPattern& pattern) {
             }
         }
     });
-}
-
-/// Where each node comes in the order of a nested dissection.
-std::vector<int> dissect(const SymmetricPattern& pattern) {
-    static_assert(std::is_same_v<idx_t, int>);
-    Graph graph = neighbours(pattern);
-    std::vector<int> order(static_cast<std::size_t>(pattern.nodes));
-    std::vector<int> position(order.size());
-    std::iota(position.begin(), position.end(), 0);
-    int nodes = pattern.nodes;
-    if (graph.other.empty()) return position;
-    if (METIS_NodeND(&nodes, graph.start.data(), graph.other.data(), nullptr, nullptr, order.data(), position.data()) !=
-        METIS_OK)
-        std::iota(position.begin(), position.end(), 0);
-    return position;
 }
 
 /// The rows i < j of each column j in another order; `position` says where each node goes.
@@ -195,7 +161,7 @@ void fill_rows(const Graph& upper, const std::vector<int>& tree, Elimination& e)
 
 Elimination eliminate(const SymmetricPattern& pattern) {
     Elimination e;
-    e.position = dissect(pattern);
+    e.position = dissect(neighbours(pattern), pattern.points);
     const std::vector<int> order = post_order(elimination_tree(upper_part(pattern, e.position)));
     std::vector<int> moved(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) moved[order[k]] = static_cast<int>(k);

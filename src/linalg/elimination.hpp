@@ -23,7 +23,7 @@ struct Elimination {
     [[nodiscard]] int rows_below(int s) const { return row_start[s + 1] - row_start[s]; }
 };
 
-/// Nested dissection (METIS). Small supernodes are merged where that stores few zeros: long loops are worth more.
+/// Nested dissection. Small supernodes are merged where that stores few zeros: long loops are worth more.
 [[nodiscard]] Elimination eliminate(const SymmetricPattern& pattern);
 
 }  // namespace pliant::linalg

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
+#include <utility>
+
+#include "linalg/graph.hpp"
 
 namespace pliant::linalg {
 namespace {
+
+constexpr std::ptrdiff_t most_counted = 32;  // rows of a column: to count the smaller ones takes no branches
 
 /// Adds factor * B v_j to r_i and, off the diagonal, factor * B^T v_i to r_j.
 template <int block>
@@ -36,11 +42,16 @@ void add_product_of(const SymmetricPattern& p, std::span<const double> values, s
 }  // namespace
 
 int SymmetricPattern::find(int i, int j) const {
-    const auto begin = node_row.begin() + node_start[j];
-    const auto end = node_row.begin() + node_start[j + 1];
-    const auto found = std::lower_bound(begin, end, i);
+    const int* begin = node_row.data() + node_start[j];
+    const int* end = node_row.data() + node_start[j + 1];
+    const int* found = begin;
+    if (end - begin > most_counted) {
+        found = std::lower_bound(begin, end, i);
+    } else {
+        for (const int* row = begin; row != end; ++row) found += *row < i ? 1 : 0;
+    }
     assert(found != end && *found == i);
-    return static_cast<int>(found - node_row.begin());
+    return static_cast<int>(found - node_row.data());
 }
 
 bool SymmetricPattern::holds(int i, int j) const {
@@ -48,31 +59,27 @@ bool SymmetricPattern::holds(int i, int j) const {
 }
 
 SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vector<int>>& cliques) {
-    std::vector<std::vector<int>> below(nodes);
-    const auto tidy = [](std::vector<int>& list) {
-        std::sort(list.begin(), list.end());
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-    };
-    for (int j = 0; j < nodes; ++j) below[j].push_back(j);
-    for (const auto& clique : cliques) {
-        for (const int j : clique) {
-            if (j < 0) continue;
-            for (const int i : clique) {
-                if (i > j) below[j].push_back(i);
+    const Graph member_of = graph_of(nodes, [&](const auto& use) {
+        for (int c = 0; c < static_cast<int>(cliques.size()); ++c) {
+            for (const int node : cliques[c]) {
+                if (node >= 0) use(node, c);
             }
-            // Repeats are dropped as they pile up, so that memory follows the result, not the input.
-            if (below[j].size() > 256 && below[j].size() == below[j].capacity()) tidy(below[j]);
         }
-    }
+    });
     SymmetricPattern pattern;
     pattern.block = block;
     pattern.nodes = nodes;
     pattern.node_start.assign(1, 0);
-    for (auto& list : below) {
-        tidy(list);
-        pattern.node_row.insert(pattern.node_row.end(), list.begin(), list.end());
+    std::vector<int> seen(static_cast<std::size_t>(nodes), -1);
+    for (int j = 0; j < nodes; ++j) {
+        pattern.node_row.push_back(j);
+        for (int k = member_of.start[j]; k < member_of.start[j + 1]; ++k) {
+            for (const int i : cliques[member_of.other[k]]) {
+                if (i > j && std::exchange(seen[i], j) != j) pattern.node_row.push_back(i);
+            }
+        }
+        std::sort(pattern.node_row.begin() + pattern.node_start[j], pattern.node_row.end());
         pattern.node_start.push_back(static_cast<int>(pattern.node_row.size()));
-        std::vector<int>().swap(list);
     }
     return pattern;
 }

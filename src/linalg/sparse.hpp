@@ -1,6 +1,7 @@
 // Symmetric sparse matrices that are assembled block by block on the graph of a mesh.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -15,6 +16,8 @@ struct SymmetricPattern {
     int nodes = 0;                ///< size of the matrix is nodes * block
     std::vector<int> node_start;  ///< (nodes + 1)
     std::vector<int> node_row;    ///< (node pairs), ascending in each column, the diagonal first
+    /// (nodes, or none) where the nodes are, in any unit: knowing it, a good order of elimination is found sooner
+    std::vector<std::array<double, 3>> points{};
 
     [[nodiscard]] int size() const { return nodes * block; }
     /// Length of the array of values.

@@ -68,6 +68,20 @@ std::vector<std::optional<material::InvariantForm>> forms_of(std::span<const mat
     return forms;
 }
 
+/// values at the slots += weight * (gradient a . gradient b), lane by lane.
+void add_products(const double* a, const double* b, const std::array<double, batch_lanes>& weight, const int* slot,
+                  std::span<double> values) {
+    constexpr std::size_t lanes = batch_lanes;
+    std::array<double, lanes> entry;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        entry[lane] = weight[lane] * (a[lane] * b[lane] + a[lanes + lane] * b[lanes + lane] +
+                                      a[2 * lanes + lane] * b[2 * lanes + lane]);
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        if (slot[lane] >= 0) values[static_cast<std::size_t>(slot[lane] / 2)] += entry[lane];
+    }
+}
+
 }  // namespace
 
 Result<Elements> Elements::create(const Description& description) {
@@ -288,23 +302,18 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
     return total;
 }
 
-void Elements::add_laplacian(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
-                             std::span<double> values) const {
-    for (std::size_t t = 0; t < tet_count(); ++t) {
-        const double stiffness = material::stiffness_bound(law(t));
-        for (int q = 0; q < points_per_tet_; ++q) {
-            const double weight = stiffness * point_volume(t, q);
-            for (int b = 0; b < nodes_per_tet_; ++b) {
-                const double* gb = gradient(t, q, b);
-                const int j = free_index[node(t, b)];
-                for (int a = 0; j >= 0 && a < nodes_per_tet_; ++a) {
-                    const int i = free_index[node(t, a)];
-                    if (i < j) continue;
-                    const double* ga = gradient(t, q, a);
-                    const double entry =
-                        weight * (ga[0] * gb[0] + ga[lanes] * gb[lanes] + ga[2 * lanes] * gb[2 * lanes]);
-                    pattern.add_block(values, i, j, [&](int, int) { return entry; });
-                }
+void Elements::add_laplacian(std::span<const int> slots, std::span<double> values) const {
+    std::array<double, lanes> weight{};
+    for (std::size_t batch = 0; batch < batches(); ++batch) {
+        const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[batch])]);
+        for (std::size_t q = 0; q < points(); ++q) {
+            const double* gradients = gradient_.data() + (batch * points() + q) * width() * 3 * lanes;
+            const double* volume = volume_.data() + (batch * points() + q) * lanes;
+            for (std::size_t lane = 0; lane < lanes; ++lane) weight[lane] = stiffness * volume[lane];
+            const int* slot = slots.data() + batch * pairs() * lanes;
+            for (std::size_t b = 0; b < width(); ++b) {
+                for (std::size_t a = 0; a <= b; ++a, slot += lanes)
+                    add_products(gradients + a * 3 * lanes, gradients + b * 3 * lanes, weight, slot, values);
             }
         }
     }
@@ -382,6 +391,7 @@ void Elements::apply_mass(std::span<const double> u, std::span<double> result) c
 std::vector<std::vector<int>> Elements::cliques(const std::vector<int>& free_index) const {
     std::vector<std::vector<int>> cliques(tet_count());
     for (std::size_t t = 0; t < tet_count(); ++t) {
+        cliques[t].reserve(width());
         for (int a = 0; a < nodes_per_tet_; ++a) cliques[t].push_back(free_index[node(t, a)]);
     }
     return cliques;

@@ -40,10 +40,9 @@ public:
     void add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values, bool project,
                      std::span<const material::Law> laws = {}) const;
 
-    /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient) for a pattern
-    /// of block 1; W = stiffness_bound(law) times volume.
-    void add_laplacian(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
-                       std::span<double> values) const;
+    /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
+    /// for each pair of the pattern of the slots; W = stiffness_bound(law) times volume.
+    void add_laplacian(std::span<const int> slots, std::span<double> values) const;
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 

@@ -419,6 +419,9 @@ TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& 
     for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
     cliques.insert(cliques.end(), touching.begin(), touching.end());
     TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
+    const Eigen::VectorXd rest = restrict_to_free(rest_);
+    for (Eigen::Index k = 0; k < rest.size(); k += 3)
+        layout.pattern.points.push_back({rest[k], rest[k + 1], rest[k + 2]});
     layout.element_slots = model_->elements().stiffness_slots(model_->free_index(), layout.pattern);
     return layout;
 }
