@@ -29,15 +29,9 @@ void find_sources(Analysis& a) {
     });
 }
 
-}  // namespace
-
-int Analysis::local_row(int s, int node) const {
-    if (node < e.first[s + 1]) return node - e.first[s];
-    const auto begin = e.row.begin() + e.row_start[s];
-    return e.columns(s) + static_cast<int>(std::lower_bound(begin, e.row.begin() + e.row_start[s + 1], node) - begin);
-}
-
-std::vector<Stretch> Analysis::stretches(int child, int s) const {
+/// Where the rows below a child are in the front of its parent s.
+std::vector<Stretch> stretches_of(const Analysis& a, int child, int s) {
+    const Elimination& e = a.e;
     std::vector<Stretch> result;
     for (int k = 0; k < e.rows_below(child); ++k) {
         const int node = e.row[e.row_start[child] + k];
@@ -52,18 +46,28 @@ std::vector<Stretch> Analysis::stretches(int child, int s) const {
                 continue;
             }
         }
-        result.push_back({k, local_row(s, node), 1});
+        result.push_back({k, a.local_row(s, node), 1});
     }
     return result;
 }
 
+}  // namespace
+
+int Analysis::local_row(int s, int node) const {
+    if (node < e.first[s + 1]) return node - e.first[s];
+    const auto begin = e.row.begin() + e.row_start[s];
+    return e.columns(s) + static_cast<int>(std::lower_bound(begin, e.row.begin() + e.row_start[s + 1], node) - begin);
+}
+
 std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern) {
-    Analysis a{pattern, eliminate(pattern), {}, {}, {}};
+    Analysis a{pattern, eliminate(pattern), {}, {}, {}, {}};
     a.pattern.block = 1;
     a.pattern.points = {};
     a.children.resize(static_cast<std::size_t>(a.e.supernodes()));
     for (int s = 0; s < a.e.supernodes(); ++s) {
-        if (a.e.parent[s] >= 0) a.children[a.e.parent[s]].push_back(s);
+        const int parent = a.e.parent[s];
+        if (parent >= 0) a.children[parent].push_back(s);
+        a.stretches.push_back(parent >= 0 ? stretches_of(a, s, parent) : std::vector<Stretch>());
     }
     find_sources(a);
     return std::make_shared<const Analysis>(std::move(a));

@@ -105,7 +105,7 @@ bool worth_merging(const Run& run, int block) {
     const double columns = run.last - run.first;
     const double stored = columns * (columns + 1) / 2 + columns * run.below;
     const double unknowns = columns * block;
-    const double allowed = unknowns <= 24 ? 0.6 : unknowns <= 64 ? 0.3 : unknowns <= 128 ? 0.15 : 0.05;
+    const double allowed = unknowns <= 24 ? 0.4 : unknowns <= 48 ? 0.2 : unknowns <= 96 ? 0.08 : 0.02;
     return run.zeros <= allowed * stored;
 }
 

@@ -10,13 +10,20 @@
 namespace pliant::linalg {
 namespace {
 
-/// Numbers of an update for which another core is called.
-constexpr std::size_t additions_to_share = 50000;
+constexpr std::size_t numbers_to_share = 250000;  // of a panel that is cleared
 
 /// Unknowns of the panel: its own fill whole packets, so those below begin with the next one.
 template <class Real>
 int panel_row(const Panel<Real>& panel, int unknown) {
     return unknown < panel.columns ? unknown : unknown - panel.columns + panel.first_below();
+}
+
+/// All numbers to 0.
+template <class Real>
+void clear(const Panel<Real>& panel) {
+    parallel_for(panel.size(), numbers_to_share, [&](std::size_t begin, std::size_t end) {
+        std::fill(panel.values + begin, panel.values + end, Real(0));
+    });
 }
 
 }  // namespace
@@ -53,63 +60,23 @@ void Factor<Real>::add_sources(int s, std::span<const double> values) const {
     }
 }
 
-/// The columns of a child's update that belong to the nodes of its parent.
-template <class Real>
-void Factor<Real>::add_to_panel(int child, const Real* update, const std::vector<Stretch>& parts, int s) const {
-    const Panel<Real> p = panel(s);
-    const int b = block_;
-    const std::size_t leading_dimension = leading(child);
-    std::vector<std::size_t> place;  // of each row of the child, in column 0 of the panel
-    for (const Stretch& part : parts) {
-        for (int r = 0; r < part.length * b; ++r)
-            place.push_back(static_cast<std::size_t>(p.at(panel_row(p, part.to * b + r), 0) - p.values));
-    }
-    const int rows = static_cast<int>(place.size());
-    std::vector<std::pair<int, int>> columns;  // of the child, and of the panel
-    for (const Stretch& part : parts) {
-        if (part.to >= analysis_->e.columns(s)) break;
-        for (int c = 0; c < part.length * b; ++c) columns.emplace_back(part.from * b + c, part.to * b + c);
-    }
-    const std::size_t grain = additions_to_share / static_cast<std::size_t>(rows + 1) + 1;
-    parallel_for(columns.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const auto [first, to] = columns[k];
-            const Real* source = update + static_cast<std::size_t>(first) * leading_dimension;
-            Real* column = p.at(0, to);
-            for (int r = first; r < rows; ++r) column[place[r]] += source[r];
-        }
-    });
-}
-
-/// The other columns, which its parent passes on.
-template <class Real>
-void Factor<Real>::add_to_update(int child, const Real* update, const std::vector<Stretch>& parts, int s,
-                                 Real* to) const {
-    const int own = analysis_->e.columns(s);
-    const auto passed = std::find_if(parts.begin(), parts.end(), [&](const Stretch& part) { return part.to >= own; });
-    const std::vector<Stretch> rest(passed, parts.end());
-    add_lower(update, leading(child), to, leading(s), rest, own, block_);
-}
-
 template <class Real>
 bool Factor<Real>::eliminate_supernode(int s, std::span<const double> values, const Real* below, Real* above) const {
     const Panel<Real> p = panel(s);
-    std::fill_n(p.values, p.size(), Real(0));
+    clear(p);
     if (block_ == 3)
         add_sources<3>(s, values);
     else
         add_sources<1>(s, values);
     const std::vector<int>& children = analysis_->children[s];
-    std::vector<std::vector<Stretch>> parts;
-    for (const int child : children) {
-        parts.push_back(analysis_->stretches(child, s));
-        add_to_panel(child, below + layout_.update[child], parts.back(), s);
-    }
+    const auto& stretches = analysis_->stretches;
+    for (const int child : children)
+        add_to_panel<Real>(below + layout_.update[child], leading(child), stretches[child], block_, p);
     if (!pliant::linalg::factorise(p)) return false;
     Real* update = above + layout_.update[s];
     negative_product(p, update);
-    for (std::size_t k = 0; k < parts.size(); ++k)
-        add_to_update(children[k], below + layout_.update[children[k]], parts[k], s, update);
+    for (const int child : children)
+        add_to_update<Real>(below + layout_.update[child], leading(child), stretches[child], block_, p, update);
     return true;
 }
 

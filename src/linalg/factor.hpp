@@ -44,8 +44,6 @@ private:
     [[nodiscard]] bool eliminate_branch(const FrontLayout::Branch& branch, std::span<const double> values) const;
     template <int b>
     void add_sources(int s, std::span<const double> values) const;
-    void add_to_panel(int child, const Real* update, const std::vector<Stretch>& stretches, int s) const;
-    void add_to_update(int child, const Real* update, const std::vector<Stretch>& stretches, int s, Real* to) const;
 
     /// Calls work(k) for all branches, at once.
     template <class Work>

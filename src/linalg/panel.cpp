@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "core/parallel.hpp"
 
@@ -26,9 +28,11 @@ constexpr int tile_columns = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
 /// Products are cut here, so that what they read stays in the cache.
 constexpr int product_depth = 256;
 /// Work for which another core is called, in multiply-adds.
-constexpr double work_to_share = 1e6;
+constexpr double work_to_share = 3e5;
 /// Numbers of a factor, read once, for which another core is called.
-constexpr int reading_to_share = 100000;
+constexpr int reading_to_share = 50000;
+/// Numbers of an update that are added.
+constexpr std::size_t additions_to_share = 50000;
 
 enum class To { store, subtract };
 
@@ -458,28 +462,90 @@ void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const Real* y) {
     }
 }
 
+/// target += source, `count` numbers.
 template <class Real>
-void add_lower_any(const Real* from, std::size_t from_leading, Real* to, std::size_t to_leading,
-                   std::span<const Stretch> stretches, int first, int block) {
+HWY_INLINE void add_numbers(const Real* source, int count, Real* target) {
     const hn::CappedTag<Real, packet<Real>> d;
     constexpr int N = static_cast<int>(hn::MaxLanes(d));
-    const auto add = [&](const Real* source, Real* target, int count) {
-        int r = 0;
-        for (; r + N <= count; r += N)
-            hn::StoreU(hn::Add(hn::LoadU(d, target + r), hn::LoadU(d, source + r)), d, target + r);
+    int r = 0;
+    for (; r + N <= count; r += N)
+        hn::StoreU(hn::Add(hn::LoadU(d, target + r), hn::LoadU(d, source + r)), d, target + r);
+    if constexpr (HWY_TARGET <= HWY_AVX3) {
+        const auto rest = hn::FirstN(d, static_cast<std::size_t>(count - r));
+        const auto sum = hn::Add(hn::MaskedLoad(rest, d, target + r), hn::MaskedLoad(rest, d, source + r));
+        hn::BlendedStore(sum, rest, d, target + r);
+    } else {
         for (; r < count; ++r) target[r] += source[r];
-    };
-    for (std::size_t part = 0; part < stretches.size(); ++part) {
-        for (int c = 0; c < stretches[part].length * block; ++c) {
-            const Real* source = from + static_cast<std::size_t>(stretches[part].from * block + c) * from_leading;
-            Real* target = to + static_cast<std::size_t>((stretches[part].to - first) * block + c) * to_leading;
-            for (std::size_t q = part; q < stretches.size(); ++q) {
-                const int skip = q == part ? c : 0;
-                add(source + stretches[q].from * block + skip, target + (stretches[q].to - first) * block + skip,
-                    stretches[q].length * block - skip);
-            }
-        }
     }
+}
+
+/// The lower triangle of `from`, column by column: add(source, column, row, count) gets numbers that belong to unknowns
+/// `row` .. `row + count` and `column` of the front. Only columns of the stretches begin .. end.
+template <class Real, class Add>
+void add_columns(const Real* from, std::size_t leading, std::span<const Stretch> stretches, std::size_t begin,
+                 std::size_t end, int block, const Add& add) {
+    const auto add_column = [&](std::size_t part, int c) {
+        const Real* source = from + static_cast<std::size_t>(stretches[part].from * block + c) * leading;
+        const int column = stretches[part].to * block + c;
+        for (std::size_t q = part; q < stretches.size(); ++q) {
+            const int skip = q == part ? c : 0;
+            add(source + stretches[q].from * block + skip, column, stretches[q].to * block + skip,
+                stretches[q].length * block - skip);
+        }
+    };
+    std::size_t columns = 0;
+    for (std::size_t part = begin; part < end; ++part)
+        columns += static_cast<std::size_t>(stretches[part].length * block);
+    if (columns * leading < 2 * additions_to_share) {
+        for (std::size_t part = begin; part < end; ++part) {
+            for (int c = 0; c < stretches[part].length * block; ++c) add_column(part, c);
+        }
+        return;
+    }
+    std::vector<std::pair<std::size_t, int>> each;
+    for (std::size_t part = begin; part < end; ++part) {
+        for (int c = 0; c < stretches[part].length * block; ++c) each.emplace_back(part, c);
+    }
+    parallel_for(each.size(), additions_to_share / leading + 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) add_column(each[k].first, each[k].second);
+    });
+}
+
+/// The first stretch that is not of the panel's own nodes.
+template <class Real>
+std::size_t first_passed_on(std::span<const Stretch> stretches, int block, const Panel<Real>& panel) {
+    const auto own = [&](const Stretch& part) { return part.to * block < panel.columns; };
+    return static_cast<std::size_t>(std::find_if_not(stretches.begin(), stretches.end(), own) - stretches.begin());
+}
+
+template <class Real>
+void add_to_panel_any(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                      const Panel<Real>& panel) {
+    constexpr int P = packet<Real>;
+    const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
+    const auto add = [&](const Real* source, int column, int row, int count) {
+        if (row >= panel.columns) row += panel.first_below() - panel.columns;
+        Real* target = panel.at(row, column);
+        for (int in_packet = row % P; count > 0; in_packet = 0) {
+            const int now = std::min(count, P - in_packet);
+            add_numbers(source, now, target);
+            source += now;
+            count -= now;
+            target += stride - static_cast<std::size_t>(in_packet);
+        }
+    };
+    add_columns(from, leading, stretches, 0, first_passed_on(stretches, block, panel), block, add);
+}
+
+template <class Real>
+void add_to_update_any(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                       const Panel<Real>& panel, Real* update) {
+    const auto to_leading = static_cast<std::size_t>(whole_packets<Real>(panel.below));
+    const auto add = [&](const Real* source, int column, int row, int count) {
+        add_numbers(source, count,
+                    update + static_cast<std::size_t>(column - panel.columns) * to_leading + row - panel.columns);
+    };
+    add_columns(from, leading, stretches, first_passed_on(stretches, block, panel), stretches.size(), block, add);
 }
 
 // What the table below can name.
@@ -495,13 +561,21 @@ void product_double(const Panel<double>& p, double* u) {
 void product_float(const Panel<float>& p, float* u) {
     negative_panel_product(p, u);
 }
-void add_double(const double* from, std::size_t from_leading, double* to, std::size_t to_leading,
-                std::span<const Stretch> stretches, int first, int block) {
-    add_lower_any(from, from_leading, to, to_leading, stretches, first, block);
+void add_to_panel_double(const double* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                         const Panel<double>& panel) {
+    add_to_panel_any(from, leading, stretches, block, panel);
 }
-void add_float(const float* from, std::size_t from_leading, float* to, std::size_t to_leading,
-               std::span<const Stretch> stretches, int first, int block) {
-    add_lower_any(from, from_leading, to, to_leading, stretches, first, block);
+void add_to_panel_float(const float* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                        const Panel<float>& panel) {
+    add_to_panel_any(from, leading, stretches, block, panel);
+}
+void add_to_update_double(const double* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                          const Panel<double>& panel, double* update) {
+    add_to_update_any(from, leading, stretches, block, panel, update);
+}
+void add_to_update_float(const float* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                         const Panel<float>& panel, float* update) {
+    add_to_update_any(from, leading, stretches, block, panel, update);
 }
 void lower_double(const Panel<double>& p, int n, double* x, double* y) {
     solve_lower_any(p, n, x, y);
@@ -538,8 +612,10 @@ HWY_EXPORT(factorise_double);
 HWY_EXPORT(factorise_float);
 HWY_EXPORT(product_double);
 HWY_EXPORT(product_float);
-HWY_EXPORT(add_double);
-HWY_EXPORT(add_float);
+HWY_EXPORT(add_to_panel_double);
+HWY_EXPORT(add_to_panel_float);
+HWY_EXPORT(add_to_update_double);
+HWY_EXPORT(add_to_update_float);
 HWY_EXPORT(lower_double);
 HWY_EXPORT(lower_float);
 HWY_EXPORT(upper_double);
@@ -566,14 +642,24 @@ void negative_product(const Panel<float>& panel, float* update) {
     HWY_DYNAMIC_DISPATCH(product_float)(panel, update);
 }
 template <>
-void add_lower(const double* from, std::size_t from_leading, double* to, std::size_t to_leading,
-               std::span<const Stretch> stretches, int first, int block) {
-    HWY_DYNAMIC_DISPATCH(add_double)(from, from_leading, to, to_leading, stretches, first, block);
+void add_to_panel(const double* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                  const Panel<double>& panel) {
+    HWY_DYNAMIC_DISPATCH(add_to_panel_double)(from, leading, stretches, block, panel);
 }
 template <>
-void add_lower(const float* from, std::size_t from_leading, float* to, std::size_t to_leading,
-               std::span<const Stretch> stretches, int first, int block) {
-    HWY_DYNAMIC_DISPATCH(add_float)(from, from_leading, to, to_leading, stretches, first, block);
+void add_to_panel(const float* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                  const Panel<float>& panel) {
+    HWY_DYNAMIC_DISPATCH(add_to_panel_float)(from, leading, stretches, block, panel);
+}
+template <>
+void add_to_update(const double* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                   const Panel<double>& panel, double* update) {
+    HWY_DYNAMIC_DISPATCH(add_to_update_double)(from, leading, stretches, block, panel, update);
+}
+template <>
+void add_to_update(const float* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                   const Panel<float>& panel, float* update) {
+    HWY_DYNAMIC_DISPATCH(add_to_update_float)(from, leading, stretches, block, panel, update);
 }
 template <>
 void solve_lower(const Panel<double>& panel, int count, double* x, double* y) {

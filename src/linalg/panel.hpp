@@ -48,11 +48,15 @@ struct Stretch {
     int from, to, length;
 };
 
-/// Adds the lower triangle of `from`, at the nodes of the stretches, to `to` at theirs less `first`. Both by columns;
-/// `block` rows and columns a node.
+/// Adds the lower triangle of `from`, at the nodes of the stretches, to the panel and, at those that follow its own
+/// nodes, to `update`, which is as negative_product() makes it; `from` is such an update, too. `block` rows and columns a
+/// node. On all cores where there is much to add.
 template <class Real>
-void add_lower(const Real* from, std::size_t from_leading, Real* to, std::size_t to_leading,
-               std::span<const Stretch> stretches, int first, int block);
+void add_to_panel(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                  const Panel<Real>& panel);
+template <class Real>
+void add_to_update(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
+                   const Panel<Real>& panel, Real* update);
 
 /// x (columns, count) <- L^-1 x, and y (rows below, padded to packets, count) = L_below x. Vectors one after the other.
 template <class Real>

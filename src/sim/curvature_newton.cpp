@@ -28,19 +28,20 @@ public:
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
 
-    [[nodiscard]] double smallest_share() const override { return reused_ ? smallest_reused_share : 1e-7; }
+    [[nodiscard]] double smallest_share() const override { return reused_ && !crawls() ? smallest_reused_share : 1e-7; }
 
     /// In the step of the program after its own, an inverse is expected to do what the one before it did there; that
     /// fades, so that it is tried again some day.
     void restart() override {
         hasty_ = false;
+        left_by_new_ = 0;
         if (age_++ > 0) return;
         left_ = left_at_first_;
         left_at_first_ = hoped_left * std::pow(left_at_first_ / hoped_left, memory_of_first);
     }
 
     [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, double far) override {
-        const bool reuse = care == Care::usual && usable_ && !hasty_ && pays(far);
+        const bool reuse = care == Care::usual && usable_ && (!hasty_ || crawls()) && pays(far);
         if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
         if (reused_ && care != Care::usual) judge_old(most_left);
         reused_ = reuse;
@@ -59,7 +60,10 @@ public:
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
 
     void judge(double before, double after) override {
+        ++uses_;
         if (reused_) return judge_old(std::clamp(after / before, least_left, most_left));
+        uses_ = 0;
+        left_by_new_ = after < nearby ? after / before : 0;
         // Where the very tangent does not lead far, the state is changing too much for an old one.
         left_ = after > hoped_left * before ? most_left : hoped_left;
         age_ = 0;
@@ -89,7 +93,15 @@ private:
     /// matrix.
     [[nodiscard]] bool pays(double far) const {
         if (system_->has_skew()) return false;
+        if (crawls()) return true;
         return std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
+    }
+
+    /// True where, close to equilibrium, the very tangent hardly leads on: it had to be made positive definite, which
+    /// hides how easily the body goes where it wants to buckle. A few steps with one inverse teach that (StepMemory),
+    /// however short they are.
+    [[nodiscard]] bool crawls() const {
+        return share_ > 0 && left_by_new_ > hopeless && uses_ < static_cast<int>(most_steps);
     }
 
     /// A step with an inverse from an earlier state left so much of the error.
@@ -205,7 +217,7 @@ private:
     static constexpr double smallest_reused_share = 0.2;
     static constexpr std::size_t most_steps = 8;
     static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
-    static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4;
+    static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -237,6 +249,8 @@ private:
     // Of the error, what a step with an inverse from an earlier state leaves.
     double left_ = hoped_left;           ///< by the next one, as far as is known
     double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
+    double left_by_new_ = 0;             ///< by the last one of its own state; 0 before and far from equilibrium
+    int uses_ = 0;                       ///< of the inverse since that step
     int age_ = 0;                        ///< of the inverse, in steps of the program
     bool tried_later_ = false;           ///< in a later one than its own
     std::vector<std::vector<int>> touching_;  ///< pairs in contact that the pattern has room for

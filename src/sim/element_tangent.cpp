@@ -16,6 +16,7 @@ using linalg::Vector3;
 /// Batches bound the memory of the blocks, and keep them in the cache until they are added.
 constexpr std::size_t batches_at_once = 64;
 constexpr std::size_t batches_per_piece = 4;
+constexpr std::size_t places_per_piece = 1024;
 
 /// A slot says which block of the pattern, and whether it is the transposed one of the pair; held nodes have none.
 constexpr int no_slot = -1;
@@ -25,17 +26,21 @@ constexpr int no_slot = -1;
 std::vector<int> Elements::stiffness_slots(const std::vector<int>& free_index,
                                            const linalg::SymmetricPattern& pattern) const {
     std::vector<int> slots(batches() * pairs() * lanes, no_slot);
-    for (std::size_t place = 0; place < tet_.size(); ++place) {
-        if (tet_[place] == no_tet) continue;
-        int* slot = slots.data() + place / lanes * pairs() * lanes + place % lanes;
-        for (int b = 0; b < nodes_per_tet_; ++b) {
-            for (int a = 0; a <= b; ++a, slot += lanes) {
-                const int i = free_index[node(tet_[place], a)];
-                const int j = free_index[node(tet_[place], b)];
-                if (i >= 0 && j >= 0) *slot = 2 * pattern.find(std::max(i, j), std::min(i, j)) + (i < j ? 1 : 0);
+    parallel_for(tet_.size(), places_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            if (tet_[place] == no_tet) continue;
+            std::array<int, 10> free{};
+            for (std::size_t a = 0; a < width(); ++a)
+                free[a] = free_index[nodes_[(place / lanes * width() + a) * lanes + place % lanes]];
+            int* slot = slots.data() + place / lanes * pairs() * lanes + place % lanes;
+            for (std::size_t b = 0; b < width(); ++b) {
+                for (std::size_t a = 0; a <= b; ++a, slot += lanes) {
+                    const auto [j, i] = std::minmax(free[a], free[b]);
+                    if (j >= 0) *slot = 2 * pattern.find(i, j) + (free[a] < free[b] ? 1 : 0);
+                }
             }
         }
-    }
+    });
     return slots;
 }
 
