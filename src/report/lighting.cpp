@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace pliant::report {
 namespace {
@@ -11,10 +12,26 @@ constexpr int sky_rays = 128, key_rays = 48;               // on the robot
 constexpr int floor_sky_rays = 512, floor_key_rays = 128;  // on the floor, where nothing hides a step of light
 constexpr double key_radius = 0.16;                        // tangent of the key light's angular radius
 constexpr double ground_radiance = 0.50;                   // what comes back from below, relative to the zenith
-constexpr double golden_angle = 2.399963229728653;         // pi (3 - sqrt 5)
+constexpr Vec3 up{0, 0, 1};
+constexpr double golden_angle = 2.399963229728653;  // pi (3 - sqrt 5)
 
 Vec3 unit(const Vec3& v) {
     return v / norm(v);
+}
+
+/// So that eight in a row point about the same way: they go through the scene together.
+template <class Ray>
+void bundle(std::span<Ray> rays) {
+    if (rays.size() <= 8) return;
+    Box3 box;
+    for (const Ray& ray : rays) box.add(ray.direction);
+    const Vec3 size = box.high - box.low;
+    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t half = (rays.size() / 2 + 7) / 8 * 8;
+    std::nth_element(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(half), rays.end(),
+                     [&](const Ray& a, const Ray& b) { return a.direction[axis] < b.direction[axis]; });
+    bundle(rays.first(half));
+    bundle(rays.subspan(half));
 }
 
 double smoothstep(double low, double high, double x) {
@@ -31,6 +48,7 @@ std::vector<Lighting::Ray> Lighting::sky(int count) {
         const double radiance = ground_radiance + (1 - ground_radiance) * smoothstep(-0.6, 0.7, z);
         rays.push_back({{r * std::cos(angle), r * std::sin(angle), z}, radiance});
     }
+    bundle(std::span(rays));
     return rays;
 }
 
@@ -41,6 +59,7 @@ std::vector<Lighting::Ray> Lighting::key(int count, const Vec3& axis) {
         const double r = key_radius * std::sqrt((i + 0.5) / count), angle = golden_angle * i;
         rays.push_back({unit(axis + r * std::cos(angle) * side + r * std::sin(angle) * other), 1});
     }
+    bundle(std::span(rays));
     return rays;
 }
 
@@ -50,11 +69,12 @@ Lighting::Lighting(const Camera& camera, double reach_m)
       key_(key(key_rays, key_axis_)),
       floor_sky_(sky(floor_sky_rays)),
       floor_key_(key(floor_key_rays, key_axis_)),
+      on_free_floor_{gathered({}, up, floor_sky_, {}), gathered({}, up, floor_key_, {})},
       reach_m_(reach_m) {}
 
 /// Sum of radiance times cosine over the rays that nothing blocks; the cosines in proportion to `normal`.
-double Lighting::gathered(const EmbreeScene& scene, const Vec3& origin, const Vec3& normal, std::span<const Ray> rays,
-                          double reach, bool free) {
+double Lighting::gathered(const Vec3& origin, const Vec3& normal, std::span<const Ray> rays,
+                          const std::optional<Blocking>& blocking) {
     std::array<Vec3, 8> directions;
     std::array<double, 8> weights{};
     std::size_t filled = 0;
@@ -62,7 +82,8 @@ double Lighting::gathered(const EmbreeScene& scene, const Vec3& origin, const Ve
     const auto flush = [&] {
         if (filled == 0) return;
         for (std::size_t i = filled; i < 8; ++i) directions[i] = directions[0];
-        const auto hit = free ? std::array<bool, 8>{} : scene.blocked(origin, directions, reach);
+        const auto hit =
+            blocking ? blocking->scene->blocked(origin, directions, blocking->reach) : std::array<bool, 8>{};
         for (std::size_t i = 0; i < filled; ++i) sum += hit[i] ? 0 : weights[i];
         filled = 0;
     };
@@ -79,21 +100,18 @@ double Lighting::gathered(const EmbreeScene& scene, const Vec3& origin, const Ve
 
 Light Lighting::at(const EmbreeScene& scene, const Vec3& point, const Vec3& normal, const Vec3& geometric) const {
     const Vec3 origin = point + (3e-4 * reach_m_) * geometric;
-    return {4.0 / sky_rays * gathered(scene, origin, normal, sky_, reach_m_, false),
-            gathered(scene, origin, normal, key_, 10 * reach_m_, false) / key_rays};
+    return {4.0 / sky_rays * gathered(origin, normal, sky_, Blocking{&scene, reach_m_}),
+            gathered(origin, normal, key_, Blocking{&scene, 10 * reach_m_}) / key_rays};
 }
 
 Light Lighting::on_floor(const EmbreeScene& scene, const Vec3& point) const {
-    const Vec3 up{0, 0, 1};
-    const auto share = [&](const std::vector<Ray>& rays, double reach) {
-        return gathered(scene, point, up, rays, reach, false) / gathered(scene, point, up, rays, reach, true);
-    };
-    return {share(floor_sky_, reach_m_), share(floor_key_, 10 * reach_m_)};
+    return {gathered(point, up, floor_sky_, Blocking{&scene, reach_m_}) / on_free_floor_.sky,
+            gathered(point, up, floor_key_, Blocking{&scene, 10 * reach_m_}) / on_free_floor_.key};
 }
 
 Light Lighting::unshadowed(const Vec3& normal) const {
-    const double up = 0.5 + 0.5 * normal.z;
-    return {ground_radiance + (1 - ground_radiance) * up, std::max(0.0, dot(normal, key_axis_))};
+    const double share = 0.5 + 0.5 * normal.z;
+    return {ground_radiance + (1 - ground_radiance) * share, std::max(0.0, dot(normal, key_axis_))};
 }
 
 }  // namespace pliant::report

@@ -2,6 +2,7 @@
 // shoulder. Both are sampled in fixed directions, so that neighbouring pixels never differ by noise.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,13 +37,18 @@ private:
         Vec3 direction;
         double radiance;
     };
-    [[nodiscard]] static double gathered(const EmbreeScene& scene, const Vec3& origin, const Vec3& normal,
-                                         std::span<const Ray> rays, double reach, bool free);
+    struct Blocking {
+        const EmbreeScene* scene;
+        double reach;
+    };
+    [[nodiscard]] static double gathered(const Vec3& origin, const Vec3& normal, std::span<const Ray> rays,
+                                         const std::optional<Blocking>& blocking);
     [[nodiscard]] static std::vector<Ray> sky(int count);
     [[nodiscard]] static std::vector<Ray> key(int count, const Vec3& axis);
 
     Vec3 key_axis_;
     std::vector<Ray> sky_, key_, floor_sky_, floor_key_;
+    Light on_free_floor_;  ///< sums, not shares
     double reach_m_;
 };
 

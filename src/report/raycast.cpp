@@ -11,14 +11,21 @@
 namespace pliant::report {
 namespace {
 
-constexpr int grid = 4;           // samples per pixel and direction
+constexpr int grid = 4;           // samples per pixel and direction, where its neighbours differ from it
 constexpr int floor_cell_px = 4;  // the floor's soft shadow is computed at every fourth pixel
+constexpr int light_cell_px = 4;  // and so is the light on smooth parts of the body
+constexpr double light_contrast = 0.05;
+constexpr double colour_contrast = 0.024;  // of neighbours, sRGB: six steps of 255
+constexpr double bend_contrast = 0.97;     // cosine between their normals
+constexpr std::size_t rows_at_once = 16;
 constexpr double sky_strength = 0.64;
 constexpr double key_strength = 0.60;
 constexpr double bounced = 0.16;           // light that still reaches the bottom of a slit, off its walls
 constexpr double floor_sky_shadow = 0.42;  // darkening of the backdrop where no sky arrives
 constexpr double floor_key_shadow = 0.26;
 constexpr double floor_contrast = 0.04;
+constexpr int floor_cells_skipped = 4;
+constexpr double floor_fine_contrast = 0.01;
 constexpr double ghost_clearance = 0.003;            // of the body's size: faces that did not move do not flicker
 constexpr double cable_behind = 0.55;                // opacity of a cable inside the body
 constexpr Colour ghost_colour = {0.42, 0.47, 0.54};  // sRGB
@@ -65,22 +72,46 @@ public:
 
     [[nodiscard]] Status status() const { return device_.status(); }
 
+    /// At every fourth cell, and at those between where these differ.
     void prepare_floor(const Progress& progress) {
-        floor_columns_ = width_ / floor_cell_px + 2;
-        const int rows = height_ / floor_cell_px + 2;
+        constexpr int step = floor_cells_skipped;
+        floor_columns_ = (width_ / floor_cell_px / step + 2) * step + 1;
+        const int rows = (height_ / floor_cell_px / step + 2) * step + 1;
         floor_.assign(static_cast<std::size_t>(floor_columns_ * rows), 1.0);
+        const auto coarse = static_cast<std::size_t>((rows - 1) / step);
+        parallel_for(coarse + 1, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end && !progress.cancelled(); ++k) {
+                const int row = static_cast<int>(k) * step;
+                for (int column = 0; column < floor_columns_; column += step) shade_floor_cell(row, column);
+            }
+        });
+        // A square owns its upper and left edges, so that each cell is written once.
+        parallel_for(coarse, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end && !progress.cancelled(); ++k) {
+                for (int column = 0; column + step < floor_columns_; column += step)
+                    fill_floor_square(static_cast<int>(k) * step, column);
+            }
+        });
+    }
+
+    /// Where rays through every fourth pixel meet the body, and the light there.
+    void prepare_light(const Progress& progress) {
+        light_columns_ = width_ / light_cell_px + 2;
+        const int rows = height_ / light_cell_px + 2;
+        lights_.resize(static_cast<std::size_t>(light_columns_ * rows));
         parallel_for(static_cast<std::size_t>(rows), 2, [&](std::size_t begin, std::size_t end) {
             if (progress.cancelled()) return;
             for (std::size_t row = begin; row < end; ++row) {
-                for (int column = 0; column < floor_columns_; ++column) {
-                    floor_[row * static_cast<std::size_t>(floor_columns_) + static_cast<std::size_t>(column)] =
-                        floor_shade(column * floor_cell_px, static_cast<double>(row) * floor_cell_px);
+                for (int column = 0; column < light_columns_; ++column) {
+                    lights_[row * static_cast<std::size_t>(light_columns_) + static_cast<std::size_t>(column)] =
+                        light_through(column * light_cell_px, static_cast<double>(row) * light_cell_px);
                 }
             }
         });
     }
 
-    [[nodiscard]] Colour pixel(int x, int y) const;
+    /// sRGB of the rows `begin` .. `end`, row by row.
+    [[nodiscard]] std::vector<Colour> rows(int begin, int end) const;
 
 private:
     /// Where in the pixel a body was met, and the light there: shared by the samples that see the same smooth patch.
@@ -92,6 +123,12 @@ private:
     struct Shared {
         std::vector<Patch> patches, thing_patches;
         std::optional<double> floor;
+    };
+    /// What one ray sees.
+    struct Sample {
+        Colour colour;     ///< linear
+        unsigned met = 0;  ///< a bit each for body, ghost, thing, cable
+        Vec3 normal;       ///< of the body
     };
 
     static double reach_of(const Scene& scene) {
@@ -148,14 +185,31 @@ private:
         return camera_.direction(2 * x / width_ - 1, 1 - 2 * y / height_);
     }
     [[nodiscard]] double floor_shade(double x, double y) const;
+    [[nodiscard]] double& floor_cell(int row, int column) {
+        return floor_[static_cast<std::size_t>(row) * static_cast<std::size_t>(floor_columns_) +
+                      static_cast<std::size_t>(column)];
+    }
+    void shade_floor_cell(int row, int column) {
+        floor_cell(row, column) = floor_shade(column * floor_cell_px, row * floor_cell_px);
+    }
+    void fill_floor_square(int row, int column);
     [[nodiscard]] double floor_at(double x, double y) const;
-    [[nodiscard]] Colour body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const;
+    [[nodiscard]] std::optional<Patch> light_through(double x, double y) const;
+    /// Between the computed points, if they are of the smooth patch at `point` and their light differs little.
+    [[nodiscard]] std::optional<Light> smooth_light(double x, double y, const Vec3& point, const Vec3& normal) const;
+    [[nodiscard]] bool is_same_patch(const Patch& patch, const Vec3& point, const Vec3& normal) const {
+        return dot(patch.normal, normal) > 0.98 && std::abs(dot(patch.normal, point - patch.point)) < 0.004 * reach_;
+    }
     /// What is seen through the thing at `hit` has `behind`'s colour.
     [[nodiscard]] Colour with_thing(const Colour& behind, const Hit& hit, const Vec3& direction, Shared& shared) const;
     [[nodiscard]] Colour with_ghost(const Colour& behind, const Hit& hit, const Vec3& direction) const;
     [[nodiscard]] Light patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
                                     std::vector<Patch>& patches) const;
-    [[nodiscard]] Colour sample(double x, double y, Shared& shared) const;
+    [[nodiscard]] Sample sample(double x, double y, Shared& shared) const;
+    [[nodiscard]] Sample at_centre(int x, int y) const;
+    /// Mean of many samples, sRGB.
+    [[nodiscard]] Colour sampled_finely(int x, int y) const;
+    [[nodiscard]] bool is_in_window(double x, double y) const { return window_.contains({x, y, 0}, 1); }
     [[nodiscard]] Colour lit(const Colour& albedo, const Vec3& normal, const Vec3& direction, const Light& light) const;
 
     const Scene& scene_;
@@ -170,6 +224,8 @@ private:
     Colour cable_albedo_, ghost_albedo_, thing_albedo_, backdrop_top_, backdrop_bottom_;  // linear
     std::vector<double> floor_;
     int floor_columns_ = 0;
+    std::vector<std::optional<Patch>> lights_;
+    int light_columns_ = 0;
     Box3 window_;  ///< pixels, z unused
 };
 
@@ -181,6 +237,25 @@ double Renderer::floor_shade(double x, double y) const {
     const Vec3 lift{0, 0, 1e-4 * reach_};
     const Light light = lighting_.on_floor(shade_, camera_.eye + t * direction + lift);
     return 1 - floor_sky_shadow * (1 - light.sky) - floor_key_shadow * (1 - light.key);
+}
+
+/// The cells between the corners of a square: as light as those say where they agree.
+void Renderer::fill_floor_square(int row, int column) {
+    constexpr int step = floor_cells_skipped;
+    const double a = floor_cell(row, column), b = floor_cell(row, column + step);
+    const double c = floor_cell(row + step, column), d = floor_cell(row + step, column + step);
+    const auto [low, high] = std::minmax({a, b, c, d});
+    const bool agree = high - low < floor_fine_contrast;
+    for (int i = 0; i < step; ++i) {
+        for (int j = 0; j < step; ++j) {
+            const double u = static_cast<double>(j) / step, v = static_cast<double>(i) / step;
+            if (i + j == 0) continue;
+            if (agree)
+                floor_cell(row + i, column + j) = (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+            else
+                shade_floor_cell(row + i, column + j);
+        }
+    }
 }
 
 /// Bilinear between the computed points or, where those differ much (a body touches the floor), computed here.
@@ -200,9 +275,7 @@ double Renderer::floor_at(double x, double y) const {
 Light Renderer::patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
                             std::vector<Patch>& patches) const {
     for (const Patch& patch : patches) {
-        if (dot(patch.normal, normal) > 0.98 && std::abs(dot(patch.normal, point - patch.point)) < 0.004 * reach_) {
-            return patch.light;
-        }
+        if (is_same_patch(patch, point, normal)) return patch.light;
     }
     patches.push_back({point, normal, lighting_.at(shade_, point, normal, geometric)});
     return patches.back().light;
@@ -234,11 +307,38 @@ std::array<Vec3, 2> seen_normals(const Pose& pose, const std::array<int, 3>& cor
     return {geometric, normal};
 }
 
-Colour Renderer::body_colour(const Hit& hit, const Vec3& direction, std::vector<Patch>& patches) const {
-    const auto& corners = scene_.surface->triangles[hit.primitive];
-    const auto [geometric, normal] = seen_normals(scene_.body, corners, hit, direction);
+std::optional<Renderer::Patch> Renderer::light_through(double x, double y) const {
+    if (!is_in_window(x, y)) return {};
+    const Vec3 direction = ray(x, y);
+    const Hit hit = body_.closest(camera_.eye, direction);
+    if (!hit.found) return {};
+    const auto [geometric, normal] =
+        seen_normals(scene_.body, scene_.surface->triangles[hit.primitive], hit, direction);
     const Vec3 point = camera_.eye + hit.distance * direction;
-    return lit(at_hit(albedo_, corners, hit), normal, direction, patch_light(point, normal, geometric, patches));
+    return Patch{point, normal, lighting_.at(shade_, point, normal, geometric)};
+}
+
+std::optional<Light> Renderer::smooth_light(double x, double y, const Vec3& point, const Vec3& normal) const {
+    const double column = x / light_cell_px, row = y / light_cell_px;
+    const auto c = static_cast<std::size_t>(column), r = static_cast<std::size_t>(row);
+    const double a = column - static_cast<double>(c), b = row - static_cast<double>(r);
+    const std::array<double, 4> shares = {(1 - b) * (1 - a), (1 - b) * a, b * (1 - a), b * a};
+    Light sum{0, 0}, low{HUGE_VAL, HUGE_VAL}, high{0, 0};
+    double share = 0;
+    int found = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const auto& corner = lights_[(r + k / 2) * static_cast<std::size_t>(light_columns_) + c + k % 2];
+        if (!corner || !is_same_patch(*corner, point, normal)) continue;
+        const auto [sky, key] = corner->light;
+        const double weight = shares[k] + 1e-6;
+        sum = {sum.sky + weight * sky, sum.key + weight * key};
+        low = {std::min(low.sky, sky), std::min(low.key, key)};
+        high = {std::max(high.sky, sky), std::max(high.key, key)};
+        share += weight;
+        ++found;
+    }
+    if (found < 2 || high.sky - low.sky > light_contrast || high.key - low.key > light_contrast) return {};
+    return Light{sum.sky / share, sum.key / share};
 }
 
 Colour Renderer::with_thing(const Colour& behind, const Hit& hit, const Vec3& direction, Shared& shared) const {
@@ -257,11 +357,23 @@ Colour Renderer::with_ghost(const Colour& behind, const Hit& hit, const Vec3& di
     return mix(behind, ghost_albedo_, 0.13 + 0.24 * std::pow(1 - facing, 2));
 }
 
-Colour Renderer::sample(double x, double y, Shared& shared) const {
+Renderer::Sample Renderer::sample(double x, double y, Shared& shared) const {
     const Vec3 direction = ray(x, y);
     const Hit body = body_.closest(camera_.eye, direction);
-    if (!body.found && !shared.floor) shared.floor = floor_at(x, y);
-    Colour colour = body.found ? body_colour(body, direction, shared.patches) : backdrop_colour(y, *shared.floor);
+    Vec3 body_normal;
+    Colour colour;
+    if (body.found) {
+        const auto& corners = scene_.surface->triangles[body.primitive];
+        const auto [geometric, normal] = seen_normals(scene_.body, corners, body, direction);
+        const Vec3 point = camera_.eye + body.distance * direction;
+        std::optional<Light> light = smooth_light(x, y, point, normal);
+        if (!light) light = patch_light(point, normal, geometric, shared.patches);
+        colour = lit(at_hit(albedo_, corners, body), normal, direction, *light);
+        body_normal = normal;
+    } else {
+        if (!shared.floor) shared.floor = floor_at(x, y);
+        colour = backdrop_colour(y, *shared.floor);
+    }
     double depth = body.found ? body.distance : HUGE_VAL;
     const Hit ghost = scene_.ghost ? ghost_.closest(camera_.eye, direction) : Hit{};
     const bool has_ghost = ghost.found && ghost.distance + ghost_clearance * reach_ / norm(direction) < depth;
@@ -281,23 +393,66 @@ Colour Renderer::sample(double x, double y, Shared& shared) const {
         const Colour shaded = lit(cable_albedo_, normal, direction, lighting_.unshadowed(normal));
         colour = mix(colour, shaded, cable.distance < depth ? 1.0 : cable_behind);
     }
-    return colour;
+    const unsigned met =
+        (body.found ? 1U : 0U) | (has_ghost ? 2U : 0U) | (has_thing ? 4U : 0U) | (cable.found ? 8U : 0U);
+    return {colour, met, body_normal};
 }
 
-Colour Renderer::pixel(int x, int y) const {
-    if (!window_.contains({x + 0.5, y + 0.5, 0}, 1)) {
-        return to_srgb(backdrop_colour(y + 0.5, floor_at(x + 0.5, y + 0.5)));
-    }
+Colour Renderer::sampled_finely(int x, int y) const {
     Shared shared;
     Colour sum;
     for (int j = 0; j < grid; ++j) {
         for (int i = 0; i < grid; ++i) {
             // A rotated lattice: no two samples share a row or column, so near-axis edges get 16 grey levels.
             const double dx = (i + (j + 0.5) / grid) / grid, dy = (j + (grid - 1 - i + 0.5) / grid) / grid;
-            sum += sample(x + dx, y + dy, shared);
+            sum += sample(x + dx, y + dy, shared).colour;
         }
     }
     return to_srgb((1.0 / (grid * grid)) * sum);
+}
+
+Renderer::Sample Renderer::at_centre(int x, int y) const {
+    Shared shared;
+    Sample result = is_in_window(x + 0.5, y + 0.5)
+                        ? sample(x + 0.5, y + 0.5, shared)
+                        : Sample{backdrop_colour(y + 0.5, floor_at(x + 0.5, y + 0.5)), 0, {}};
+    result.colour = to_srgb(result.colour);
+    return result;
+}
+
+bool are_alike(const Colour& a, const Colour& b) {
+    return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) < colour_contrast;
+}
+
+/// One ray to a pixel and, where it sees something else than those of the pixels around it, many.
+std::vector<Colour> Renderer::rows(int begin, int end) const {
+    const int first = std::max(begin - 1, 0), last = std::min(end + 1, height_);
+    std::vector<Sample> centres;
+    for (int y = first; y < last; ++y) {
+        for (int x = 0; x < width_; ++x) centres.push_back(at_centre(x, y));
+    }
+    const auto centre = [&](int x, int y) -> const Sample& {
+        return centres[static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width_) +
+                       static_cast<std::size_t>(x)];
+    };
+    const auto is_like_its_neighbours = [&](int x, int y) {
+        const Sample& own = centre(x, y);
+        for (int j = std::max(y - 1, first); j < std::min(y + 2, last); ++j) {
+            for (int i = std::max(x - 1, 0); i < std::min(x + 2, width_); ++i) {
+                const Sample& other = centre(i, j);
+                if (other.met != own.met || !are_alike(other.colour, own.colour)) return false;
+                if ((own.met & 1U) != 0 && (i != x || j != y) && dot(other.normal, own.normal) < bend_contrast)
+                    return false;
+            }
+        }
+        return true;
+    };
+    std::vector<Colour> result;
+    for (int y = begin; y < end; ++y) {
+        for (int x = 0; x < width_; ++x)
+            result.push_back(is_like_its_neighbours(x, y) ? centre(x, y).colour : sampled_finely(x, y));
+    }
+    return result;
 }
 
 std::uint8_t byte(double v) {
@@ -310,17 +465,15 @@ Result<Image> render(const Scene& scene, const Camera& camera, int width_px, int
     Renderer renderer(scene, camera, width_px, height_px);
     if (Status status = renderer.status(); !status) return tl::unexpected(status.error());
     renderer.prepare_floor(progress);
+    renderer.prepare_light(progress);
     Image image{width_px, height_px, std::vector<std::uint8_t>(static_cast<std::size_t>(width_px * height_px) * 3)};
-    parallel_for(static_cast<std::size_t>(height_px), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for(static_cast<std::size_t>(height_px), rows_at_once, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
-        for (std::size_t y = begin; y < end; ++y) {
-            std::uint8_t* out = image.rgb.data() + y * static_cast<std::size_t>(width_px) * 3;
-            for (int x = 0; x < width_px; ++x) {
-                const Colour c = renderer.pixel(x, static_cast<int>(y));
-                *out++ = byte(c.r);
-                *out++ = byte(c.g);
-                *out++ = byte(c.b);
-            }
+        std::uint8_t* out = image.rgb.data() + begin * static_cast<std::size_t>(width_px) * 3;
+        for (const Colour& c : renderer.rows(static_cast<int>(begin), static_cast<int>(end))) {
+            *out++ = byte(c.r);
+            *out++ = byte(c.g);
+            *out++ = byte(c.b);
         }
     });
     if (progress.cancelled()) return cancelled();
