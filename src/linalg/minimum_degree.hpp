@@ -1,7 +1,6 @@
 // The order of elimination of a few nodes.
 #pragma once
 
-#include <compare>
 #include <vector>
 
 #include "linalg/graph.hpp"
@@ -11,7 +10,6 @@ namespace pliant::linalg {
 /// Two neighbours of which one stays.
 struct Rim {
     int outside, node;
-    auto operator<=>(const Rim&) const = default;
 };
 
 /// The nodes of a graph in the order in which each has the fewest neighbours that are left (Tinney and Walker 1967);

@@ -135,6 +135,7 @@ TEST_CASE("with self-contact the finger goes to 75 mm of pull, where its flanks 
 TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hold") {
     const sim::Trajectory grown = simulate(pneunet("volume_ratio = 4.5", 30));
     REQUIRE_MESSAGE(grown.converged, grown.message);
+    CHECK(grown.iterations.size() < 800);  // a solver that crawls along its folds takes thousands
     double highest = 0;
     for (const sim::Step& step : grown.steps) highest = std::max(highest, step.chambers[0].pressure_Pa);
     CHECK(grown.steps.back().chambers[0].pressure_Pa < highest);
