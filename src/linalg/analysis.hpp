@@ -25,8 +25,8 @@ struct Analysis {
     std::vector<std::vector<int>> children;  ///< (supernodes)
     std::vector<Source> sources;             ///< in the order of the supernodes
     std::vector<int> source_start;           ///< (supernodes + 1)
-    /// (supernodes) where the rows below each are in the front of its parent; a stretch is within the parent's own nodes
-    /// or below them
+    /// (supernodes) where the rows below each are in the front of its parent; a stretch is within the parent's own
+    /// nodes or below them
     std::vector<std::vector<Stretch>> stretches;
 
     /// Row of a node in the front of s: its own nodes first, then those below.

@@ -89,7 +89,8 @@ std::vector<Point> scaled(std::span<const std::array<double, 3>> points) {
     result.reserve(points.size());
     for (const auto& p : points) {
         result.emplace_back(Point::Zero());
-        if (reach > 0 && std::isfinite(reach)) result.back() = ((Eigen::Vector3d(p.data()) - first) / reach).cast<float>();
+        if (reach > 0 && std::isfinite(reach))
+            result.back() = ((Eigen::Vector3d(p.data()) - first) / reach).cast<float>();
     }
     return result;
 }

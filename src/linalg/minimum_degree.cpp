@@ -62,9 +62,8 @@ private:
 }  // namespace
 
 std::vector<int> by_minimum_degree(const Graph& graph, std::vector<Rim> rim) {
-    std::sort(rim.begin(), rim.end(), [](const Rim& a, const Rim& b) {
-        return std::pair(a.outside, a.node) < std::pair(b.outside, b.node);
-    });
+    std::sort(rim.begin(), rim.end(),
+              [](const Rim& a, const Rim& b) { return std::pair(a.outside, a.node) < std::pair(b.outside, b.node); });
     Neighbourhoods near(graph, rim);
     std::vector<int> degree(static_cast<std::size_t>(graph.nodes()));
     for (int v = 0; v < graph.nodes(); ++v) degree[v] = near.degree(v);

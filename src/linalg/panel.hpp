@@ -49,8 +49,8 @@ struct Stretch {
 };
 
 /// Adds the lower triangle of `from`, at the nodes of the stretches, to the panel and, at those that follow its own
-/// nodes, to `update`, which is as negative_product() makes it; `from` is such an update, too. `block` rows and columns a
-/// node. On all cores where there is much to add.
+/// nodes, to `update`, which is as negative_product() makes it; `from` is such an update, too. `block` rows and columns
+/// a node. On all cores where there is much to add.
 template <class Real>
 void add_to_panel(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
                   const Panel<Real>& panel);
