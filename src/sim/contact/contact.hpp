@@ -13,6 +13,7 @@
 // give the same bits on any number of threads.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,9 +63,9 @@ struct Crossing {
     int obstacle;  ///< -1: the robot with itself
 };
 
-/// Immutable. A pair acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries
-/// no force. Left out are features that share a node, those that touch at rest (bonded bodies) and obstacles among
-/// themselves.
+/// Immutable, but for a memory of what was near at the last states, which is quicker and gives the same bits. A pair
+/// acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. Left out
+/// are features that share a node, those that touch at rest (bonded bodies) and obstacles among themselves.
 class Contact {
 public:
     /// `rest`: (3 robot nodes). Refused: obstacles that touch or cross the robot at rest, numbers that make no sense.
@@ -119,8 +120,12 @@ private:
         Vec3 normal;
     };
     class Search;  ///< one sweep over the features whose boxes overlap; contact_search.cpp
+    class Nearby;  ///< what such a sweep finds, good for as long as nothing moves far
+    struct Memory;
 
-    Contact() = default;
+    Contact();
+    /// What is near at x and along dx, if the last states suggest that it is worth knowing; else null.
+    [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
     void add_obstacles();
     [[nodiscard]] std::optional<int> obstacle_touched_at_rest() const;
@@ -138,6 +143,7 @@ private:
     double touching_m_ = 0;  ///< distances up to this are zero but for rounding
     Side robot_, others_;
     std::vector<Plane> planes_;
+    std::shared_ptr<Memory> memory_;
 };
 
 }  // namespace pliant::sim::contact

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "sim/contact/contact.hpp"
@@ -13,6 +15,9 @@ namespace {
 
 /// A tenth: the share of its present distance that a step leaves to every pair.
 constexpr double kept_share = 0.1;
+
+/// How far a node may go, in distances at which forces act, before what was near is looked for again.
+constexpr double slack_share = 0.5;
 
 Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
     return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
@@ -82,6 +87,19 @@ public:
 
         [[nodiscard]] Features features() const {
             return kind == Kind::edge_edge ? Features::edge_edge : Features::point_triangle;
+        }
+        /// True if the boxes of both features, each along dx, are no further apart than `margin` on any axis.
+        [[nodiscard]] bool comes_near(std::span<const double> x, std::span<const double> dx, double margin) const {
+            const std::size_t firsts = kind == Kind::edge_edge ? 2 : 1;
+            Bounds first, second;
+            for (std::size_t k = 0; k < 4; ++k) {
+                Bounds& own = k < firsts ? first : second;
+                const Vec3 p = node_at(x, nodes[k]);
+                own.add(p);
+                own.add(p + node_at(dx, nodes[k]));
+            }
+            first.widen(margin);
+            return first.overlaps(second);
         }
         [[nodiscard]] double distance_bound(std::span<const double> x) const {
             return contact::distance_bound(features(), stencil_at(std::span(nodes).first<4>(), x));
@@ -164,9 +182,74 @@ private:
     std::size_t leaf_count_ = 0;
 };
 
+/// All candidates within the distance at which forces act of any state in which no node is further than the slack from
+/// where it was, on any axis; in the order of a search.
+class Contact::Nearby {
+public:
+    Nearby(const Contact& contact, std::span<const double> x) : x_(x.begin(), x.end()), slack_m_(slack(contact)) {
+        const Search search(contact, x, {}, contact.settings_.distance_m + 2 * slack_m_, Search::What::pairs,
+                            contact.settings_.self);
+        using List = std::vector<Search::Candidate>;
+        const auto keep = [](const Search::Candidate& c, List& list) { list.push_back(c); };
+        for (const List& piece : search.run(List{}, keep))
+            candidates_.insert(candidates_.end(), piece.begin(), piece.end());
+    }
+
+    [[nodiscard]] static double slack(const Contact& contact) { return slack_share * contact.settings_.distance_m; }
+    /// Good for x, and for x + dx where dx is given.
+    [[nodiscard]] bool holds(std::span<const double> x, std::span<const double> dx) const {
+        return are_within(x_, x, dx, slack_m_);
+    }
+    /// True if no number of x, nor of x + dx, is further than `slack_m` from that of `from`.
+    [[nodiscard]] static bool are_within(std::span<const double> from, std::span<const double> x,
+                                         std::span<const double> dx, double slack_m) {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (!(std::fabs(x[i] - from[i]) <= slack_m)) return false;
+            if (!dx.empty() && !(std::fabs(x[i] + dx[i] - from[i]) <= slack_m)) return false;
+        }
+        return true;
+    }
+
+    /// As Search::run().
+    template <class Result, class Visit>
+    [[nodiscard]] std::vector<Result> run(const Result& start, const Visit& visit) const {
+        constexpr std::size_t grain = 1024;
+        std::vector<Result> results((candidates_.size() + grain - 1) / grain, start);
+        parallel_for(candidates_.size(), grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) visit(candidates_[k], results[begin / grain]);
+        });
+        return results;
+    }
+
+private:
+    std::vector<double> x_;
+    double slack_m_;
+    std::vector<Search::Candidate> candidates_;
+};
+
+struct Contact::Memory {
+    std::mutex mutex;
+    std::vector<double> x;  ///< of the last call
+    std::shared_ptr<const Nearby> nearby;
+};
+
+Contact::Contact() : memory_(std::make_shared<Memory>()) {}
+
+/// A state far from the last one is likely to be left behind at once; from the second one near it on, knowing pays.
+std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x, std::span<const double> dx) const {
+    const std::lock_guard lock(memory_->mutex);
+    Memory& memory = *memory_;
+    if (memory.nearby && memory.nearby->holds(x, dx)) return memory.nearby;
+    const double slack_m = Nearby::slack(*this);
+    const bool settles = memory.x.size() == x.size() && Nearby::are_within(memory.x, x, {}, slack_m) &&
+                         Nearby::are_within(x, x, dx, slack_m);
+    memory.x.assign(x.begin(), x.end());
+    if (!settles) return nullptr;
+    return memory.nearby = std::make_shared<const Nearby>(*this, x);
+}
+
 Pairs Contact::find(std::span<const double> x) const {
     const double most = settings_.distance_m;
-    const Search search(*this, x, {}, most, Search::What::pairs, settings_.self);
     const auto consider = [&](const Search::Candidate& c, Pairs& found) {
         if (c.distance_bound(x) >= most) return;
         const double squared = c.squared_distance(x);
@@ -175,8 +258,12 @@ Pairs Contact::find(std::span<const double> x) const {
         if (apart > touching_m_ && squared < reach * reach)
             found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
     };
+    const auto known = nearby(x, {});
+    const std::vector<Pairs> pieces =
+        known ? known->run(Pairs{}, consider)
+              : Search(*this, x, {}, most, Search::What::pairs, settings_.self).run(Pairs{}, consider);
     Pairs pairs;
-    for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    for (const Pairs& piece : pieces) pairs.insert(pairs.end(), piece.begin(), piece.end());
     find_planes(x, pairs);
     return pairs;
 }
@@ -214,14 +301,19 @@ void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
 }
 
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    const Search search(*this, x, dx, kept_share * settings_.distance_m, Search::What::pairs, settings_.self);
+    const double margin = kept_share * settings_.distance_m;
     const auto limit = [&](const Search::Candidate& c, double& step) {
+        if (!c.comes_near(x, dx, margin)) return;
         const double t =
             contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
         if (t < step && std::sqrt(c.squared_distance(rest_)) > touching_m_) step = t;
     };
     double step = largest_plane_step(x, dx);
-    for (const double piece : search.run(step, limit)) step = std::min(step, piece);
+    const auto known = nearby(x, dx);
+    const std::vector<double> pieces =
+        known ? known->run(step, limit)
+              : Search(*this, x, dx, margin, Search::What::pairs, settings_.self).run(step, limit);
+    for (const double piece : pieces) step = std::min(step, piece);
     return step;
 }
 

@@ -192,6 +192,39 @@ TEST_CASE("no step of any size lets surfaces pass through each other") {
     CHECK(hindered > 10);
 }
 
+TEST_CASE(
+    "what is remembered changes nothing: pairs and steps are those of a contact that sees a state for the first time") {
+    const SpringBody body = two_boxes(4);
+    const Contact contact = contact_of(body, usual);
+    const auto check_pairs = [&](const Vector& x) {
+        const Pairs found = contact.find(span(x)), expected = contact_of(body, usual).find(span(x));
+        REQUIRE(found.size() == expected.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            CHECK(found[k].nodes == expected[k].nodes);
+            CHECK(found[k].kind == expected[k].kind);
+            CHECK(found[k].reach_m == expected[k].reach_m);
+        }
+        return found.size();
+    };
+    std::mt19937 random(12);
+    std::size_t pairs = 0;
+    for (int k = 0; k < 60; ++k) {
+        // Mostly near the last state, at times far from it, and back.
+        const double drop = 1.5e-3 + (k % 9 == 8 ? 4e-4 : 0) + 5e-6 * k;
+        const Vector x = approached(contact, 125, drop, k % 9 == 5 ? 3e-4 : 2e-5, 30 + k);
+        pairs += check_pairs(x);
+        Vector dx(x.size());
+        const double far = k % 3 == 0 ? 2e-3 : 1e-4;
+        for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+            const Vec3 v = far * random_vector(random);
+            dx.segment<3>(3 * i) << v.x, v.y, v.z;
+        }
+        CHECK(contact.largest_step(span(x), span(dx)) == contact_of(body, usual).largest_step(span(x), span(dx)));
+        check_pairs(x + 0.3 * dx);
+    }
+    CHECK(pairs > 1000);
+}
+
 TEST_CASE("a cube that is let down on a plane rests above it and presses with its weight") {
     const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
     const HalfSpace floor{{0, 0, 0}, {0, 0, 2}};
