@@ -89,7 +89,7 @@ export function unzipped(bytes, name) {
   throw new Error(`${name} is not in the archive`);
 }
 
-/// The robot is there and at equilibrium.
+/// The robot is there and at equilibrium. How soon depends on who else uses the machine.
 export async function settled(page) {
-  await page.waitForSelector('[data-testid=status][data-state=arrived]');
+  await page.waitForSelector('[data-testid=status][data-state=arrived]', { timeout: 90_000 });
 }
