@@ -24,7 +24,9 @@ constexpr int leaf = 64;             // nodes that are not cut any more
 constexpr int worth_sharing = 4096;  // nodes whose two parts go to two cores
 constexpr double least_side = 0.1;   // of the nodes
 constexpr int buckets = 256;
-constexpr std::size_t fields = 8;  // of which a cut is tried
+constexpr std::size_t planes = 6;       // directions in which a piece is cut
+constexpr std::size_t levels = planes;  // the field after them: distances along edges
+constexpr std::size_t fields = 8;       // these seven, and one that is 0, to fill a register
 
 /// Some of the nodes, ascending, and the graph that they form.
 struct Piece {
@@ -35,7 +37,7 @@ struct Piece {
     [[nodiscard]] int size() const { return static_cast<int>(node.size()); }
 };
 
-/// Heights of a node above several planes, in buckets; compared in one instruction.
+/// Heights of a node above several planes, and its level, in buckets; compared in one instruction.
 using Heights [[gnu::vector_size(fields)]] = std::uint8_t;
 
 /// Nodes of one height or less on the left; the separator is taken from one side.
@@ -242,8 +244,9 @@ private:
     /// A separator, or none where there is no good one: then nearly all nodes are next to one another.
     [[nodiscard]] std::optional<std::vector<Side>> separate(const Piece& piece) const {
         std::vector<Heights> heights = heights_of(piece);
+        if (!with_points_) set_levels(piece.graph, heights);
         Cut cut = best_cut(piece, heights);
-        if (!with_points_ || !std::isfinite(cut.cost)) {
+        if (with_points_ && !std::isfinite(cut.cost)) {
             set_levels(piece.graph, heights);
             cut = best_cut(piece, heights);
         }
@@ -274,30 +277,30 @@ private:
         Eigen::Matrix3f spread = Eigen::Matrix3f::Zero();
         for (const Point& p : piece.point) spread += (p - mean) * (p - mean).transpose();
         spread /= static_cast<float>(piece.size());
-        Eigen::Matrix<float, 6, 3> direction;
+        Eigen::Matrix<float, planes, 3> direction;
         direction << Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>().computeDirect(spread).eigenvectors().transpose(),
             Eigen::Matrix3f::Identity();
         std::vector<Buckets> bucket;
-        for (int d = 0; d < 6; ++d) {
+        for (Eigen::Index d = 0; d < direction.rows(); ++d) {
             const float variance = direction.row(d) * spread * direction.row(d).transpose();
             bucket.emplace_back(direction.row(d) * mean, std::sqrt(std::max(variance, 0.0F)));
         }
         std::vector<Heights> heights(piece.point.size());
         for (std::size_t i = 0; i < heights.size(); ++i) {
-            const Eigen::Matrix<float, 6, 1> along = direction * piece.point[i];
-            for (std::size_t d = 0; d < 6; ++d) heights[i][d] = bucket[d](along[static_cast<Eigen::Index>(d)]);
+            const Eigen::Matrix<float, planes, 1> along = direction * piece.point[i];
+            for (std::size_t d = 0; d < planes; ++d) heights[i][d] = bucket[d](along[static_cast<Eigen::Index>(d)]);
         }
         return heights;
     }
 
-    /// Distances along edges from one end take the place of the last heights but one.
+    /// Distances along edges from one end of the piece.
     static void set_levels(const Graph& graph, std::vector<Heights>& heights) {
         std::vector<int> order;
         std::ignore = distances(graph, 0, order);
         const std::vector<int> level = distances(graph, order.back(), order);
         const float scale = (buckets - 1.0F) / std::max(1.0F, static_cast<float>(level[order.back()]));
         for (std::size_t i = 0; i < heights.size(); ++i)
-            heights[i][6] = static_cast<std::uint8_t>(static_cast<float>(level[i]) * scale);
+            heights[i][levels] = static_cast<std::uint8_t>(static_cast<float>(level[i]) * scale);
     }
 
     /// How many nodes lie in each bucket of a field, how many of them at the rim of the piece, and for which cuts a

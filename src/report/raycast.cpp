@@ -34,6 +34,11 @@ Vec3 unit(const Vec3& v) {
     return v / norm(v);
 }
 
+/// Where a cell is in an array of rows.
+std::size_t cell(int columns, std::size_t row, std::size_t column) {
+    return row * static_cast<std::size_t>(columns) + column;
+}
+
 /// Everything that is computed once per picture.
 class Renderer {
 public:
@@ -103,7 +108,7 @@ public:
             if (progress.cancelled()) return;
             for (std::size_t row = begin; row < end; ++row) {
                 for (int column = 0; column < light_columns_; ++column) {
-                    lights_[row * static_cast<std::size_t>(light_columns_) + static_cast<std::size_t>(column)] =
+                    lights_[cell(light_columns_, row, static_cast<std::size_t>(column))] =
                         light_through(column * light_cell_px, static_cast<double>(row) * light_cell_px);
                 }
             }
@@ -186,8 +191,7 @@ private:
     }
     [[nodiscard]] double floor_shade(double x, double y) const;
     [[nodiscard]] double& floor_cell(int row, int column) {
-        return floor_[static_cast<std::size_t>(row) * static_cast<std::size_t>(floor_columns_) +
-                      static_cast<std::size_t>(column)];
+        return floor_[cell(floor_columns_, static_cast<std::size_t>(row), static_cast<std::size_t>(column))];
     }
     void shade_floor_cell(int row, int column) {
         floor_cell(row, column) = floor_shade(column * floor_cell_px, row * floor_cell_px);
@@ -263,9 +267,7 @@ double Renderer::floor_at(double x, double y) const {
     const double column = x / floor_cell_px, row = y / floor_cell_px;
     const auto c = static_cast<std::size_t>(column), r = static_cast<std::size_t>(row);
     const double a = column - static_cast<double>(c), b = row - static_cast<double>(r);
-    const auto value = [&](std::size_t i, std::size_t j) {
-        return floor_[i * static_cast<std::size_t>(floor_columns_) + j];
-    };
+    const auto value = [&](std::size_t i, std::size_t j) { return floor_[cell(floor_columns_, i, j)]; };
     const auto [low, high] = std::minmax({value(r, c), value(r, c + 1), value(r + 1, c), value(r + 1, c + 1)});
     if (high - low > floor_contrast) return floor_shade(x, y);
     return (1 - b) * ((1 - a) * value(r, c) + a * value(r, c + 1)) +
@@ -327,7 +329,7 @@ std::optional<Light> Renderer::smooth_light(double x, double y, const Vec3& poin
     double share = 0;
     int found = 0;
     for (std::size_t k = 0; k < 4; ++k) {
-        const auto& corner = lights_[(r + k / 2) * static_cast<std::size_t>(light_columns_) + c + k % 2];
+        const auto& corner = lights_[cell(light_columns_, r + k / 2, c + k % 2)];
         if (!corner || !is_same_patch(*corner, point, normal)) continue;
         const auto [sky, key] = corner->light;
         const double weight = shares[k] + 1e-6;
@@ -432,8 +434,7 @@ std::vector<Colour> Renderer::rows(int begin, int end) const {
         for (int x = 0; x < width_; ++x) centres.push_back(at_centre(x, y));
     }
     const auto centre = [&](int x, int y) -> const Sample& {
-        return centres[static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width_) +
-                       static_cast<std::size_t>(x)];
+        return centres[cell(width_, static_cast<std::size_t>(y - first), static_cast<std::size_t>(x))];
     };
     const auto is_like_its_neighbours = [&](int x, int y) {
         const Sample& own = centre(x, y);

@@ -41,7 +41,7 @@ public:
     }
 
     [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, double far) override {
-        const bool reuse = care == Care::usual && usable_ && (!hasty_ || crawls()) && pays(far);
+        const bool reuse = care == Care::usual && usable_ && pays(far);
         if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
         if (reused_ && care != Care::usual) judge_old(most_left);
         reused_ = reuse;
@@ -60,8 +60,10 @@ public:
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
 
     void judge(double before, double after) override {
-        ++uses_;
-        if (reused_) return judge_old(std::clamp(after / before, least_left, most_left));
+        if (reused_) {
+            ++uses_;
+            return judge_old(std::clamp(after / before, least_left, most_left));
+        }
         uses_ = 0;
         left_by_new_ = after < nearby ? after / before : 0;
         // Where the very tangent does not lead far, the state is changing too much for an old one.
@@ -94,7 +96,7 @@ private:
     [[nodiscard]] bool pays(double far) const {
         if (system_->has_skew()) return false;
         if (crawls()) return true;
-        return std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
+        return !hasty_ && std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
     }
 
     /// True where, close to equilibrium, the very tangent hardly leads on: it had to be made positive definite, which
