@@ -40,52 +40,39 @@ BlockRows::BlockRows(const SymmetricPattern& pattern) : start(static_cast<std::s
         put(i, j, k, i == j ? Source::diagonal : Source::as_it_is);
         if (i != j) put(j, i, k, Source::transposed);
     });
-    rounded_.resize(9 * column.size() + 1);  // columns are read four rows at a time
-    rounded_[9 * column.size()] = 0;
-}
-
-Eigen::Matrix3d BlockRows::block(int entry) const {
-    const Source source = source_[entry];
-    const Eigen::Map<const Eigen::Matrix3d> given(values_.data() + 9 * static_cast<std::size_t>(source.pair));
-    if (source.kind == Source::as_it_is) return given;
-    if (source.kind == Source::transposed) return given.transpose();
-    return given.selfadjointView<Eigen::Lower>();
+    for (AlignedArray<float>* numbers : {&rounded_, &rest_}) {
+        numbers->resize(9 * column.size() + 1);  // columns are read four rows at a time
+        (*numbers)[9 * column.size()] = 0;
+    }
 }
 
 void BlockRows::set(std::span<const double> values) {
-    values_ = values;
+    using Rounded = Eigen::Map<Eigen::Matrix3f>;
+    const auto block_at = [&](Source source) -> Eigen::Matrix3d {
+        const Eigen::Map<const Eigen::Matrix3d> given(values.data() + 9 * static_cast<std::size_t>(source.pair));
+        if (source.kind == Source::as_it_is) return given;
+        if (source.kind == Source::transposed) return given.transpose();
+        return given.selfadjointView<Eigen::Lower>();
+    };
     parallel_for(diagonal_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (int k = start[begin]; k < start[end]; ++k)
-            Eigen::Map<Eigen::Matrix3f>(rounded_.data() + 9 * static_cast<std::size_t>(k)) = block(k).cast<float>();
+        for (int k = start[begin]; k < start[end]; ++k) {
+            const Eigen::Matrix3d block = block_at(source_[k]);
+            const Eigen::Matrix3f rounded = block.cast<float>();
+            const std::size_t at = 9 * static_cast<std::size_t>(k);
+            Rounded(rounded_.data() + at) = rounded;
+            Rounded(rest_.data() + at) = (block - rounded.cast<double>()).cast<float>();
+        }
     });
 }
 
 void BlockRows::multiply(const double* x, double* y) const {
-    parallel_for(diagonal_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-            for (int k = start[i]; k < start[i + 1]; ++k)
-                sum.noalias() +=
-                    block(k) * Eigen::Map<const Eigen::Vector3d>(x + 3 * static_cast<std::size_t>(column[k]));
-            Eigen::Map<Eigen::Vector3d>(y + 3 * i) = sum;
-        }
-    });
+    parallel_for(diagonal_.size(), grain,
+                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, x, y); });
 }
 
 void BlockRows::multiply(const float* x, float* y) const {
-    using Four = Eigen::Vector4f;
-    parallel_for(diagonal_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Four sum = Four::Zero();  // the fourth is of no use
-            for (int k = start[i]; k < start[i + 1]; ++k) {
-                const float* b = rounded_.data() + 9 * static_cast<std::size_t>(k);
-                const float* v = x + 3 * static_cast<std::size_t>(column[k]);
-                sum += Eigen::Map<const Four>(b) * v[0] + Eigen::Map<const Four>(b + 3) * v[1] +
-                       Eigen::Map<const Four>(b + 6) * v[2];
-            }
-            std::copy_n(sum.data(), 3, y + 3 * i);
-        }
-    });
+    parallel_for(diagonal_.size(), grain,
+                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, x, y); });
 }
 
 }  // namespace pliant::linalg

@@ -18,8 +18,9 @@ constexpr std::size_t grain = 4096;     // numbers that one core takes at a time
 constexpr int degree = 2;               // of the polynomial that smooths
 constexpr float smoothed_part = 0.06F;  // of the spectrum, from the top; the rest is for the coarse level
 constexpr int first_powers = 12, later_powers = 1;
-/// Iterations more than a coarse level of the present state takes: as many as it costs to make.
-constexpr int worth_waiting = 12;
+/// Iterations that a coarse level costs to make (measured), and after how many it shows how good one is.
+constexpr double price_of_coarse = 7;
+constexpr int iterations_to_judge = 4;
 constexpr float safety = 1.15F;  // powers come from below
 
 /// Numbers of all nodes, with one more that is read but does not count.
@@ -73,16 +74,17 @@ struct TwoLevel::State {
           solution(size),
           side(size),
           correction(size),
-          smooth(size),
           step(size),
           rest(size) {}
 
     [[nodiscard]] bool invert_diagonal();
     void find_largest();
-    void scale(const Rough& from, Rough& to) const;
-    void smoothe(Rough& x, bool from_zero);
+    enum class Start { zero, where_it_is };
+    void smoothe(Rough& x, Start start);
+    void advance(Rough& x, Start start, float keep, float share);
     void precondition();
     [[nodiscard]] bool build();
+    [[nodiscard]] bool is_outdated(int iterations, double begun, double now, double enough) const;
     [[nodiscard]] Outcome iterate(double tolerance, double& enough, int limit);
     [[nodiscard]] Outcome solve(double* right_hand_side, double tolerance, int limit);
 
@@ -96,11 +98,11 @@ struct TwoLevel::State {
     float largest = 0;
     bool powered = false;
     Vector residual, direction, product, solution;
-    Rough side, correction, smooth, step, rest;
+    Rough side, correction, step, rest;
     std::vector<double> positions;  ///< of the nodes, now
     bool built = false;             ///< the coarse level is there,
     bool turned = false;            ///< but of an earlier state
-    int usual = 0;                  ///< iterations with one that is of the present state
+    double usual_gain = 0;          ///< of an iteration with one of the present state, as a logarithm
     int iterations = 0;
 };
 
@@ -117,15 +119,6 @@ bool TwoLevel::State::invert_diagonal() {
     return std::all_of(definite.begin(), definite.end(), [](char d) { return d != 0; });
 }
 
-void TwoLevel::State::scale(const Rough& from, Rough& to) const {
-    parallel_for(size / 3, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            Eigen::Map<Eigen::Vector3f>(to.data() + 3 * i).noalias() =
-                Eigen::Map<const Eigen::Matrix3f>(inverse_diagonal.data() + 9 * i) *
-                Eigen::Map<const Eigen::Vector3f>(from.data() + 3 * i);
-    });
-}
-
 /// Powers of D^-1 A, in the inner product of D.
 void TwoLevel::State::find_largest() {
     if (!powered) {
@@ -137,10 +130,11 @@ void TwoLevel::State::find_largest() {
         }
     }
     for (int k = 0; k < (powered ? later_powers : first_powers); ++k) {
-        matrix.multiply(top.data(), rest.data());
-        scale(rest, step);
+        std::fill_n(side.data(), size, 0.0F);
+        std::copy_n(top.data(), size, correction.data());
+        advance(correction, Start::where_it_is, 0, 1);  // step: -D^-1 A top
         largest = std::max(powered ? largest : 0, static_cast<float>(std::sqrt(dot(step, step) / dot(top, top))));
-        const float shrink = static_cast<float>(1 / std::sqrt(dot(step, step)));
+        const float shrink = static_cast<float>(-1 / std::sqrt(dot(step, step)));
         for_numbers(size, [&](std::size_t i) { top[i] = shrink * step[i]; });
     }
     powered = true;
@@ -148,51 +142,60 @@ void TwoLevel::State::find_largest() {
 
 /// x <- x + p(D^-1 A) D^-1 (side - A x), p the Chebyshev polynomial of the upper part of the spectrum
 /// (Adams, Brezina, Hu and Tuminaro 2003).
-void TwoLevel::State::smoothe(Rough& x, bool from_zero) {
+void TwoLevel::State::smoothe(Rough& x, Start start) {
     const float upper = safety * largest, lower = smoothed_part * upper;
     const float middle = (upper + lower) / 2, half = (upper - lower) / 2;
     float rho = half / middle;
     for (int k = 0; k < degree; ++k) {
-        if (from_zero && k == 0) {
-            scale(side, smooth);
-        } else {
-            matrix.multiply(x.data(), rest.data());
-            for_numbers(size, [&](std::size_t i) { rest[i] = side[i] - rest[i]; });
-            scale(rest, smooth);
-        }
         if (k == 0) {
-            for_numbers(size, [&](std::size_t i) {
-                step[i] = smooth[i] / middle;
-                x[i] = from_zero ? step[i] : x[i] + step[i];
-            });
+            advance(x, start, 0, 1 / middle);
             continue;
         }
         const float next = 1 / (2 * middle / half - rho);
-        for_numbers(size, [&](std::size_t i) {
-            step[i] = next * rho * step[i] + 2 * next / half * smooth[i];
-            x[i] += step[i];
-        });
+        advance(x, Start::where_it_is, next * rho, 2 * next / half);
         rho = next;
     }
+}
+
+/// step <- keep step + share D^-1 (side - A x); x <- x + step. In one pass for each node, its numbers read before any
+/// is written: arrays on big pages lie so that a processor takes the one for the other, and waits.
+void TwoLevel::State::advance(Rough& x, Start start, float keep, float share) {
+    using Three = Eigen::Map<Eigen::Vector3f>;
+    const bool from_zero = start == Start::zero;
+    if (!from_zero) matrix.multiply(x.data(), rest.data());
+    parallel_for(size / 3, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3f left = Three(side.data() + 3 * i), now = Eigen::Vector3f::Zero(), go = now;
+            if (!from_zero) {
+                left -= Three(rest.data() + 3 * i);
+                now = Three(x.data() + 3 * i);
+            }
+            if (keep != 0) go = keep * Three(step.data() + 3 * i);
+            go += share * (Eigen::Map<const Eigen::Matrix3f>(inverse_diagonal.data() + 9 * i) * left).eval();
+            now += go;
+            Three(step.data() + 3 * i) = go;
+            Three(x.data() + 3 * i) = now;
+        }
+    });
 }
 
 /// correction <- about A^-1 residual: smooth, correct on the coarse level, smooth; symmetric.
 void TwoLevel::State::precondition() {
     for_numbers(size, [&](std::size_t i) { side[i] = static_cast<float>(residual[i]); });
-    smoothe(correction, true);
+    smoothe(correction, Start::zero);
     matrix.multiply(correction.data(), rest.data());
     for_numbers(size, [&](std::size_t i) { rest[i] = side[i] - rest[i]; });
     space.restrict(rest.data(), coarse_side.data());
     coarse.solve(coarse_side, 1);
     space.add_prolonged(coarse_side.data(), correction.data());
-    smoothe(correction, false);
+    smoothe(correction, Start::where_it_is);
 }
 
 /// Coarse level of the matrix and the positions at hand.
 bool TwoLevel::State::build() {
     space.set(matrix, positions, inverse_diagonal.data(), 4.0F / 3 / (safety * largest));
     turned = false;
-    usual = 0;
+    usual_gain = 0;
     // What bends easily may be too much for single precision; once is enough to know.
     built = coarse.factorise(space.values());
     if (!built && coarse.precision() == Precision::single_) {
@@ -203,6 +206,14 @@ bool TwoLevel::State::build() {
     return built;
 }
 
+/// True if a coarse level of the present state would pay: the one at hand brought the squared error from `begun` to
+/// `now` and is to bring it to `enough`.
+bool TwoLevel::State::is_outdated(int iterations, double begun, double now, double enough) const {
+    if (!turned || iterations < iterations_to_judge) return false;
+    const double gain = std::log(begun / now) / iterations, to_go = std::log(now / enough);
+    return gain <= 0 || to_go / gain > to_go / usual_gain + price_of_coarse;
+}
+
 /// From where `solution` and `residual` are; `enough` of the squared error, as the preconditioner measures it, is left
 /// at the end. 0: the first one shall set it.
 TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, double& enough, int limit) {
@@ -211,6 +222,7 @@ TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, double& enough, int
     double left = dot(residual, correction);
     if (enough == 0) enough = tolerance * tolerance * left;
     if (!(left > 0)) return Outcome::slow;
+    const double begun = left;
     for (int k = 1; k <= limit; ++k) {
         ++iterations;
         matrix.multiply(direction.data(), product.data());
@@ -224,10 +236,10 @@ TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, double& enough, int
         precondition();
         const double now = dot(residual, correction);
         if (now <= enough && now >= 0) {
-            if (!turned) usual = std::max(usual, k);
+            if (!turned) usual_gain = std::log(begun / now) / k;
             return Outcome::solved;
         }
-        if (!(now > 0)) return Outcome::slow;
+        if (!(now > 0) || is_outdated(k, begun, now, enough)) return Outcome::slow;
         const double keep = now / left;
         for_numbers(size, [&](std::size_t i) { direction[i] = correction[i] + keep * direction[i]; });
         left = now;
@@ -244,7 +256,7 @@ TwoLevel::Outcome TwoLevel::State::solve(double* b, double tolerance, int limit)
         solution[i] = 0;
     });
     double enough = 0;
-    Outcome outcome = iterate(tolerance, enough, turned ? std::min(usual + worth_waiting, limit) : limit);
+    Outcome outcome = iterate(tolerance, enough, limit);
     if (outcome == Outcome::slow && turned) outcome = build() ? iterate(tolerance, enough, limit) : Outcome::indefinite;
     for_numbers(size, [&](std::size_t i) { b[i] = scale * solution[i]; });
     return outcome;

@@ -139,6 +139,12 @@ TEST_CASE("a body that turned is solved with the coarse level of before, another
     REQUIRE(levels.solve(after.whole(x), 1, 1e-4, limit) == Outcome::solved);
     const Eigen::VectorXd other = factored(after);
     CHECK(error(after, x, other) < 3e-4);
+    // The coarse level of before is soon given up.
+    TwoLevel fresh(after.pattern);
+    REQUIRE(fresh.set(after.values, after.positions));
+    Eigen::VectorXd y = after.force;
+    REQUIRE(fresh.solve(after.whole(y), 1, 1e-4, limit) == Outcome::solved);
+    CHECK(levels.iterations() <= fresh.iterations() + 12);
 }
 
 TEST_CASE("what is not positive definite is noticed, at once or while solving") {

@@ -21,6 +21,11 @@ namespace pliant::sim {
 /// positive definite H.
 enum class Care { usual, exact, cautious };
 
+/// Of a state (see Evaluation), and what residual is wanted. All 0: as near to none as can be had.
+struct Errors {
+    double residual = 0, violation = 0, wanted = 0;
+};
+
 class Curvature {
 public:
     virtual ~Curvature() = default;
@@ -32,8 +37,8 @@ public:
     /// Called at the start of each step of the program.
     virtual void restart() {}
     /// Called before solve() at a new state, or again where its direction was no good. Both must still be there when
-    /// solve() is called. `far`: the error over the one that is wanted. False: no H could be made, or no better one.
-    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, Care care, double far) = 0;
+    /// solve() is called. False: no H could be made, or no better one.
+    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, Care care, Errors errors) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
     /// Where the whole body goes that sets out along `motion` (3n); to first order x + motion.

@@ -27,7 +27,7 @@ public:
 
     /// The accelerated step has no descent to promise: cautiously, it is the plain one. What misled is forgotten, or it
     /// would mislead again at every iteration to come, and all steps would be plain ones.
-    [[nodiscard]] bool refresh(const State&, const Controls&, Care care, double) override {
+    [[nodiscard]] bool refresh(const State&, const Controls&, Care care, Errors) override {
         if (care == Care::exact) return false;  // there is nothing better than the usual
         if (care == Care::cautious) steps_.clear();
         mixing_ = !steps_.empty();

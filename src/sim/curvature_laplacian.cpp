@@ -18,7 +18,7 @@ public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
     [[nodiscard]] Solver solver() const override { return Solver::local_global; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
-    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care, double) override {
+    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care, Errors) override {
         return care != Care::exact;
     }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }

@@ -40,12 +40,13 @@ public:
         left_at_first_ = hoped_left * std::pow(left_at_first_ / hoped_left, memory_of_first);
     }
 
-    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, double far) override {
-        const bool reuse = care == Care::usual && usable_ && pays(far);
+    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, Errors errors) override {
+        const bool reuse = care == Care::usual && usable_ && pays(errors.residual / errors.wanted);
         if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
         if (reused_ && care != Care::usual) judge_old(most_left);
         reused_ = reuse;
         at_ = {&state, &controls};
+        enough_ = solution_error(errors);
         if (!reuse) return take_tangent(care == Care::cautious);
         remember();
         turn_.follow(state.x);
@@ -106,6 +107,16 @@ private:
         return share_ > 0 && left_by_new_ > hopeless && uses_ < static_cast<int>(most_steps);
     }
 
+    /// How well to solve for a step (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982). Far from
+    /// equilibrium the step leaves a good part of the error however well it is solved for; close to it a digit that is
+    /// found is one that the next step need not find.
+    [[nodiscard]] static double solution_error(Errors errors) {
+        const double now = std::max(errors.residual, errors.violation);
+        if (now > nearby) return largest_solution_error;
+        if (now <= 0) return 0;
+        return std::min(share_of_wanted * errors.wanted / now, largest_solution_error);
+    }
+
     /// A step with an inverse from an earlier state left so much of the error.
     void judge_old(double left) {
         left_ = left;
@@ -125,7 +136,7 @@ private:
     void solve_with_inverse(Eigen::MatrixXd& columns) {
         using Outcome = TangentInverse::Outcome;
         const Eigen::MatrixXd right = columns;
-        Outcome outcome = inverse_->solve(columns);
+        Outcome outcome = inverse_->solve(columns, enough_);
         if (outcome == Outcome::slow) {
             two_levels_ = false;
             inverse_ = make_inverse();
@@ -135,7 +146,7 @@ private:
         while (outcome == Outcome::indefinite && !reused_ && share_ < 1 &&
                project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0))) {
             columns = right;
-            outcome = inverse_->solve(columns);
+            outcome = inverse_->solve(columns, enough_);
         }
     }
 
@@ -220,6 +231,7 @@ private:
     static constexpr std::size_t most_steps = 8;
     static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
     static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
+    static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -239,6 +251,7 @@ private:
         const State* state;
         const Controls* controls;
     } at_{};                         ///< what is at hand, until it is solved with
+    double enough_ = 0;              ///< error of the next solution
     Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
     BodyTurn turn_;                  ///< since the factor was made
     StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then

@@ -352,7 +352,7 @@ private:
         }
         const Eigen::MatrixXd forces = columns;
         const auto tangent = make_newton(system_, laplacian_);
-        if (tangent->refresh(state_, controls_, Care::cautious, 1))
+        if (tangent->refresh(state_, controls_, Care::cautious, {}))
             tangent->solve(columns);
         else
             laplacian_.solve(columns);

@@ -95,8 +95,8 @@ public:
 
     /// One iteration; false if no acceptable step was found.
     bool iterate(Care care, double tolerance) {
-        const double far = std::max(1.0, evaluation_.residual / tolerance);
-        if (!curvature_.refresh(state_, controls_, care, far)) return false;
+        const Errors errors{std::max(evaluation_.residual, tolerance), evaluation_.violation, tolerance};
+        if (!curvature_.refresh(state_, controls_, care, errors)) return false;
         const Direction direction = find_direction();
         if (!direction.dx.allFinite()) return false;
         return search(direction);

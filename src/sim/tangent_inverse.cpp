@@ -1,5 +1,6 @@
 #include "sim/tangent_inverse.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -9,8 +10,8 @@
 namespace pliant::sim {
 namespace {
 
-/// Of a solution: the rate at which the last digits of a state then come.
-constexpr double solution_error = 1e-3;
+/// The least error of a solution: the rate at which the last digits of a state then come.
+constexpr double least_error = 1e-3;
 
 std::span<double> view(Eigen::MatrixXd& columns) {
     return {columns.data(), static_cast<std::size_t>(columns.size())};
@@ -32,8 +33,9 @@ public:
         return false;
     }
 
-    /// The first solution with a factor in single precision shows how good it is.
-    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns) override {
+    /// The first solution with a factor in single precision shows how good it is. To be content with less would save
+    /// nothing: with the factor made, digits cost little.
+    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double) override {
         const int count = static_cast<int>(columns.cols());
         if (!untried_) {
             factor_.solve(view(columns), count);
@@ -41,8 +43,7 @@ public:
         }
         untried_ = false;
         const Eigen::MatrixXd right = columns;
-        if (const auto more =
-                factor_.solve_and_refine(*values_, view(columns), count, solution_error, most_refinements)) {
+        if (const auto more = factor_.solve_and_refine(*values_, view(columns), count, least_error, most_refinements)) {
             trusted_ = *more == 0 ? trust : 0;
             return Outcome::solved;
         }
@@ -89,8 +90,9 @@ public:
         return levels_.set(values, {positions.data(), static_cast<std::size_t>(positions.size())});
     }
 
-    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns) override {
-        switch (levels_.solve(view(columns), static_cast<int>(columns.cols()), solution_error, most_iterations)) {
+    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
+        const int count = static_cast<int>(columns.cols());
+        switch (levels_.solve(view(columns), count, std::max(error, least_error), most_iterations)) {
             case linalg::TwoLevel::Outcome::solved:
                 return Outcome::solved;
             case linalg::TwoLevel::Outcome::indefinite:
@@ -121,9 +123,9 @@ std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPa
 }
 
 bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
-    // Multiply-adds of a factorisation, for each pair of nodes, that take as long as two levels do (measured: 18,000),
+    // Multiply-adds of a factorisation, for each pair of nodes, that take as long as two levels do (measured: 10,000),
     // and half as much again, because bodies that are hard to solve take two levels longer, but no factor.
-    constexpr double even = 27000;
+    constexpr double even = 15000;
     const double pairs = 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
     return 27 * factor_work > even * pairs;
 }

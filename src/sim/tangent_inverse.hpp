@@ -22,9 +22,10 @@ public:
     [[nodiscard]] virtual bool set(const std::vector<double>& values, const Eigen::VectorXd& positions,
                                    Effort effort) = 0;
     enum class Outcome { solved, indefinite, slow };
-    /// columns (3 nodes, k) <- H^-1 columns, to some three digits. Indefinite, slow: they hold how far it got, which
-    /// still is a direction in which the energy falls.
-    [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns) = 0;
+    /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H; 1e-3 at best, where an
+    /// `error` is smaller. Indefinite, slow: they hold how far it got, which still is a direction in which the energy
+    /// falls.
+    [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
     /// What it costs to take a matrix and solve with it, in steps with one that is at hand.
     [[nodiscard]] virtual double price() const = 0;
 };

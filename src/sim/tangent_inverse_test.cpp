@@ -72,10 +72,10 @@ TEST_CASE("two levels and the factor solve the tangent of a bent body alike, lin
         Eigen::MatrixXd direct = columns, levels = columns;
         const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
         REQUIRE(factor->set(b.values, b.positions, TangentInverse::Effort::usual));
-        REQUIRE(factor->solve(direct) == TangentInverse::Outcome::solved);
+        REQUIRE(factor->solve(direct, 1e-3) == TangentInverse::Outcome::solved);
         const auto two = make_two_level_inverse(b.layout.pattern);
         REQUIRE(two->set(b.values, b.positions, TangentInverse::Effort::usual));
-        REQUIRE(two->solve(levels) == TangentInverse::Outcome::solved);
+        REQUIRE(two->solve(levels, 1e-3) == TangentInverse::Outcome::solved);
         for (const Eigen::Index k : {0, 1}) {
             const double energy = direct.col(k).dot(columns.col(k));
             CHECK(std::fabs(levels.col(k).dot(columns.col(k)) - energy) < 1e-3 * energy);
@@ -91,7 +91,7 @@ TEST_CASE("a tangent with negative directions is refused or found out by both") 
     const auto two = make_two_level_inverse(b.layout.pattern);
     Eigen::MatrixXd column = b.out_of_balance;
     if (two->set(b.values, b.positions, TangentInverse::Effort::usual))
-        CHECK(two->solve(column) == TangentInverse::Outcome::indefinite);
+        CHECK(two->solve(column, 1e-3) == TangentInverse::Outcome::indefinite);
 }
 
 TEST_CASE("a bulky body takes two levels, and gets to where its forces are in balance") {
