@@ -46,6 +46,10 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double norm(const Vec3& a) {
     return std::sqrt(dot(a, a));
 }
+/// Precondition: not zero.
+inline Vec3 unit(const Vec3& a) {
+    return a / norm(a);
+}
 inline bool is_finite(const Vec3& a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <variant>
 #include <vector>
@@ -92,8 +93,8 @@ void Cholesky::solve_fields(std::span<double> fields, int count) const {
     }
 }
 
-std::optional<int> Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides,
-                                              int columns, double tolerance, int limit) const {
+std::optional<double> Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides,
+                                                 int columns, double tolerance, int limit) const {
     const SymmetricPattern& pattern = state_->pattern;
     const auto n = static_cast<std::size_t>(pattern.size());
     const auto column = [n](std::span<double> all, int c) { return all.subspan(static_cast<std::size_t>(c) * n, n); };
@@ -105,6 +106,7 @@ std::optional<int> Cholesky::solve_and_refine(std::span<const double> values, st
     for (int c = 0; c < columns; ++c) left[c] = dot(column(residual, c), column(direction, c));
     const std::vector<double> whole = left;
     std::fill(right_hand_sides.begin(), right_hand_sides.end(), 0.0);
+    double first = 0;
     for (int iteration = 0;; ++iteration) {
         std::fill(product.begin(), product.end(), 0.0);
         for (int c = 0; c < columns; ++c) {
@@ -116,15 +118,16 @@ std::optional<int> Cholesky::solve_and_refine(std::span<const double> values, st
         }
         product = residual;
         solve(product, columns);
-        bool enough = true;
+        double worst = 0;  // squared
         for (int c = 0; c < columns; ++c) {
             const double now = dot(column(residual, c), column(product, c));
-            enough = enough && !(now > tolerance * tolerance * whole[c]);
+            if (now > worst * whole[c]) worst = now / whole[c];
             const double keep = left[c] > 0 ? now / left[c] : 0;
             for (std::size_t i = 0; i < n; ++i) direction[c * n + i] = product[c * n + i] + keep * direction[c * n + i];
             left[c] = now;
         }
-        if (enough) return iteration;
+        if (iteration == 0) first = std::sqrt(worst);
+        if (worst <= tolerance * tolerance) return first;
         if (iteration == limit) return std::nullopt;
     }
 }

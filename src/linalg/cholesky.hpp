@@ -43,11 +43,11 @@ public:
     void solve_fields(std::span<double> fields, int count) const;
 
     /// As solve(), by conjugate gradients with the factor as preconditioner, until the error, in the norm of the
-    /// matrix, is about `tolerance` of the solution; `values` are those of the factor. How many it took beyond the
-    /// first, or nothing if `limit` leave more.
-    [[nodiscard]] std::optional<int> solve_and_refine(std::span<const double> values,
-                                                      std::span<double> right_hand_sides, int columns, double tolerance,
-                                                      int limit) const;
+    /// matrix, is about `tolerance` of the solution; `values` are those of the factor. Returns the error of the first
+    /// iteration, which is what solve() alone leaves at most, or nothing if `limit` more leave more than is wanted.
+    [[nodiscard]] std::optional<double> solve_and_refine(std::span<const double> values,
+                                                         std::span<double> right_hand_sides, int columns,
+                                                         double tolerance, int limit) const;
 
     /// Entries of the factor, as analysed: a measure of memory.
     [[nodiscard]] double factor_entries() const;

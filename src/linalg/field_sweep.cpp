@@ -16,9 +16,7 @@ public:
           e_(factor.analysis_->e),
           branches_(factor.layout_.branches),
           all_(factor.scratch_.lend(factor.size() * lanes)),
-          handed_(branches_.size()) {
-        for (int s = 0; s < e_.supernodes(); ++s) largest_ = std::max(largest_, factor_.leading(s));
-    }
+          handed_(branches_.size()) {}
 
     void solve(double* fields, int count) {
         take(fields, count);
@@ -27,13 +25,11 @@ public:
             const auto rows = rows_below(branches_[k].last - 1);
             for (std::size_t r = 0; r < rows.size(); ++r) add(handed_[k].data() + r * lanes, row(all_.data(), rows[r]));
         }
-        const auto below = lend_below();
         const std::vector<int>& trunk = factor_.layout_.trunk;
-        for (const int s : trunk) go_down(s, below.data(), e_.position.size(), nullptr);
-        for (auto s = trunk.rbegin(); s != trunk.rend(); ++s) go_up(*s, below.data());
+        for (const int s : trunk) go_down(s, all_.data(), 0);
+        for (auto s = trunk.rbegin(); s != trunk.rend(); ++s) go_up(*s);
         factor_.for_branches([&](std::size_t k) {
-            const auto own = lend_below();
-            for (int s = branches_[k].last - 1; s >= branches_[k].first; --s) go_up(s, own.data());
+            for (int s = branches_[k].last - 1; s >= branches_[k].first; --s) go_up(s);
         });
         give(fields, count);
     }
@@ -42,17 +38,11 @@ private:
     static void add(const Real* from, Real* to) {
         for (int l = 0; l < lanes; ++l) to[l] += from[l];
     }
-    static void subtract(const Real* from, Real* to) {
-        for (int l = 0; l < lanes; ++l) to[l] -= from[l];
-    }
     static Real* row(Real* all, int position) { return all + static_cast<std::size_t>(position) * lanes; }
     [[nodiscard]] std::span<const int> rows_below(int s) const {
         return std::span(e_.row).subspan(static_cast<std::size_t>(e_.row_start[s]),
                                          static_cast<std::size_t>(e_.rows_below(s)));
     }
-
-    /// Room for the rows below any supernode.
-    [[nodiscard]] auto lend_below() const { return factor_.scratch_.lend(largest_ * lanes); }
 
     void take(const double* fields, int count) {
         const std::size_t nodes = e_.position.size();
@@ -81,36 +71,24 @@ private:
         const auto sums = factor_.scratch_.lend(factor_.size() * lanes);
         const auto rows = rows_below(branch.last - 1);
         for (const int position : rows) std::fill_n(row(sums.data(), position), lanes, Real(0));
-        const auto below = lend_below();
-        for (int s = branch.first; s < branch.last; ++s)
-            go_down(s, below.data(), static_cast<std::size_t>(e_.first[branch.last]), sums.data());
+        for (int s = branch.first; s < branch.last; ++s) go_down(s, sums.data(), e_.first[branch.last]);
         handed_[k].resize(rows.size() * lanes);
         for (std::size_t r = 0; r < rows.size(); ++r)
             std::copy_n(row(sums.data(), rows[r]), lanes, handed_[k].data() + r * lanes);
     }
-    /// Rows from `beyond` on are outside of the branch and go to `sums`.
-    void go_down(int s, Real* below, std::size_t beyond, Real* sums) {
-        solve_lower_lanes(factor_.panel(s), row(all_.data(), e_.first[s]), below);
-        const Real* mine = below;
-        for (const int position : rows_below(s)) {
-            subtract(mine, row(static_cast<std::size_t>(position) < beyond ? all_.data() : sums, position));
-            mine += lanes;
-        }
+    /// Rows from `limit` on are outside of the branch and go to `beyond`.
+    void go_down(int s, Real* beyond, int limit) {
+        solve_lower_lanes(factor_.panel(s), row(all_.data(), e_.first[s]),
+                          LaneRows<Real>{rows_below(s).data(), all_.data(), beyond, limit});
     }
-    void go_up(int s, Real* below) {
-        Real* mine = below;
-        for (const int position : rows_below(s)) {
-            std::copy_n(row(all_.data(), position), lanes, mine);
-            mine += lanes;
-        }
-        std::fill(mine, below + factor_.leading(s) * lanes, Real(0));
-        solve_upper_lanes(factor_.panel(s), row(all_.data(), e_.first[s]), below);
+    void go_up(int s) {
+        solve_upper_lanes(factor_.panel(s), row(all_.data(), e_.first[s]),
+                          LaneRows<Real>{rows_below(s).data(), all_.data(), all_.data(), 0});
     }
 
     const Factor& factor_;
     const Elimination& e_;
     const std::vector<FrontLayout::Branch>& branches_;
-    std::size_t largest_ = 0;                ///< most rows below a supernode, in whole packets
     typename ArrayPool<Real>::Loan all_;     ///< (size, lanes) in the order of elimination
     std::vector<std::vector<Real>> handed_;  ///< by each branch to the trunk: (rows below its last supernode, lanes)
 };

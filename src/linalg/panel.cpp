@@ -394,7 +394,7 @@ struct Lanes {
 };
 
 template <class Real>
-void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, Real* y) {
+void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, const LaneRows<Real>& below) {
     using L = Lanes<Real>;
     using V = typename L::V;
     constexpr int P = packet<Real>;
@@ -422,14 +422,18 @@ void solve_lower_lanes_of(const Panel<Real>& panel, Real* x, Real* y) {
                 V sums[L::rows];
                 for (V& sum : sums) sum = hn::Zero(typename L::D());
                 L::template multiply<false>(panel.at(start + row, 0), panel.columns, x, part, sums);
-                for (int r = 0; r < L::rows; ++r) L::store(sums[r], y, row + r, part);
+                const int count = std::min(L::rows, panel.below - row);
+                for (int r = 0; r < count; ++r) {
+                    Real* at = below.at(row + r);
+                    L::store(hn::Sub(L::load(at, 0, part), sums[r]), at, 0, part);
+                }
             }
         }
     });
 }
 
 template <class Real>
-void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const Real* y) {
+void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const LaneRows<Real>& given) {
     using L = Lanes<Real>;
     using V = typename L::V;
     constexpr int P = packet<Real>;
@@ -438,7 +442,8 @@ void solve_upper_lanes_of(const Panel<Real>& panel, Real* x, const Real* y) {
         for (int part = 0; part < lanes; part += L::width) {
             for (int row = 0; row < below; row += L::rows) {
                 V rows[L::rows];
-                for (int r = 0; r < L::rows; ++r) rows[r] = L::load(y, row + r, part);
+                for (int r = 0; r < L::rows; ++r)
+                    rows[r] = row + r < panel.below ? L::load(given.at(row + r), 0, part) : hn::Zero(typename L::D());
                 L::subtract_transposed(panel.at(start + row, 0), begin, end, rows, x, part);
             }
         }
@@ -589,17 +594,17 @@ void upper_double(const Panel<double>& p, int n, double* x, const double* y) {
 void upper_float(const Panel<float>& p, int n, float* x, const float* y) {
     solve_upper_any(p, n, x, y);
 }
-void lower_lanes_double(const Panel<double>& p, double* x, double* y) {
-    solve_lower_lanes_of(p, x, y);
+void lower_lanes_double(const Panel<double>& p, double* x, const LaneRows<double>& rows) {
+    solve_lower_lanes_of(p, x, rows);
 }
-void lower_lanes_float(const Panel<float>& p, float* x, float* y) {
-    solve_lower_lanes_of(p, x, y);
+void lower_lanes_float(const Panel<float>& p, float* x, const LaneRows<float>& rows) {
+    solve_lower_lanes_of(p, x, rows);
 }
-void upper_lanes_double(const Panel<double>& p, double* x, const double* y) {
-    solve_upper_lanes_of(p, x, y);
+void upper_lanes_double(const Panel<double>& p, double* x, const LaneRows<double>& rows) {
+    solve_upper_lanes_of(p, x, rows);
 }
-void upper_lanes_float(const Panel<float>& p, float* x, const float* y) {
-    solve_upper_lanes_of(p, x, y);
+void upper_lanes_float(const Panel<float>& p, float* x, const LaneRows<float>& rows) {
+    solve_upper_lanes_of(p, x, rows);
 }
 
 }  // namespace pliant::linalg::HWY_NAMESPACE
@@ -678,20 +683,20 @@ void solve_upper(const Panel<float>& panel, int count, float* x, const float* y)
     HWY_DYNAMIC_DISPATCH(upper_float)(panel, count, x, y);
 }
 template <>
-void solve_lower_lanes(const Panel<double>& panel, double* x, double* y) {
-    HWY_DYNAMIC_DISPATCH(lower_lanes_double)(panel, x, y);
+void solve_lower_lanes(const Panel<double>& panel, double* x, const LaneRows<double>& rows) {
+    HWY_DYNAMIC_DISPATCH(lower_lanes_double)(panel, x, rows);
 }
 template <>
-void solve_lower_lanes(const Panel<float>& panel, float* x, float* y) {
-    HWY_DYNAMIC_DISPATCH(lower_lanes_float)(panel, x, y);
+void solve_lower_lanes(const Panel<float>& panel, float* x, const LaneRows<float>& rows) {
+    HWY_DYNAMIC_DISPATCH(lower_lanes_float)(panel, x, rows);
 }
 template <>
-void solve_upper_lanes(const Panel<double>& panel, double* x, const double* y) {
-    HWY_DYNAMIC_DISPATCH(upper_lanes_double)(panel, x, y);
+void solve_upper_lanes(const Panel<double>& panel, double* x, const LaneRows<double>& rows) {
+    HWY_DYNAMIC_DISPATCH(upper_lanes_double)(panel, x, rows);
 }
 template <>
-void solve_upper_lanes(const Panel<float>& panel, float* x, const float* y) {
-    HWY_DYNAMIC_DISPATCH(upper_lanes_float)(panel, x, y);
+void solve_upper_lanes(const Panel<float>& panel, float* x, const LaneRows<float>& rows) {
+    HWY_DYNAMIC_DISPATCH(upper_lanes_float)(panel, x, rows);
 }
 
 }  // namespace pliant::linalg

@@ -67,11 +67,24 @@ void solve_upper(const Panel<Real>& panel, int count, Real* x, const Real* y);
 
 /// Right-hand sides that lie next to one another, unknown by unknown.
 inline constexpr int lanes = 8;
-/// As above with (columns, lanes) and (rows below, padded to packets, lanes): each number of the panel is read once for
-/// all, and narrow panels cost little. Both arrays are aligned to whole unknowns.
+/// The rows below a panel in arrays of all unknowns, (unknowns, lanes), aligned to whole unknowns.
 template <class Real>
-void solve_lower_lanes(const Panel<Real>& panel, Real* x, Real* y);
+struct LaneRows {
+    const int* position;  ///< (rows below)
+    Real* all;
+    Real* beyond;  ///< the rows of unknowns from `limit` on
+    int limit;
+
+    [[nodiscard]] Real* at(int row) const {
+        return (position[row] < limit ? all : beyond) + static_cast<std::size_t>(position[row]) * lanes;
+    }
+};
+/// x (columns, lanes) <- L^-1 x; rows -= L_below x, right where they are: each number of the panel is read once for all
+/// lanes, and narrow panels cost little.
 template <class Real>
-void solve_upper_lanes(const Panel<Real>& panel, Real* x, const Real* y);
+void solve_lower_lanes(const Panel<Real>& panel, Real* x, const LaneRows<Real>& rows);
+/// x <- L^-T (x - L_below^T rows).
+template <class Real>
+void solve_upper_lanes(const Panel<Real>& panel, Real* x, const LaneRows<Real>& rows);
 
 }  // namespace pliant::linalg

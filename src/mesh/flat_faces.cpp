@@ -234,7 +234,7 @@ std::size_t smooth_faces(const FacetedSurface& faceted) {
                         face_of_edge[{loop[k], loop[(k + 1) % loop.size()]}] = normals.size();
                 }
                 const Vec3 normal = area_normal(face.front(), faceted.points);
-                normals.push_back(normal / norm(normal));
+                normals.push_back(unit(normal));
             }
         }
     }

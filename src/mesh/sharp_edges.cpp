@@ -114,7 +114,7 @@ private:
         const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
         const auto at = [&](int node) { return mesh.points[static_cast<std::size_t>(node)]; };
         const Vec3 n = cross(at(b) - at(a), at(c) - at(a));
-        return n / norm(n);
+        return unit(n);
     }
     [[nodiscard]] const Vec3& at(int node) const { return points()[static_cast<std::size_t>(node)]; }
 
@@ -125,7 +125,7 @@ private:
         const double radius = 0.02 * std::min(size_, norm(along));
         const Vec3 other = std::fabs(along.x) < 0.6 * norm(along) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
         Vec3 u = cross(along, other);
-        u = u / norm(u);
+        u = unit(u);
         const Vec3 v = cross(along, u) / norm(along);
         constexpr int directions = 16;
         int first = 0;

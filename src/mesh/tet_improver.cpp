@@ -170,7 +170,7 @@ private:
                                       [&](const Border& b) { return dot(b.normal, all.front().normal) > level; });
         if (flat) return {2, all.front().normal, false};
         const std::vector<Vec3> ridges = ridges_at(v, all);
-        if (ridges.empty() && norm(sum) > 0) return {2, sum / norm(sum), true};
+        if (ridges.empty() && norm(sum) > 0) return {2, unit(sum), true};
         if (ridges.size() == 2 && dot(ridges[0], ridges[1]) < -level) return {1, ridges[0], false};
         return {};
     }
@@ -273,7 +273,7 @@ private:
                 for (int j = -1; j <= 1; ++j) {
                     for (int k = -1; k <= 1; ++k) {
                         const Vec3 way{double(i), double(j), double(k)};
-                        if (norm(way) > 0) made.push_back(way / norm(way));
+                        if (norm(way) > 0) made.push_back(unit(way));
                     }
                 }
             }

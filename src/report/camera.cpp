@@ -10,10 +10,6 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double half_field = 0.22;  // tangent of half the vertical field of view: a mild perspective
 
-Vec3 unit(const Vec3& v) {
-    return v / norm(v);
-}
-
 /// The axis that shows most when looked along: little motion, then little extent. A tie goes to Y, then X, then Z.
 std::size_t view_axis(std::span<const Vec3> rest, std::span<const std::span<const Vec3>> others) {
     Box3 box;

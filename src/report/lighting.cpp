@@ -15,10 +15,6 @@ constexpr double ground_radiance = 0.50;                   // what comes back fr
 constexpr Vec3 up{0, 0, 1};
 constexpr double golden_angle = 2.399963229728653;  // pi (3 - sqrt 5)
 
-Vec3 unit(const Vec3& v) {
-    return v / norm(v);
-}
-
 /// So that eight in a row point about the same way: they go through the scene together.
 template <class Ray>
 void bundle(std::span<Ray> rays) {

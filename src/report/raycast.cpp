@@ -30,10 +30,6 @@ constexpr double ghost_clearance = 0.003;            // of the body's size: face
 constexpr double cable_behind = 0.55;                // opacity of a cable inside the body
 constexpr Colour ghost_colour = {0.42, 0.47, 0.54};  // sRGB
 
-Vec3 unit(const Vec3& v) {
-    return v / norm(v);
-}
-
 /// Where a cell is in an array of rows.
 std::size_t cell(int columns, std::size_t row, std::size_t column) {
     return row * static_cast<std::size_t>(columns) + column;

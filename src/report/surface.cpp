@@ -17,7 +17,7 @@ Vec3 area_vector(const std::array<int, 3>& triangle, std::span<const Vec3> point
            cross(points[static_cast<std::size_t>(triangle[1])] - a, points[static_cast<std::size_t>(triangle[2])] - a);
 }
 
-Vec3 unit(const Vec3& v) {
+Vec3 unit_or_up(const Vec3& v) {
     const double length = norm(v);
     return length > 0 ? v / length : Vec3{0, 0, 1};
 }
@@ -100,7 +100,7 @@ std::vector<std::size_t> smooth_groups(int node, const std::vector<int>& corners
 Surface split_at_creases(Surface surface, std::span<const Vec3> points) {
     std::vector<Vec3> normals;
     normals.reserve(surface.triangles.size());
-    for (const auto& triangle : surface.triangles) normals.push_back(unit(area_vector(triangle, points)));
+    for (const auto& triangle : surface.triangles) normals.push_back(unit_or_up(area_vector(triangle, points)));
 
     std::vector<std::array<int, 3>> split(surface.triangles.size());
     for (const auto& [node, corners] : corners_of_nodes(surface)) {
@@ -143,7 +143,7 @@ Pose pose(const Surface& surface, std::span<const Vec3> node_positions) {
         const Vec3 area = area_vector(triangle, result.positions);
         for (const int v : triangle) result.normals[static_cast<std::size_t>(v)] += area;
     }
-    for (Vec3& n : result.normals) n = unit(n);
+    for (Vec3& n : result.normals) n = unit_or_up(n);
     return result;
 }
 

@@ -14,7 +14,7 @@ std::vector<Vec3> segment_directions(std::span<const Vec3> points) {
     Vec3 last{1, 0, 0};
     for (std::size_t i = directions.size(); i-- > 0;) {
         const Vec3 d = points[i + 1] - points[i];
-        if (norm(d) > 0) last = d / norm(d);
+        if (norm(d) > 0) last = unit(d);
         directions[i] = last;
     }
     return directions;
@@ -23,7 +23,7 @@ std::vector<Vec3> segment_directions(std::span<const Vec3> points) {
 Vec3 any_perpendicular(const Vec3& d) {
     const Vec3 axis = std::abs(d.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 side = cross(d, axis);
-    return side / norm(side);
+    return unit(side);
 }
 
 /// Direction of the tube at a point: along the bisector of the segments that meet there.
@@ -31,7 +31,7 @@ Vec3 direction_at(std::size_t i, const std::vector<Vec3>& segments) {
     const Vec3& before = segments[i == 0 ? 0 : i - 1];
     const Vec3& after = segments[i < segments.size() ? i : segments.size() - 1];
     const Vec3 sum = before + after;
-    return norm(sum) > 1e-6 ? sum / norm(sum) : after;
+    return norm(sum) > 1e-6 ? unit(sum) : after;
 }
 
 void add_cap(Tube& tube, const Vec3& centre, const Vec3& outward, int ring, bool start) {
@@ -57,7 +57,7 @@ Tube tube_around(std::span<const Vec3> points, double radius_m) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3 along = direction_at(i, segments);
         side -= dot(side, along) * along;  // carried along without twist
-        side = norm(side) > 1e-9 ? side / norm(side) : any_perpendicular(along);
+        side = norm(side) > 1e-9 ? unit(side) : any_perpendicular(along);
         const Vec3 other = cross(along, side);
         for (int k = 0; k < sides; ++k) {
             const double angle = 2 * std::numbers::pi * k / sides;

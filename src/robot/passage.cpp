@@ -43,7 +43,7 @@ Passage passage_through(const mesh::TetMesh& mesh, int region, const std::vector
             passage.length += (end - begin) * norm(points[k] - points[k - 1]);
         }
     }
-    if (norm(sum) > 0) passage.direction = sum / norm(sum);
+    if (norm(sum) > 0) passage.direction = unit(sum);
     return passage;
 }
 

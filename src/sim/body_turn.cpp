@@ -31,14 +31,19 @@ void BodyTurn::motions_on(Eigen::MatrixXd& columns) const {
     laplacian_->solve(columns);
 }
 
-void BodyTurn::motions_back(Eigen::MatrixXd& columns) const {
+void BodyTurn::step_back(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
     if (!turned_) return;
-    apply(Elements::Direction::back, columns);
-    laplacian_->solve(columns);
+    Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the price of one
+    both << motion, force;
+    apply(Elements::Direction::back, both.leftCols(1));
+    laplacian_->solve(both);
+    apply(Elements::Direction::back, both.rightCols(1));
+    motion = both.col(0);
+    force = both.col(1);
 }
 
 /// columns <- G^T W R G columns, where held nodes do not move.
-void BodyTurn::apply(Elements::Direction direction, Eigen::MatrixXd& columns) const {
+void BodyTurn::apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const {
     Eigen::VectorXd motion(before_.size()), forces(before_.size());
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
         motion.setZero();

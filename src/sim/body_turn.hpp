@@ -27,11 +27,12 @@ public:
     /// Columns (3 free, k): forces of now <- T^T forces, motions of before <- T motions.
     void forces_back(Eigen::MatrixXd& columns) const;
     void motions_on(Eigen::MatrixXd& columns) const;
-    /// Motions of now <- L^-1 G^T W R^T G motions: nearly the inverse of motions_on().
-    void motions_back(Eigen::MatrixXd& columns) const;
+    /// A motion of now <- L^-1 G^T W R^T G motion: nearly the inverse of motions_on(). And the change of force that
+    /// goes with it: as forces_back().
+    void step_back(Eigen::VectorXd& motion, Eigen::VectorXd& force) const;
 
 private:
-    void apply(Elements::Direction direction, Eigen::MatrixXd& columns) const;
+    void apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const;
 
     const Equilibrium* system_;
     const FactoredLaplacian* laplacian_;

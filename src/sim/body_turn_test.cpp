@@ -111,8 +111,10 @@ TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
         }
         CHECK((motion - turned).norm() < 1e-5 * before.norm());
         CHECK((force - turned_back).norm() < 1e-5 * before.norm());
-        turn.motions_back(motion);
-        CHECK((motion - before).norm() < 1e-5 * before.norm());
+        Eigen::VectorXd step = motion, change = before;
+        turn.step_back(step, change);
+        CHECK((step - before).norm() < 1e-5 * before.norm());
+        CHECK((change - turned_back).norm() < 1e-5 * before.norm());
     }
 }
 

@@ -56,7 +56,7 @@ std::vector<double> CablePath::tension_shares(std::span<const double> x, double 
         const std::size_t k = pulled_at_first ? step : segments_.size() - 1 - step;
         const Vec3 d = vector_of(segments_[k], x);
         if (norm(d) >= met_length_m_) {  // points that have met turn nothing
-            const Vec3 direction = d / norm(d);
+            const Vec3 direction = unit(d);
             if (norm(before) > 0)
                 share *= std::exp(-friction * std::acos(std::clamp(dot(before, direction), -1.0, 1.0)));
             before = direction;

@@ -127,9 +127,8 @@ private:
     /// What the last step taught, as it would have been where the factor was made.
     void remember() {
         if (learnt_.step.size() == 0) return;
-        Eigen::MatrixXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
-        turn_.motions_back(step);
-        turn_.forces_back(change);
+        Eigen::VectorXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
+        turn_.step_back(step, change);
         memory_.learn(step, change);
     }
 

@@ -22,6 +22,11 @@ constexpr double gauss_b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
 
 using Barycentric = std::array<double, 4>;
 
+/// What one batch does at its nodes, (nodes_per_tet, 3, lanes).
+struct BatchForces {
+    alignas(64) double values[10 * 3 * batch_lanes];
+};
+
 std::vector<Barycentric> integration_points(int order) {
     if (order == 1) return {{0.25, 0.25, 0.25, 0.25}};
     std::vector<Barycentric> points(4, {gauss_b, gauss_b, gauss_b, gauss_b});
@@ -103,7 +108,7 @@ Result<Elements> Elements::create(const Description& description) {
         if (Status status = elements.integrate_tet(description, t); !status) return tl::unexpected(status.error());
     }
     elements.fill_empty_lanes();
-    elements.link_nodes(mesh.points.size());
+    elements.sums_ = NodeSums({elements.nodes_.data(), elements.nodes_.size()}, elements.width(), mesh.points.size());
     return elements;
 }
 
@@ -186,23 +191,6 @@ void Elements::fill_empty_lanes() {
     }
 }
 
-void Elements::link_nodes(std::size_t node_count) {
-    use_start_.assign(node_count + 1, 0);
-    const auto visit = [&](const auto& use) {
-        for (std::size_t place = 0; place < tet_.size(); ++place) {
-            for (std::size_t a = 0; tet_[place] != no_tet && a < width(); ++a) {
-                const std::size_t first = place / lanes * width() + a;
-                use(nodes_[first * lanes + place % lanes], static_cast<int>(first * 3 * lanes + place % lanes));
-            }
-        }
-    };
-    visit([&](int node, int) { ++use_start_[node + 1]; });
-    for (std::size_t i = 0; i < node_count; ++i) use_start_[i + 1] += use_start_[i];
-    use_.resize(use_start_.back());
-    std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
-    visit([&](int node, int at) { use_[next[node]++] = at; });
-}
-
 TetBatch Elements::batch(std::size_t b) const {
     return {nodes_per_tet_, points_per_tet_, nodes_.data() + b * width() * lanes,
             gradient_.data() + b * points() * width() * 3 * lanes, volume_.data() + b * points() * lanes};
@@ -247,48 +235,41 @@ BatchResult Elements::forces_one_by_one(std::size_t batch, std::span<const doubl
     return result;
 }
 
-void Elements::gather_forces(const double* buffer, std::span<double> forces) const {
-    parallel_for(use_start_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t node = begin; node < end; ++node) {
-            for (int k = use_start_[node]; k < use_start_[node + 1]; ++k) {
-                const double* f = buffer + use_[k];
-                for (std::size_t i = 0; i < 3; ++i) forces[3 * node + i] += f[i * lanes];
-            }
-        }
-    });
-}
-
 /// result (3n) += what `forces_of(batch, bound of its stiffness, forces)` writes for the nodes of each batch.
 template <class ForcesOf>
 void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) const {
-    const std::size_t stride = 3 * width() * lanes;
-    const auto buffer = scratch_.lend(batches() * stride);
-    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
+    const auto lists = scratch_.lend(sums_.space());
+    sums_.for_pieces([&](std::size_t piece, std::size_t begin, std::size_t end) {
+        BatchForces forces;
+        sums_.clear(piece, lists.data());
         for (std::size_t b = begin; b < end; ++b) {
             const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
-            forces_of(b, stiffness, buffer.data() + b * stride);
+            forces_of(b, stiffness, forces.values);
+            sums_.add(b, forces.values, lists.data());
         }
     });
-    gather_forces(buffer.data(), result);
+    sums_.gather(lists.data(), result);
 }
 
 Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces,
                                         std::span<const material::Law> laws) const {
-    const std::size_t pieces = (batches() + batches_per_piece - 1) / batches_per_piece;
-    std::vector<Evaluation> partial(pieces);
-    const std::size_t stride = 3 * width() * lanes;
-    const auto buffer = scratch_.lend(forces.empty() ? 0 : batches() * stride);
+    std::vector<Evaluation> partial(sums_.pieces());
+    const bool with_forces = !forces.empty();
+    const auto lists = scratch_.lend(with_forces ? sums_.space() : 0);
     const auto forms = forms_of(laws.empty() ? laws_ : laws);
-    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
-        Evaluation& sum = partial[begin / batches_per_piece];
+    sums_.for_pieces([&](std::size_t piece, std::size_t begin, std::size_t end) {
+        BatchForces one;
+        double* to = with_forces ? one.values : nullptr;
+        if (with_forces) sums_.clear(piece, lists.data());
+        Evaluation& sum = partial[piece];
         sum.min_J = std::numeric_limits<double>::infinity();
         for (std::size_t b = begin; b < end && sum.min_J > 0; ++b) {
-            double* to = forces.empty() ? nullptr : buffer.data() + b * stride;
             const auto& form = forms[static_cast<std::size_t>(batch_law_[b])];
-            const BatchResult one =
+            const BatchResult result =
                 form ? batch_forces(batch(b), *form, x.data(), to) : forces_one_by_one(b, x, law_among(laws, b), to);
-            sum.energy_J += one.energy_J;
-            sum.min_J = std::min(sum.min_J, one.min_J);
+            sum.energy_J += result.energy_J;
+            sum.min_J = std::min(sum.min_J, result.min_J);
+            if (with_forces && sum.min_J > 0) sums_.add(b, one.values, lists.data());
         }
     });
     Evaluation total;
@@ -297,8 +278,7 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
         total.energy_J += one.energy_J;
         total.min_J = std::min(total.min_J, one.min_J);
     }
-    if (!(total.min_J > 0) || forces.empty()) return total;
-    gather_forces(buffer.data(), forces);
+    if (total.min_J > 0 && with_forces) sums_.gather(lists.data(), forces);
     return total;
 }
 

@@ -11,6 +11,7 @@
 #include "linalg/sparse.hpp"
 #include "material/law.hpp"
 #include "sim/element_kernels.hpp"
+#include "sim/node_sums.hpp"
 
 namespace pliant::sim {
 
@@ -105,7 +106,6 @@ private:
     void group_by_law();
     void fill_empty_lanes();
     Status integrate_tet(const Description& description, std::size_t tet);
-    void link_nodes(std::size_t node_count);
     [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t batch) const {
         const auto index = static_cast<std::size_t>(batch_law_[batch]);
         return laws.empty() ? laws_[index] : laws[index];
@@ -115,8 +115,6 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
-    /// Adds what each batch wrote for its nodes, (batches, nodes_per_tet, 3, lanes), in the order of the batches.
-    void gather_forces(const double* buffer, std::span<double> forces) const;
     template <class ForcesOf>
     void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
     void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
@@ -135,11 +133,8 @@ private:
     std::vector<double> node_mass_;
     std::vector<double> tet_mass_;  ///< (m) kg
     std::vector<material::Law> laws_;
-    // For each node the places in the force buffer (batches, nodes_per_tet, 3, lanes) that add up to its force, in the
-    // order of the batches; y and z follow x at steps of `lanes`.
-    std::vector<int> use_start_;
-    std::vector<int> use_;
-    mutable ArrayPool<double> scratch_;  ///< force buffers and blocks of batches
+    NodeSums sums_;
+    mutable ArrayPool<double> scratch_;  ///< sums of pieces and blocks of batches
 };
 
 }  // namespace pliant::sim

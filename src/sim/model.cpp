@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/disjoint_sets.hpp"
 #include "sim/chamber_surface.hpp"
 #include "sim/elements.hpp"
 
@@ -185,22 +186,16 @@ Status number_free_nodes(const Description& d, std::vector<int>& free_index, int
 /// Every connected piece of the mesh needs a support: a loose piece has no equilibrium.
 Status check_held(const Description& d) {
     const auto& mesh = d.mesh;
-    std::vector<int> root(mesh.points.size());
-    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
-    const auto find = [&](int node) {
-        while (root[node] != node) node = root[node] = root[root[node]];
-        return node;
-    };
+    DisjointSets pieces(mesh.points.size());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        const int first = find(mesh.tet(t)[0]);
-        for (const int node : mesh.tet(t)) root[find(node)] = first;
+        for (const int node : mesh.tet(t)) pieces.join(node, mesh.tet(t)[0]);
     }
     std::vector<bool> held(mesh.points.size(), false);
     for (const Support& support : d.supports) {
-        for (const int node : support.nodes) held[find(node)] = true;
+        for (const int node : support.nodes) held[pieces.find(node)] = true;
     }
     std::size_t loose = 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) loose += held[find(mesh.tet(t)[0])] ? 0 : 1;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) loose += held[pieces.find(mesh.tet(t)[0])] ? 0 : 1;
     if (loose == 0) return {};
     if (loose == mesh.tet_count()) return input_error("nothing is fixed; add a [[fixed]] that holds the robot");
     return input_error("a piece of {} of the {} tetrahedra is connected to nothing that is fixed", loose,

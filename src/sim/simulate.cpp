@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "sim/curvature.hpp"
 #include "sim/describe.hpp"
@@ -232,37 +233,35 @@ private:
         Controls controls = system_.controls(time, stretch_);
         if (program_.dynamics) controls.inertia = make_inertia(time - time_);
         StepOutcome outcome;
-        outcome.reason = predict(time, controls, next);
+        Evaluation known;
+        outcome.reason = predict(time, controls, next, known);
         if (!outcome.reason.empty()) return outcome;
         solvers_.restart();
-        return settle_friction(controls, next, progress);
+        return settle_friction(controls, next, progress, std::move(known));
     }
 
     /// Starts from where the last states lead or, where that would turn a tet inside out or pass through something,
     /// from the last state with the supports at their new place. Returns why there is no start.
-    [[nodiscard]] std::string predict(double time, const Controls& controls, State& next) const {
-        if (const auto onward = extrapolate(time, controls)) {
-            next = *onward;
-            return {};
-        }
+    [[nodiscard]] std::string predict(double time, const Controls& controls, State& next, Evaluation& known) const {
+        if (extrapolate(time, controls, next, known)) return {};
         next = follow_supports(state_, controls);
-        const Evaluation::Flaw flaw = system_.evaluate(next, controls).flaw;
-        if (flaw != Evaluation::Flaw::none) return fmt::format("the prescribed motion {}", name(flaw));
+        known = system_.evaluate(next, controls);
+        if (!known.possible()) return fmt::format("the prescribed motion {}", name(known.flaw));
         return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
     }
 
     /// On from the last three states or, if that ends far from equilibrium, from the last two, whichever is nearer.
-    [[nodiscard]] std::optional<State> extrapolate(double time, const Controls& controls) const {
-        std::optional<State> best;
+    [[nodiscard]] bool extrapolate(double time, const Controls& controls, State& next, Evaluation& known) const {
         double least = worst_start;
         for (std::size_t count = past_.size() + 1; count >= 2 && least > good_start; --count) {
             State state = onward(time, count, controls);
-            const Evaluation e = system_.evaluate(state, controls);
+            Evaluation e = system_.evaluate(state, controls);
             if (!e.possible() || !(e.error() < least) || !passes(state, controls)) continue;
-            best = std::move(state);
             least = e.error();
+            next = std::move(state);
+            known = std::move(e);
         }
-        return best;
+        return least < worst_start;
     }
 
     /// On along the polynomial through the last `count` states, at least 2: the multipliers as they are, and for each
@@ -309,14 +308,17 @@ private:
 
     /// Friction depends on the forces, which depend on friction: frozen, solved, and frozen anew until both agree (the
     /// lagging of Li et al. 2020, section 5; likewise for cables that drag in their guides).
-    StepOutcome settle_friction(Controls& controls, State& next, const Progress& progress) {
+    /// `known`: of `next`, as long as there is no friction.
+    StepOutcome settle_friction(Controls& controls, State& next, const Progress& progress,
+                                std::optional<Evaluation> known = {}) {
         const bool cables_drag = system_.has_cable_friction();
         if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
         controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
+        if (cables_drag || system_.has_friction()) known.reset();
         StepOutcome total;
         for (int round = 0; round < friction_rounds; ++round) {
-            StepOutcome outcome =
-                solvers_.solve(system_, controls, {program_.tolerance, program_.iteration_limit}, next, progress);
+            StepOutcome outcome = solvers_.solve(system_, controls, {program_.tolerance, program_.iteration_limit},
+                                                 next, progress, std::exchange(known, std::nullopt));
             outcome.iterations += total.iterations;
             outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
             total = std::move(outcome);

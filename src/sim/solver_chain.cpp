@@ -45,9 +45,10 @@ StepSettings SolverChain::settings_of(std::size_t link, const StepSettings& aske
 }
 
 StepOutcome SolverChain::solve(const Equilibrium& system, const Controls& controls, const StepSettings& settings,
-                               State& state, const Progress& progress) {
+                               State& state, const Progress& progress, std::optional<Evaluation> known) {
     const State start = state;
-    StepOutcome outcome = solve_step(system, at(0), controls, settings_of(0, settings, 0), state, progress);
+    StepOutcome outcome =
+        solve_step(system, at(0), controls, settings_of(0, settings, 0), state, progress, std::move(known));
     int spent = outcome.iterations * relative_cost(links_[0].solver);
     for (std::size_t k = 1; k < links_.size() && !outcome.converged && !progress.cancelled(); ++k) {
         // Not every solver leaves a state that is nearer than it found it.

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sim/step_solver.hpp"
@@ -28,7 +29,7 @@ public:
     /// did. With `settings.patience` 0 the patience of a chain of several is its own. `iterations` and `history` are of
     /// all that took part, `solver` and `evaluation` of the last.
     [[nodiscard]] StepOutcome solve(const Equilibrium& system, const Controls& controls, const StepSettings& settings,
-                                    State& state, const Progress& progress);
+                                    State& state, const Progress& progress, std::optional<Evaluation> known = {});
 
 private:
     [[nodiscard]] Curvature& at(std::size_t link);

@@ -72,15 +72,19 @@ Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::Vec
 
 class StepSolver {
 public:
-    StepSolver(const Equilibrium& system, Curvature& curvature, const Controls& controls, State& state)
-        : system_(system), curvature_(curvature), controls_(controls), state_(state) {
+    StepSolver(const Equilibrium& system, Curvature& curvature, const Controls& controls, State& state,
+               std::optional<Evaluation> known)
+        : system_(system),
+          curvature_(curvature),
+          controls_(controls),
+          state_(state),
+          evaluation_(known ? std::move(*known) : system.evaluate(state, controls)) {
         for (std::size_t a = 0; a < controls.drives.size(); ++a) {
             if (controls.drives[a].kind == Drive::Kind::multiplier) continue;
             solved_.push_back(static_cast<Eigen::Index>(a));
             only_pull_.push_back(system.actuators()[a].only_pulls());
         }
         prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
-        evaluation_ = system.evaluate(state, controls);
         if (evaluation_.possible()) state_.multiplier = evaluation_.multiplier;
     }
 
@@ -325,8 +329,9 @@ std::string stuck(const StepSolver& solver) {
 }  // namespace
 
 StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
-                       const StepSettings& settings, State& state, const Progress& progress) {
-    StepSolver solver(system, curvature, controls, state);
+                       const StepSettings& settings, State& state, const Progress& progress,
+                       std::optional<Evaluation> known) {
+    StepSolver solver(system, curvature, controls, state, std::move(known));
     StepOutcome outcome;
     outcome.solver = curvature.solver();
     outcome.history.push_back(record(outcome.solver, 0, solver.evaluation(), 0));

@@ -1,6 +1,7 @@
 #include "sim/tangent_inverse.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -33,18 +34,18 @@ public:
         return false;
     }
 
-    /// The first solution with a factor in single precision shows how good it is. To be content with less would save
-    /// nothing: with the factor made, digits cost little.
-    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double) override {
+    /// The first solution with a factor in single precision is refined, unless the factor is known to be good enough.
+    [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
         const int count = static_cast<int>(columns.cols());
-        if (!untried_) {
+        const double wanted = std::max(error, least_error);
+        if (!std::exchange(untried_, false) || known_error_ <= wanted) {
             factor_.solve(view(columns), count);
             return Outcome::solved;
         }
-        untried_ = false;
         const Eigen::MatrixXd right = columns;
-        if (const auto more = factor_.solve_and_refine(*values_, view(columns), count, least_error, most_refinements)) {
-            trusted_ = *more == 0 ? trust : 0;
+        if (const auto first = factor_.solve_and_refine(*values_, view(columns), count, wanted, most_refinements)) {
+            known_error_ = *first;
+            trusted_ = trust;
             return Outcome::solved;
         }
         const Eigen::MatrixXd refined = std::exchange(columns, right);
@@ -66,20 +67,22 @@ private:
     [[nodiscard]] bool is_single() const { return factor_.precision() == linalg::Precision::single_; }
     [[nodiscard]] bool factorise(const std::vector<double>& values) {
         values_ = &values;
-        untried_ = is_single() && trusted_ == 0;
+        untried_ = is_single();
+        if (trusted_ == 0) known_error_ = std::numeric_limits<double>::infinity();
         if (trusted_ > 0) --trusted_;
         return factor_.factorise(values);
     }
 
     static constexpr int refusals_until_asked = 4;  // asking costs
     static constexpr int most_refinements = 8;      // more of them, and double precision is quicker
-    static constexpr int trust = 3;                 // factors after a good one that are taken to be as good
+    static constexpr int trust = 3;                 // factors after one that was tried that are taken to be as good
 
     linalg::Cholesky factor_;
     const std::vector<double>* values_ = nullptr;  ///< of the factor
     bool untried_ = false;  ///< nothing has been solved with this factor, and it may need refining
-    int trusted_ = 0;       ///< factors to come that need no trial
-    int refusals_ = 0;      ///< by single precision
+    double known_error_ = std::numeric_limits<double>::infinity();  ///< of its solutions, as far as is known
+    int trusted_ = 0;                                               ///< factors to come that need no trial
+    int refusals_ = 0;                                              ///< by single precision
 };
 
 class TwoLevelInverse final : public TangentInverse {

@@ -39,7 +39,7 @@ FrozenPair freeze(const Pair& pair, double coefficient, double stiffness_Pa, con
     FrozenPair frozen;
     frozen.nodes = pair.nodes;
     frozen.weights = n.weights;
-    frozen.tangents = tangents_of(r / norm(r));
+    frozen.tangents = tangents_of(unit(r));
     frozen.limit_N = coefficient * normal_force(pair, stiffness_Pa, x);
     frozen.node_count = pair.node_count();
     frozen.first_count = pair.first_count();
