@@ -1,6 +1,7 @@
 // What tets do at their nodes, added up for each node.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
