@@ -84,7 +84,7 @@ struct TwoLevel::State {
     void advance(Rough& x, Start start, float keep, float share);
     void precondition();
     [[nodiscard]] bool build();
-    [[nodiscard]] bool is_outdated(int iterations, double begun, double now, double enough) const;
+    [[nodiscard]] bool is_outdated(int spent, double begun, double now, double enough) const;
     [[nodiscard]] Outcome iterate(double tolerance, double& enough, int limit);
     [[nodiscard]] Outcome solve(double* right_hand_side, double tolerance, int limit);
 
@@ -102,7 +102,9 @@ struct TwoLevel::State {
     std::vector<double> positions;  ///< of the nodes, now
     bool built = false;             ///< the coarse level is there,
     bool turned = false;            ///< but of an earlier state
-    double usual_gain = 0;          ///< of an iteration with one of the present state, as a logarithm
+    /// Of the squared error, by an iteration with one of the present state, as a logarithm: four to five a digit, until
+    /// one has shown.
+    double usual_gain = 1;
     int iterations = 0;
 };
 
@@ -129,8 +131,8 @@ void TwoLevel::State::find_largest() {
             top[i] = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
         }
     }
+    std::fill_n(side.data(), size, 0.0F);
     for (int k = 0; k < (powered ? later_powers : first_powers); ++k) {
-        std::fill_n(side.data(), size, 0.0F);
         std::copy_n(top.data(), size, correction.data());
         advance(correction, Start::where_it_is, 0, 1);  // step: -D^-1 A top
         largest = std::max(powered ? largest : 0, static_cast<float>(std::sqrt(dot(step, step) / dot(top, top))));
@@ -195,7 +197,6 @@ void TwoLevel::State::precondition() {
 bool TwoLevel::State::build() {
     space.set(matrix, positions, inverse_diagonal.data(), 4.0F / 3 / (safety * largest));
     turned = false;
-    usual_gain = 0;
     // What bends easily may be too much for single precision; once is enough to know.
     built = coarse.factorise(space.values());
     if (!built && coarse.precision() == Precision::single_) {
@@ -208,9 +209,9 @@ bool TwoLevel::State::build() {
 
 /// True if a coarse level of the present state would pay: the one at hand brought the squared error from `begun` to
 /// `now` and is to bring it to `enough`.
-bool TwoLevel::State::is_outdated(int iterations, double begun, double now, double enough) const {
-    if (!turned || iterations < iterations_to_judge) return false;
-    const double gain = std::log(begun / now) / iterations, to_go = std::log(now / enough);
+bool TwoLevel::State::is_outdated(int spent, double begun, double now, double enough) const {
+    if (!turned || spent < iterations_to_judge) return false;
+    const double gain = std::log(begun / now) / spent, to_go = std::log(now / enough);
     return gain <= 0 || to_go / gain > to_go / usual_gain + price_of_coarse;
 }
 

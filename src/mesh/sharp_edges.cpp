@@ -113,8 +113,7 @@ private:
     [[nodiscard]] static Vec3 normal(const TriMesh& mesh, int triangle) {
         const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
         const auto at = [&](int node) { return mesh.points[static_cast<std::size_t>(node)]; };
-        const Vec3 n = cross(at(b) - at(a), at(c) - at(a));
-        return unit(n);
+        return unit(cross(at(b) - at(a), at(c) - at(a)));
     }
     [[nodiscard]] const Vec3& at(int node) const { return points()[static_cast<std::size_t>(node)]; }
 
@@ -124,8 +123,7 @@ private:
         const Vec3 middle = 0.5 * (a + b);
         const double radius = 0.02 * std::min(size_, norm(along));
         const Vec3 other = std::fabs(along.x) < 0.6 * norm(along) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-        Vec3 u = cross(along, other);
-        u = unit(u);
+        const Vec3 u = unit(cross(along, other));
         const Vec3 v = cross(along, u) / norm(along);
         constexpr int directions = 16;
         int first = 0;

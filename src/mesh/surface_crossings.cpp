@@ -49,8 +49,7 @@ bool edges_pass(const Corners& one, const Corners& other) {
 }
 
 Vec3 normal(const Corners& t) {
-    const Vec3 n = cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
-    return unit(n);
+    return unit(cross(t.p[1] - t.p[0], t.p[2] - t.p[0]));
 }
 
 /// Two triangles with a common edge, less than half a degree apart.
@@ -67,8 +66,7 @@ bool overlap(const Corners& one, const Corners& other) {
     }
     for (const Corners* t : {&one, &other}) {
         for (std::size_t k = 0; k < 3; ++k) {
-            Vec3 across = cross(t->p[(k + 1) % 3] - t->p[k], n);
-            across = unit(across);
+            const Vec3 across = unit(cross(t->p[(k + 1) % 3] - t->p[k], n));
             const auto reach = [&](const Corners& of) {
                 const std::array<double, 3> d = {dot(across, of.p[0]), dot(across, of.p[1]), dot(across, of.p[2])};
                 return std::pair(*std::min_element(d.begin(), d.end()), *std::max_element(d.begin(), d.end()));

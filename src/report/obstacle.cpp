@@ -29,8 +29,7 @@ Obstacle drawn(const sim::contact::Obstacle& body, const Box3& motion) {
 mesh::TriMesh disc(const Vec3& center, const Vec3& normal, double radius_m) {
     constexpr int corners = 96;
     const Vec3 other = std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 across = cross(normal, other);
-    const Vec3 a = unit(across), b = cross(normal, a);
+    const Vec3 a = unit(cross(normal, other)), b = cross(normal, a);
     mesh::TriMesh mesh;
     mesh.points.push_back(center);
     for (const double radius : {0.5 * radius_m, radius_m}) {

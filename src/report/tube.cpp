@@ -22,8 +22,7 @@ std::vector<Vec3> segment_directions(std::span<const Vec3> points) {
 
 Vec3 any_perpendicular(const Vec3& d) {
     const Vec3 axis = std::abs(d.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 side = cross(d, axis);
-    return unit(side);
+    return unit(cross(d, axis));
 }
 
 /// Direction of the tube at a point: along the bisector of the segments that meet there.

@@ -201,10 +201,11 @@ private:
             const Place next = between(place_, wanted, std::min(1.0, stride_ / way));
             Controls controls = controls_of(next);
             State state;
-            std::string reason = predict(next, controls, state);
+            std::optional<Evaluation> known;
+            std::string reason = predict(next, controls, state, known);
             StepOutcome outcome;
             if (reason.empty()) {
-                outcome = solve(next, controls, state, progress);
+                outcome = solve(next, controls, state, progress, std::move(known));
                 result.iterations += outcome.iterations;
                 reason = outcome.converged ? "" : outcome.reason;
             }
@@ -236,10 +237,12 @@ private:
     }
 
     /// On along the way of the last piece where this one goes the same way, or back; else from where it is.
-    [[nodiscard]] std::string predict(const Place& next, const Controls& controls, State& state) const {
+    /// `known` is the evaluation of that state, if it was needed.
+    [[nodiscard]] std::string predict(const Place& next, const Controls& controls, State& state,
+                                      std::optional<Evaluation>& known) const {
         if (before_) {
             const double onward = onward_share(next);
-            if (onward != 0 && extrapolate(onward, controls, state)) return {};
+            if (onward != 0 && (known = extrapolate(onward, controls, state))) return {};
         }
         state = state_;
         system_.place_supports(controls, state.x);
@@ -250,7 +253,8 @@ private:
         return passes(state, controls) ? "" : "the prescribed motion passes through something in one go";
     }
 
-    [[nodiscard]] bool extrapolate(double onward, const Controls& controls, State& state) const {
+    /// Its evaluation, if it will do.
+    [[nodiscard]] std::optional<Evaluation> extrapolate(double onward, const Controls& controls, State& state) const {
         const State& before = before_->state;
         state = {state_.x, state_.multiplier + onward * (state_.multiplier - before.multiplier)};
         system_.place_supports(controls, state.x);
@@ -260,8 +264,9 @@ private:
             double& tension = state.multiplier[static_cast<Eigen::Index>(c)];
             tension = std::max(tension, 0.0);
         }
-        const Evaluation there = system_.evaluate(state, controls);
-        return there.min_J > 0 && there.error() < worst_start && passes(state, controls);
+        Evaluation there = system_.evaluate(state, controls);
+        if (!(there.min_J > 0) || !(there.error() < worst_start) || !passes(state, controls)) return std::nullopt;
+        return there;
     }
 
     [[nodiscard]] bool passes(const State& next, const Controls& controls) const {
@@ -290,15 +295,19 @@ private:
         return d;
     }
 
-    StepOutcome solve(const Place& next, Controls& controls, State& state, const Progress& progress) {
+    /// `known`: of `state`, as long as there is no friction.
+    StepOutcome solve(const Place& next, Controls& controls, State& state, const Progress& progress,
+                      std::optional<Evaluation> known) {
         chain_.restart();
         const bool drags = system_.has_cable_friction();
         if (drags) freeze_cables(next, state.x, controls);
         controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
+        if (drags || system_.has_friction()) known.reset();
         StepOutcome total;
         for (int round = 0; round < friction_rounds; ++round) {
             const int spent = total.iterations;
-            total = chain_.solve(system_, controls, {program_.tolerance, most_iterations}, state, progress);
+            total = chain_.solve(system_, controls, {program_.tolerance, most_iterations}, state, progress,
+                                 std::exchange(known, std::nullopt));
             total.iterations += spent;
             if (!total.converged || !(drags || system_.has_friction())) break;
             if (round + 1 == friction_rounds) break;

@@ -66,12 +66,7 @@ NodeSums::NodeSums(std::span<const int> nodes, std::size_t nodes_per_tet, std::s
         }
         list_start_.push_back(listed.size());
     }
-    use_start_.assign(node_count + 1, 0);
-    for (const int node : listed) ++use_start_[node + 1];
-    for (std::size_t i = 0; i < node_count; ++i) use_start_[i + 1] += use_start_[i];
-    use_.resize(listed.size());
-    std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
-    for (std::size_t at = 0; at < listed.size(); ++at) use_[next[listed[at]]++] = static_cast<int>(stride * at);
+    uses_ = linalg::members_of(listed, static_cast<int>(node_count));
 }
 
 void NodeSums::clear(std::size_t piece, double* lists) const {
@@ -84,10 +79,11 @@ void NodeSums::add(std::size_t batch, const double* forces, double* lists) const
 }
 
 void NodeSums::gather(const double* lists, std::span<double> result) const {
-    parallel_for(use_start_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
+    parallel_for(uses_.start.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t node = begin; node < end; ++node) {
-            for (int k = use_start_[node]; k < use_start_[node + 1]; ++k) {
-                for (std::size_t i = 0; i < 3; ++i) result[3 * node + i] += lists[use_[k] + i];
+            for (int k = uses_.start[node]; k < uses_.start[node + 1]; ++k) {
+                const double* sum = lists + stride * static_cast<std::size_t>(uses_.item[k]);
+                for (std::size_t i = 0; i < 3; ++i) result[3 * node + i] += sum[i];
             }
         }
     });

@@ -241,7 +241,8 @@ private:
     }
 
     /// Starts from where the last states lead or, where that would turn a tet inside out or pass through something,
-    /// from the last state with the supports at their new place. Returns why there is no start.
+    /// from the last state with the supports at their new place; `known` is its evaluation. Returns why there is no
+    /// start.
     [[nodiscard]] std::string predict(double time, const Controls& controls, State& next, Evaluation& known) const {
         if (extrapolate(time, controls, next, known)) return {};
         next = follow_supports(state_, controls);
@@ -250,7 +251,8 @@ private:
         return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
     }
 
-    /// On from the last three states or, if that ends far from equilibrium, from the last two, whichever is nearer.
+    /// On from the last four states or, if that ends far from equilibrium, from fewer, whichever is nearest; `known` is
+    /// the evaluation of `next`. False: none is near enough.
     [[nodiscard]] bool extrapolate(double time, const Controls& controls, State& next, Evaluation& known) const {
         double least = worst_start;
         for (std::size_t count = past_.size() + 1; count >= 2 && least > good_start; --count) {

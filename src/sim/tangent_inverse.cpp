@@ -68,8 +68,10 @@ private:
     [[nodiscard]] bool factorise(const std::vector<double>& values) {
         values_ = &values;
         untried_ = is_single();
-        if (trusted_ == 0) known_error_ = std::numeric_limits<double>::infinity();
-        if (trusted_ > 0) --trusted_;
+        if (trusted_ > 0)
+            --trusted_;
+        else
+            known_error_ = std::numeric_limits<double>::infinity();
         return factor_.factorise(values);
     }
 
