@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -51,6 +52,9 @@ public:
     }
     [[nodiscard]] T* data() const {
         return values_.get();
+    }
+    [[nodiscard]] std::span<T> span() const {
+        return {data(), size_};
     }
     [[nodiscard]] T& operator[](std::size_t i) const {
         return values_[i];

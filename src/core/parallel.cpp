@@ -47,6 +47,14 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     on_all_cores(pieces, [&](std::size_t p) { body(p * grain, std::min(n, (p + 1) * grain)); });
 }
 
+void parallel_clear(std::span<double> numbers) {
+    constexpr std::size_t grain = std::size_t{1} << 16;
+    parallel_for(numbers.size(), grain, [&](std::size_t begin, std::size_t end) {
+        std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(begin),
+                  numbers.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    });
+}
+
 double parallel_sum(std::size_t n, std::size_t grain, const std::function<double(std::size_t, std::size_t)>& piece) {
     std::vector<double> sums((n + grain - 1) / grain, 0.0);
     parallel_for(n, grain, [&](std::size_t begin, std::size_t end) { sums[begin / grain] = piece(begin, end); });

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace pliant {
@@ -10,6 +11,9 @@ namespace pliant {
 /// Calls `body(begin, end)` on disjoint pieces of [0, n), each of at most `grain` items, on all cores; returns when all
 /// are done. Piece boundaries depend on n and grain only. `body` must not throw.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Sets all numbers to 0, on all cores: a large new array gets its pages by that.
+void parallel_clear(std::span<double> numbers);
 
 /// Sum of `piece(begin, end)` over the same pieces, added in order: the same bits on any number of threads.
 [[nodiscard]] double parallel_sum(std::size_t n, std::size_t grain,

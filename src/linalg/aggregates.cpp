@@ -1,9 +1,10 @@
 #include "linalg/aggregates.hpp"
 
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
+
+#include "linalg/lists.hpp"
 
 namespace pliant::linalg {
 namespace {
@@ -43,14 +44,14 @@ Aggregates take_neighbourhoods(const BlockRows& matrix) {
 
 /// Each group with the one, of those still alone, that it is coupled to most.
 Aggregates pair_up(const BlockRows& matrix, const Aggregates& groups) {
-    const Members nodes = members_of(groups.of_node, groups.count);
+    const Lists nodes = members_of(groups.of_node, groups.count);
     std::vector<int> pair(static_cast<std::size_t>(groups.count), -1), couplings(pair.size(), 0), seen;
     int count = 0;
     for (int g = 0; g < groups.count; ++g) {
         if (pair[g] >= 0) continue;
         pair[g] = count++;
-        for (int k = nodes.start[g]; k < nodes.start[g + 1]; ++k) {
-            for (const int j : neighbours(matrix, nodes.item[k])) {
+        for (const int i : nodes[static_cast<std::size_t>(g)]) {
+            for (const int j : neighbours(matrix, i)) {
                 const int h = groups.of_node[j];
                 if (pair[h] < 0 && couplings[h]++ == 0) seen.push_back(h);
             }
@@ -75,15 +76,6 @@ bool too_many(int groups, int nodes) {
 }
 
 }  // namespace
-
-Members members_of(const std::vector<int>& group_of_item, int groups) {
-    Members result{std::vector<int>(static_cast<std::size_t>(groups) + 1, 0), std::vector<int>(group_of_item.size())};
-    for (const int g : group_of_item) ++result.start[g + 1];
-    std::partial_sum(result.start.begin(), result.start.end(), result.start.begin());
-    std::vector<int> next(result.start.begin(), result.start.end() - 1);
-    for (std::size_t i = 0; i < group_of_item.size(); ++i) result.item[next[group_of_item[i]]++] = static_cast<int>(i);
-    return result;
-}
 
 Aggregates aggregate(const BlockRows& matrix) {
     Aggregates groups = take_neighbourhoods(matrix);

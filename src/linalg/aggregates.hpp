@@ -15,10 +15,4 @@ struct Aggregates {
 };
 [[nodiscard]] Aggregates aggregate(const BlockRows& matrix);
 
-/// What belongs to each group, in ascending order: item[start[g]] .. item[start[g + 1]].
-struct Members {
-    std::vector<int> start, item;
-};
-[[nodiscard]] Members members_of(const std::vector<int>& group_of_item, int groups);
-
 }  // namespace pliant::linalg

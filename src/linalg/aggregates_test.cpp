@@ -51,7 +51,7 @@ TEST_CASE("every node is in one group, every group hangs together, and there are
         const Aggregates groups = aggregate(matrix);
         CHECK(groups.count <= std::max(1.0, 8 * std::sqrt(matrix.rows())));
         CHECK(groups.count * 400 >= matrix.rows());
-        const Members members = members_of(groups.of_node, groups.count);
+        const Lists members = members_of(groups.of_node, groups.count);
         REQUIRE(members.item.size() == static_cast<std::size_t>(matrix.rows()));
         for (int g = 0; g < groups.count; ++g) {
             const std::vector<int> nodes(members.item.begin() + members.start[g],

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel.hpp"
+
 namespace pliant::linalg {
 namespace {
+
+constexpr std::size_t grain = 64;  // supernodes that one core takes at a time
 
 void find_sources(Analysis& a) {
     const Elimination& e = a.e;
@@ -25,7 +29,13 @@ void find_sources(Analysis& a) {
     a.sources.resize(pattern.node_row.size());
     std::vector<int> next(a.source_start.begin(), a.source_start.end() - 1);
     visit([&](int s, int k, int low, int high, bool transpose) {
-        a.sources[next[s]++] = {k, a.local_row(s, high), low - e.first[s], transpose};
+        a.sources[next[s]++] = {k, high, low - e.first[s], transpose};
+    });
+    parallel_for(static_cast<std::size_t>(e.supernodes()), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            for (int k = a.source_start[s]; k < a.source_start[s + 1]; ++k)
+                a.sources[k].row = a.local_row(static_cast<int>(s), a.sources[k].row);
+        }
     });
 }
 
@@ -67,8 +77,14 @@ std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern) {
     for (int s = 0; s < a.e.supernodes(); ++s) {
         const int parent = a.e.parent[s];
         if (parent >= 0) a.children[parent].push_back(s);
-        a.stretches.push_back(parent >= 0 ? stretches_of(a, s, parent) : std::vector<Stretch>());
     }
+    a.stretches.resize(a.children.size());
+    parallel_for(a.stretches.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const int parent = a.e.parent[s];
+            if (parent >= 0) a.stretches[s] = stretches_of(a, static_cast<int>(s), parent);
+        }
+    });
     find_sources(a);
     return std::make_shared<const Analysis>(std::move(a));
 }

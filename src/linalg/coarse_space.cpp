@@ -41,41 +41,34 @@ CoarseSpace::CoarseSpace(const BlockRows& matrix)
     find_pattern();
     const auto nodes = static_cast<std::size_t>(matrix.rows());
     rigid_.resize(18 * nodes);
-    prolongation_.resize(18 * group_.size());
-    product_.resize(18 * product_group_.size());
+    prolongation_.resize(18 * moving_.item.size());
+    product_.resize(18 * pulling_.item.size());
     dropped_.resize(static_cast<std::size_t>(groups_.count) * modes);
 }
 
-/// Which groups move each node once motions are smoothed, and which pull at it.
 void CoarseSpace::find_groups(const BlockRows& matrix) {
-    Seen seen(groups_.count);
-    start_.assign(1, 0);
+    // Row i: what visit(j, add) adds of each node j that i is coupled to, no group twice.
+    const auto rows = [&](const auto& visit) {
+        return make_lists(matrix.rows(), [&] {
+            return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
+                const auto begin = static_cast<std::ptrdiff_t>(row.size());
+                const auto add = [&](int group) {
+                    if (seen.is_new(group, i)) row.push_back(group);
+                };
+                for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) visit(matrix.column[k], add);
+                std::sort(row.begin() + begin, row.end());
+            };
+        });
+    };
+    moving_ = rows([&](int j, const auto& add) { add(groups_.of_node[j]); });
+    pulling_ = rows([&](int j, const auto& add) {
+        for (const int group : moving_[static_cast<std::size_t>(j)]) add(group);
+    });
+    use_start_ = members_of(moving_.item, groups_.count).start;
+    use_.resize(moving_.item.size());
+    std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
     for (int i = 0; i < matrix.rows(); ++i) {
-        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
-            const int g = groups_.of_node[matrix.column[k]];
-            if (seen.is_new(g, i)) group_.push_back(g);
-        }
-        std::sort(group_.begin() + start_.back(), group_.end());
-        start_.push_back(static_cast<int>(group_.size()));
-    }
-    Seen pulling(groups_.count);
-    product_start_.assign(1, 0);
-    for (int i = 0; i < matrix.rows(); ++i) {
-        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
-            const int j = matrix.column[k];
-            for (int e = start_[j]; e < start_[j + 1]; ++e) {
-                if (pulling.is_new(group_[e], i)) product_group_.push_back(group_[e]);
-            }
-        }
-        std::sort(product_group_.begin() + product_start_.back(), product_group_.end());
-        product_start_.push_back(static_cast<int>(product_group_.size()));
-    }
-    Members uses = members_of(group_, groups_.count);
-    use_start_ = std::move(uses.start);
-    use_.reserve(uses.item.size());
-    for (const int entry : uses.item) {
-        const auto row = std::upper_bound(start_.begin(), start_.end(), entry) - start_.begin() - 1;
-        use_.push_back({static_cast<int>(row), entry});
+        for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) use_[next[moving_.item[e]]++] = {i, e};
     }
 }
 
@@ -89,8 +82,8 @@ void CoarseSpace::find_pattern() {
         rows.clear();
         for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
             const int i = use_[u].node;
-            for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
-                const int h = product_group_[e];
+            for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
+                const int h = pulling_.item[e];
                 if (h > g && seen.is_new(h, g)) rows.push_back(h);
             }
         }
@@ -119,9 +112,9 @@ void CoarseSpace::set(const BlockRows& matrix, std::span<const double> positions
 void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
     parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
-            const RigidMotions motions(members(g), positions);
+            const RigidMotions motions(members_[g], positions);
             for (int c = 0; c < modes; ++c) dropped_[g * modes + c] = motions.dropped(c) ? 1 : 0;
-            for (const int i : members(g))
+            for (const int i : members_[g])
                 block36(rigid_, static_cast<std::size_t>(i)) = motions.at(positions, i).cast<float>();
         }
     });
@@ -133,8 +126,8 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
     parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
         for (std::size_t i = begin; i < end; ++i) {
-            for (int e = start_[i]; e < start_[i + 1]; ++e) {
-                slot[group_[e]] = e;
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
+                slot[moving_.item[e]] = e;
                 block36(prolongation_, static_cast<std::size_t>(e)).setZero();
             }
             for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
@@ -143,10 +136,10 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
                     matrix.block(k).cast<float>() * block36(rigid_, static_cast<std::size_t>(j));
             }
             const Block33 step = -damping * Eigen::Map<const Block33>(inverse_diagonal + 9 * i);
-            for (int e = start_[i]; e < start_[i + 1]; ++e) {
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
                 auto block = block36(prolongation_, static_cast<std::size_t>(e));
                 block = (step * block).eval();
-                if (group_[e] == groups_.of_node[i]) block += block36(rigid_, i);
+                if (moving_.item[e] == groups_.of_node[i]) block += block36(rigid_, i);
             }
         }
     });
@@ -162,15 +155,15 @@ void CoarseSpace::find_pulls(const BlockRows& matrix) {
     parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
         for (std::size_t i = begin; i < end; ++i) {
-            for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
-                slot[product_group_[e]] = e;
+            for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
+                slot[pulling_.item[e]] = e;
                 pull(e).setZero();
             }
             for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
                 const int j = matrix.column[k];
                 const Eigen::Matrix3d a = matrix.block(k);
-                for (int e = start_[j]; e < start_[j + 1]; ++e)
-                    pull(slot[group_[e]]).noalias() +=
+                for (int e = moving_.start[j]; e < moving_.start[j + 1]; ++e)
+                    pull(slot[moving_.item[e]]).noalias() +=
                         a * block36(prolongation_, static_cast<std::size_t>(e)).cast<double>();
             }
         }
@@ -191,9 +184,9 @@ void CoarseSpace::multiply() {
             for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
                 const Pull mine = block36(prolongation_, static_cast<std::size_t>(use_[u].entry)).cast<double>();
                 const int i = use_[u].node;
-                for (int e = product_start_[i]; e < product_start_[i + 1]; ++e) {
-                    if (product_group_[e] < static_cast<int>(g)) continue;
-                    sums[static_cast<std::size_t>(slot[product_group_[e]])].noalias() += pull(e).transpose() * mine;
+                for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
+                    if (pulling_.item[e] < static_cast<int>(g)) continue;
+                    sums[static_cast<std::size_t>(slot[pulling_.item[e]])].noalias() += pull(e).transpose() * mine;
                 }
             }
             for (int m = 0; m < modes; ++m) {
@@ -219,15 +212,10 @@ void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
     }
 }
 
-std::span<const int> CoarseSpace::members(std::size_t group) const {
-    const auto first = static_cast<std::size_t>(members_.start[group]);
-    return std::span(members_.item).subspan(first, static_cast<std::size_t>(members_.start[group + 1]) - first);
-}
-
 void CoarseSpace::turn(std::span<const double> positions) {
     parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g)
-            turns_[g] = rotation_between(members(g), positions_, positions).cast<float>();
+            turns_[g] = rotation_between(members_[g], positions_, positions).cast<float>();
     });
 }
 
@@ -241,8 +229,8 @@ void CoarseSpace::restrict(const float* fine, double* coarse) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Vector3f turned_back = turns_[static_cast<std::size_t>(groups_.of_node[i])].transpose() *
                                                 Eigen::Map<const Eigen::Vector3f>(fine + 3 * i);
-            for (int e = start_[i]; e < start_[i + 1]; ++e)
-                Eigen::Map<Eigen::Matrix<float, modes, 1>>(sums + modes * static_cast<std::size_t>(group_[e]))
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e)
+                Eigen::Map<Eigen::Matrix<float, modes, 1>>(sums + modes * static_cast<std::size_t>(moving_.item[e]))
                     .noalias() += block36(prolongation_, static_cast<std::size_t>(e)).transpose() * turned_back;
         }
     });
@@ -259,9 +247,9 @@ void CoarseSpace::add_prolonged(const double* coarse, float* fine) const {
     parallel_for(groups_.of_node.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Eigen::Vector3f motion = Eigen::Vector3f::Zero();
-            for (int e = start_[i]; e < start_[i + 1]; ++e)
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e)
                 motion.noalias() += block36(prolongation_, static_cast<std::size_t>(e)) *
-                                    Motions(coarse + modes * static_cast<std::size_t>(group_[e])).cast<float>();
+                                    Motions(coarse + modes * static_cast<std::size_t>(moving_.item[e])).cast<float>();
             Eigen::Map<Eigen::Vector3f>(fine + 3 * i).noalias() +=
                 turns_[static_cast<std::size_t>(groups_.of_node[i])] * motion;
         }

@@ -9,6 +9,7 @@
 #include "core/aligned_array.hpp"
 #include "linalg/aggregates.hpp"
 #include "linalg/block_rows.hpp"
+#include "linalg/lists.hpp"
 #include "linalg/sparse.hpp"
 
 namespace pliant::linalg {
@@ -41,7 +42,6 @@ private:
     using Pull = Eigen::Matrix<double, 3, 6>;
     void find_groups(const BlockRows& matrix);
     void find_pattern();
-    [[nodiscard]] std::span<const int> members(std::size_t group) const;
     void set_rigid_motions(std::span<const double> positions);
     void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
     void find_pulls(const BlockRows& matrix);
@@ -56,19 +56,19 @@ private:
     };
 
     Aggregates groups_;
-    Members members_;  ///< nodes of each group
+    Lists members_;  ///< nodes of each group
     // P and A P by rows of nodes, in blocks of 3 by 6, column by column.
-    std::vector<int> start_, group_;                  ///< of P
-    std::vector<int> product_start_, product_group_;  ///< of A P
-    std::vector<int> use_start_;                      ///< (groups + 1)
-    std::vector<Use> use_;                            ///< where each group appears in P
-    AlignedArray<float> rigid_;                       ///< (nodes, 18) motions of the node's own group
-    AlignedArray<float> prolongation_;                ///< (entries of P, 18)
-    AlignedArray<double> product_;                    ///< (entries of A P, 18)
-    std::vector<double> positions_;                   ///< (nodes, 3) at the last set()
-    std::vector<Eigen::Matrix3f> turns_;              ///< (groups) since then
-    std::vector<float> sums_;                         ///< work space
-    std::vector<char> dropped_;                       ///< (groups, 6) a motion that its nodes cannot do
+    Lists moving_;                        ///< groups of each row of P: they move the node once motions are smoothed
+    Lists pulling_;                       ///< groups of each row of A P: they pull at the node
+    std::vector<int> use_start_;          ///< (groups + 1)
+    std::vector<Use> use_;                ///< where each group appears in P
+    AlignedArray<float> rigid_;           ///< (nodes, 18) motions of the node's own group
+    AlignedArray<float> prolongation_;    ///< (entries of P, 18)
+    AlignedArray<double> product_;        ///< (entries of A P, 18)
+    std::vector<double> positions_;       ///< (nodes, 3) at the last set()
+    std::vector<Eigen::Matrix3f> turns_;  ///< (groups) since then
+    std::vector<float> sums_;             ///< work space
+    std::vector<char> dropped_;           ///< (groups, 6) a motion that its nodes cannot do
     SymmetricPattern pattern_;
     std::vector<double> coarse_;
 };

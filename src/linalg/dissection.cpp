@@ -20,9 +20,10 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-constexpr int leaf = 64;             // nodes that are not cut any more
-constexpr int worth_sharing = 4096;  // nodes whose two parts go to two cores
-constexpr double least_side = 0.1;   // of the nodes
+constexpr int leaf = 64;                       // nodes that are not cut any more
+constexpr int worth_sharing = 4096;            // nodes whose two parts go to two cores
+constexpr double least_side = 0.1;             // of the nodes
+constexpr std::size_t counted_at_once = 4096;  // nodes, by one core
 constexpr int buckets = 256;
 constexpr std::size_t planes = 6;       // directions in which a piece is cut
 constexpr std::size_t levels = planes;  // the field after them: distances along edges
@@ -143,22 +144,25 @@ private:
             if (part[i] >= parts) separator.push_back(piece.node[i]);
         }
         place(separator, first + piece.size() - static_cast<int>(separator.size()));
-        order_each(std::move(pieces), first, piece.size() >= worth_sharing);
+        order_each(std::move(pieces), first, piece.size());
     }
 
-    void order_each(std::vector<Piece> pieces, int first, bool share) {
+    void order_each(std::vector<Piece> pieces, int first, int nodes) {
         std::vector<int> firsts;
         for (const Piece& piece : pieces) {
             firsts.push_back(first);
             first += piece.size();
         }
-        const auto order_some = [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) order(std::move(pieces[k]), firsts[k]);
-        };
-        if (share)
-            parallel_for(pieces.size(), 1, order_some);
-        else
-            order_some(0, pieces.size());
+        for_parts(pieces.size(), nodes, [&](std::size_t k) { order(std::move(pieces[k]), firsts[k]); });
+    }
+
+    /// Calls body(k) for each part of something of so many nodes, at once if that is worth it.
+    template <class Body>
+    static void for_parts(std::size_t parts, int nodes, const Body& body) {
+        parallel_for(parts, nodes >= worth_sharing ? 1 : std::max<std::size_t>(parts, 1),
+                     [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t k = begin; k < end; ++k) body(k);
+                     });
     }
 
     void place(const std::vector<int>& nodes, int first) {
@@ -209,35 +213,25 @@ private:
     /// The first `parts` parts of a piece; other nodes and edges between parts are left out.
     static std::vector<Piece> divide(const Piece& piece, const std::vector<int>& part, int parts) {
         std::vector<Piece> result(static_cast<std::size_t>(parts));
-        std::vector<std::size_t> nodes(result.size()), edges(result.size());
-        for (int i = 0; i < piece.size(); ++i) {
-            if (part[i] >= parts) continue;
-            ++nodes[part[i]];
-            edges[part[i]] += static_cast<std::size_t>(piece.graph.degree(i));
-        }
-        for (std::size_t p = 0; p < result.size(); ++p) {
-            result[p].node.reserve(nodes[p]);
-            result[p].point.reserve(nodes[p]);
-            result[p].graph.start.reserve(nodes[p] + 1);
-            result[p].graph.start.push_back(0);
-            result[p].graph.other.reserve(edges[p]);
-        }
         std::vector<int> index(part.size());
+        std::vector<std::vector<int>> members(result.size());
         for (int i = 0; i < piece.size(); ++i) {
             if (part[i] >= parts) continue;
-            Piece& own = result[part[i]];
-            index[i] = own.size();
-            own.node.push_back(piece.node[i]);
-            own.point.push_back(piece.point[i]);
+            index[i] = static_cast<int>(members[part[i]].size());
+            members[part[i]].push_back(i);
         }
-        for (int i = 0; i < piece.size(); ++i) {
-            if (part[i] >= parts) continue;
-            Graph& own = result[part[i]].graph;
-            for (int k = piece.graph.start[i]; k < piece.graph.start[i + 1]; ++k) {
-                if (part[piece.graph.other[k]] == part[i]) own.other.push_back(index[piece.graph.other[k]]);
+        for_parts(result.size(), piece.size(), [&](std::size_t p) {
+            Piece& own = result[p];
+            own.graph.start.push_back(0);
+            for (const int i : members[p]) {
+                own.node.push_back(piece.node[i]);
+                own.point.push_back(piece.point[i]);
+                for (int k = piece.graph.start[i]; k < piece.graph.start[i + 1]; ++k) {
+                    if (part[piece.graph.other[k]] == part[i]) own.graph.other.push_back(index[piece.graph.other[k]]);
+                }
+                own.graph.start.push_back(static_cast<int>(own.graph.other.size()));
             }
-            own.start.push_back(static_cast<int>(own.other.size()));
-        }
+        });
         return result;
     }
 
@@ -307,11 +301,31 @@ private:
     /// node is next to the other side (added up over buckets).
     struct Counts {
         std::array<int, buckets> nodes{}, rim{}, left{}, right{};
+        void add(const Counts& other) {
+            for (const auto part : {&Counts::nodes, &Counts::rim, &Counts::left, &Counts::right}) {
+                for (std::size_t k = 0; k < buckets; ++k) (this->*part)[k] += (other.*part)[k];
+            }
+        }
     };
 
     [[nodiscard]] Cut best_cut(const Piece& piece, const std::vector<Heights>& heights) const {
-        std::vector<Counts> counts(fields);
-        for (int i = 0; i < piece.size(); ++i) {
+        using AllCounts = std::array<Counts, fields>;
+        std::vector<AllCounts> parts((heights.size() + counted_at_once - 1) / counted_at_once);
+        parallel_for(heights.size(), counted_at_once, [&](std::size_t begin, std::size_t end) {
+            count(piece, heights, begin, end, parts[begin / counted_at_once]);
+        });
+        for (std::size_t p = 1; p < parts.size(); ++p) {
+            for (std::size_t f = 0; f < fields; ++f) parts[0][f].add(parts[p][f]);
+        }
+        Cut best;
+        for (std::size_t f = 0; f < fields; ++f) consider(parts[0][f], piece.size(), f, best);
+        return best;
+    }
+
+    /// Nodes `begin` to `end` of a piece.
+    void count(const Piece& piece, const std::vector<Heights>& heights, std::size_t begin, std::size_t end,
+               std::array<Counts, fields>& counts) const {
+        for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
             const Heights own = heights[i];
             Heights lowest = own;
             Heights highest = own;
@@ -331,9 +345,6 @@ private:
                 --c.right[own[f]];
             }
         }
-        Cut best;
-        for (std::size_t f = 0; f < fields; ++f) consider(counts[f], piece.size(), f, best);
-        return best;
     }
 
     void consider(const Counts& counts, int nodes, std::size_t field, Cut& best) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "linalg/dissection.hpp"
@@ -76,19 +77,64 @@ std::vector<int> post_order(const std::vector<int>& parent) {
     return order;
 }
 
-/// Entries of each column of the factor, without the diagonal: row i reaches up the tree from each of its entries.
-std::vector<int> column_counts(const Graph& upper, const std::vector<int>& parent) {
-    const int n = static_cast<int>(parent.size());
-    std::vector<int> count(n, 0);
-    std::vector<int> seen(n, -1);
-    for (int i = 0; i < n; ++i) {
-        seen[i] = i;
-        for (int k = upper.start[i]; k < upper.start[i + 1]; ++k) {
-            for (int j = upper.other[k]; seen[j] != i; j = parent[j]) {
-                seen[j] = i;
-                ++count[j];
-            }
+/// The rows i > j of each column j.
+Graph transposed(const Graph& upper) {
+    return graph_of(upper.nodes(), [&](const auto& use) {
+        for (int i = 0; i < upper.nodes(); ++i) {
+            for (int k = upper.start[i]; k < upper.start[i + 1]; ++k) use(upper.other[k], i);
         }
+    });
+}
+
+/// The smallest descendant of each column, itself if it has none. Precondition: children come before parents.
+std::vector<int> first_descendants(const std::vector<int>& parent) {
+    std::vector<int> first(parent.size());
+    std::iota(first.begin(), first.end(), 0);
+    for (std::size_t j = 0; j < parent.size(); ++j) {
+        if (parent[j] >= 0) first[parent[j]] = std::min(first[parent[j]], first[j]);
+    }
+    return first;
+}
+
+/// Of each column, the lowest one above it that is not closed yet: where the way up meets that of the column at hand.
+class OpenAncestors {
+public:
+    explicit OpenAncestors(std::size_t columns) : up_(columns) { std::iota(up_.begin(), up_.end(), 0); }
+    void close(int column, int parent) { up_[column] = parent; }
+    /// Later asking is shortened.
+    [[nodiscard]] int lowest(int column) {
+        int top = column;
+        while (up_[top] != top) top = up_[top];
+        while (column != top) column = std::exchange(up_[column], top);
+        return top;
+    }
+
+private:
+    std::vector<int> up_;
+};
+
+/// Entries of each column of the factor, without the diagonal (Gilbert, Ng and Peyton 1994). Row i fills the part of
+/// the tree that leads up to i from the columns in which it has an entry: 1 more from each of its leaves on, 1 less
+/// where two ways meet, and nothing from i on. Precondition: descendants directly precede each column.
+std::vector<int> column_counts(const Graph& upper, const std::vector<int>& parent) {
+    const Graph lower = transposed(upper);
+    const std::vector<int> first = first_descendants(parent);
+    std::vector<int> count(parent.size(), 0);  // at first, what each column has more than its children together
+    std::vector<int> last_leaf(parent.size(), -1);
+    OpenAncestors ancestors(parent.size());
+    for (int j = 0; j < lower.nodes(); ++j) {
+        for (int k = lower.start[j]; k < lower.start[j + 1]; ++k) {
+            int& leaf = last_leaf[lower.other[k]];
+            if (leaf >= first[j]) continue;  // that one leads up to j
+            const int before = std::exchange(leaf, j);
+            ++count[j];
+            if (before >= 0) --count[ancestors.lowest(before)];
+        }
+        if (upper.degree(j) > 0) --count[j];
+        if (parent[j] >= 0) ancestors.close(j, parent[j]);
+    }
+    for (std::size_t j = 0; j < parent.size(); ++j) {
+        if (parent[j] >= 0) count[parent[j]] += count[j];
     }
     return count;
 }

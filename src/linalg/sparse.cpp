@@ -58,29 +58,31 @@ bool SymmetricPattern::holds(int i, int j) const {
     return std::binary_search(node_row.begin() + node_start[j], node_row.begin() + node_start[j + 1], i);
 }
 
-SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vector<int>>& cliques) {
+SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques) {
     const Graph member_of = graph_of(nodes, [&](const auto& use) {
-        for (int c = 0; c < static_cast<int>(cliques.size()); ++c) {
-            for (const int node : cliques[c]) {
+        for (int c = 0; c < cliques.count(); ++c) {
+            for (const int node : cliques[static_cast<std::size_t>(c)]) {
                 if (node >= 0) use(node, c);
             }
         }
     });
+    Lists rows = make_lists(nodes, [&] {
+        return [&, seen = std::vector<int>(static_cast<std::size_t>(nodes), -1)](int j, std::vector<int>& row) mutable {
+            const auto begin = static_cast<std::ptrdiff_t>(row.size());
+            row.push_back(j);
+            for (int k = member_of.start[j]; k < member_of.start[j + 1]; ++k) {
+                for (const int i : cliques[static_cast<std::size_t>(member_of.other[k])]) {
+                    if (i > j && std::exchange(seen[i], j) != j) row.push_back(i);
+                }
+            }
+            std::sort(row.begin() + begin, row.end());
+        };
+    });
     SymmetricPattern pattern;
     pattern.block = block;
     pattern.nodes = nodes;
-    pattern.node_start.assign(1, 0);
-    std::vector<int> seen(static_cast<std::size_t>(nodes), -1);
-    for (int j = 0; j < nodes; ++j) {
-        pattern.node_row.push_back(j);
-        for (int k = member_of.start[j]; k < member_of.start[j + 1]; ++k) {
-            for (const int i : cliques[member_of.other[k]]) {
-                if (i > j && std::exchange(seen[i], j) != j) pattern.node_row.push_back(i);
-            }
-        }
-        std::sort(pattern.node_row.begin() + pattern.node_start[j], pattern.node_row.end());
-        pattern.node_start.push_back(static_cast<int>(pattern.node_row.size()));
-    }
+    pattern.node_start = std::move(rows.start);
+    pattern.node_row = std::move(rows.item);
     return pattern;
 }
 

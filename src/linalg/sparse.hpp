@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "linalg/lists.hpp"
+
 namespace pliant::linalg {
 
 /// Lower triangle of blocks, compressed by columns of nodes. Unknown u of node i has index i * block + u. Of a matrix,
@@ -40,7 +42,7 @@ struct SymmetricPattern {
 
 /// The pattern that couples the nodes of each clique (an element, the guide points of a cable). Clique entries below 0
 /// are left out; every diagonal is present.
-[[nodiscard]] SymmetricPattern make_pattern(int nodes, int block, const std::vector<std::vector<int>>& cliques);
+[[nodiscard]] SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques);
 
 /// result (size) += factor * matrix * v (size).
 void add_product(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> v,

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
 #include <unordered_map>
+
+#include "core/parallel.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -32,37 +37,63 @@ Face face_of(const TetMesh& mesh, std::size_t t, int f) {
     return face;
 }
 
+/// A face in the list of its smallest corner: the other two, ascending, and 4 times its tet plus its slot.
+struct Listed {
+    int middle, largest;
+    std::uint32_t face;
+    [[nodiscard]] bool is_on_same(const Listed& other) const {
+        return middle == other.middle && largest == other.largest;
+    }
+};
+
+/// Faces of the tets for which `member` holds, those with the same smallest corner one after the other: `start`
+/// (points + 1) says where each list begins.
+template <class Member>
+std::vector<Listed> by_smallest_corner(const TetMesh& mesh, const Member& member, std::vector<std::size_t>& start) {
+    const auto visit = [&](const auto& use) {
+        for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+            if (!member(t)) continue;
+            const auto tet = mesh.tet(t);
+            for (std::size_t f = 0; f < 4; ++f) {
+                const auto& c = face_corners[f];
+                const auto [a, b, d] = sorted({tet[c[0]], tet[c[1]], tet[c[2]]});
+                use(static_cast<std::size_t>(a), Listed{b, d, static_cast<std::uint32_t>(4 * t + f)});
+            }
+        }
+    };
+    start.assign(mesh.points.size() + 1, 0);
+    visit([&](std::size_t corner, const Listed&) { ++start[corner + 1]; });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Listed> faces(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    visit([&](std::size_t corner, const Listed& face) { faces[next[corner]++] = face; });
+    return faces;
+}
+
 /// Faces that one tet has alone among the tets for which `member` holds.
 template <class Member>
 std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
-    struct Key {
-        std::array<int, 3> corners;
-        std::size_t tet;
-        int face;
-    };
-    std::vector<Key> keys;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        if (!member(t)) continue;
-        for (int f = 0; f < 4; ++f) {
-            const auto& c = face_corners[static_cast<std::size_t>(f)];
-            const auto tet = mesh.tet(t);
-            keys.push_back({sorted({tet[c[0]], tet[c[1]], tet[c[2]]}), t, f});
+    constexpr std::size_t corners_at_once = 1024;
+    std::vector<std::size_t> start;
+    std::vector<Listed> listed = by_smallest_corner(mesh, member, start);
+    std::vector<char> single(4 * mesh.tet_count(), 0);
+    parallel_for(mesh.points.size(), corners_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t corner = begin; corner < end; ++corner) {
+            const auto list = std::span(listed).subspan(start[corner], start[corner + 1] - start[corner]);
+            std::sort(list.begin(), list.end(), [](const Listed& a, const Listed& b) {
+                return std::tie(a.middle, a.largest) < std::tie(b.middle, b.largest);
+            });
+            for (std::size_t k = 0; k < list.size(); ++k) {
+                const bool alone = (k == 0 || !list[k].is_on_same(list[k - 1])) &&
+                                   (k + 1 == list.size() || !list[k].is_on_same(list[k + 1]));
+                single[list[k].face] = alone ? 1 : 0;
+            }
         }
-    }
-    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-        return std::tie(a.corners, a.tet, a.face) < std::tie(b.corners, b.tet, b.face);
     });
-    std::vector<std::pair<std::size_t, int>> single;
-    for (std::size_t i = 0; i < keys.size();) {
-        std::size_t j = i + 1;
-        while (j < keys.size() && keys[j].corners == keys[i].corners) ++j;
-        if (j == i + 1) single.emplace_back(keys[i].tet, keys[i].face);
-        i = j;
-    }
-    std::sort(single.begin(), single.end());
     std::vector<Face> faces;
-    faces.reserve(single.size());
-    for (const auto& [t, f] : single) faces.push_back(face_of(mesh, t, f));
+    for (std::size_t k = 0; k < single.size(); ++k) {
+        if (single[k] != 0) faces.push_back(face_of(mesh, k / 4, static_cast<int>(k % 4)));
+    }
     return faces;
 }
 

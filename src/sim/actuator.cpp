@@ -37,7 +37,7 @@ void Actuator::apply_skew(std::span<const double> x, double factor, std::span<co
     if (const auto* wall = std::get_if<ChamberSurface>(&geometry_)) wall->apply_skew(x, factor, v, result);
 }
 
-void Actuator::append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+void Actuator::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     std::visit([&](const auto& geometry) { geometry.append_cliques(free_index, cliques); }, geometry_);
 }
 

@@ -35,7 +35,7 @@ public:
     /// has one, its force is not the gradient of g.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
-    void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
+    void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
     [[nodiscard]] const CablePath& cable() const { return std::get<CablePath>(geometry_); }
 

@@ -116,11 +116,11 @@ void CablePath::add_hessian(std::span<const double> x, double factor, const std:
     }
 }
 
-void CablePath::append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+void CablePath::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     for (const Segment& segment : segments_) {
         std::vector<int> clique;
         for (const int node : segment.nodes) clique.push_back(free_index[node]);
-        cliques.push_back(std::move(clique));
+        cliques.push_back(clique);
     }
 }
 

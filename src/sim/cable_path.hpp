@@ -38,7 +38,7 @@ public:
                                                      bool pulled_at_first) const;
     /// The first segment whose ends have met (its index from 0), or -1.
     [[nodiscard]] int closed_segment(std::span<const double> x) const;
-    void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
+    void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
 private:
     struct Segment {

@@ -217,7 +217,7 @@ void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::s
     spread(on_points, result);
 }
 
-void ChamberSurface::append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+void ChamberSurface::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     for (const WallFace& face : wall_.faces) {
         std::vector<int> clique;
         for (std::size_t i = 0; i < points_of(face); ++i) {
@@ -226,7 +226,7 @@ void ChamberSurface::append_cliques(const std::vector<int>& free_index, std::vec
         }
         std::sort(clique.begin(), clique.end());
         clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
-        cliques.push_back(std::move(clique));
+        cliques.push_back(clique);
     }
 }
 

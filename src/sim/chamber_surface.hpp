@@ -35,7 +35,7 @@ public:
     /// result (3n) += factor * (what the second gradient lacks where it is made symmetric) * v; zero for closed walls.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
-    void append_cliques(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
+    void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
 private:
     [[nodiscard]] std::vector<Vec3> points_at(std::span<const double> x) const;

@@ -50,7 +50,7 @@ std::vector<double> hessian_times(const ChamberSurface& wall, const std::vector<
                                   const std::vector<double>& direction) {
     std::vector<int> free_index(x.size() / 3);
     std::iota(free_index.begin(), free_index.end(), 0);
-    std::vector<std::vector<int>> cliques;
+    linalg::Lists cliques;
     wall.append_cliques(free_index, cliques);
     const auto pattern = linalg::make_pattern(static_cast<int>(free_index.size()), 3, cliques);
     std::vector<double> hessian(pattern.entries(), 0.0);

@@ -35,7 +35,7 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     linalg::SymmetricPattern scalar = layout->pattern;
     scalar.block = 1;
     std::vector<double> values(scalar.entries(), 0.0);
-    model.elements().add_laplacian(layout->element_slots, values);
+    model.elements().add_laplacian(layout->element_sums, values);
     state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar)});
     // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/aligned_array.hpp"
+#include "core/parallel.hpp"
 #include "linalg/gmres.hpp"
 #include "sim/body_turn.hpp"
 #include "sim/curvature.hpp"
@@ -160,7 +162,7 @@ private:
         positions_ = system_->restrict_to_free(at_.state->x);
         assemble(false, values_);
         share_ = 0;
-        if (!cautious && (usable_ = inverse_->set(values_, positions_, Effort::usual))) {
+        if (!cautious && (usable_ = inverse_->set(values_.span(), positions_, Effort::usual))) {
             share_wanted_ = smallest_share_of_projection;
             return true;
         }
@@ -175,7 +177,8 @@ private:
             for (std::size_t k = 0; k < values_.size(); ++k)
                 blended_[k] = values_[k] + share * (projected_[k] - values_[k]);
             share_ = share_wanted_ = share;
-            if ((usable_ = inverse_->set(blended_, positions_, share < 1 ? Effort::little : Effort::all))) return true;
+            if ((usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all)))
+                return true;
         }
         return false;
     }
@@ -220,9 +223,10 @@ private:
         return true;
     }
 
-    void assemble(bool project, std::vector<double>& values) const {
-        values.assign(layout_->pattern.entries(), 0.0);
-        system_->add_tangent(*at_.state, *at_.controls, *layout_, values, project);
+    void assemble(bool project, AlignedArray<double>& values) const {
+        values.resize(layout_->pattern.entries());
+        parallel_clear(values.span());
+        system_->add_tangent(*at_.state, *at_.controls, *layout_, values.span(), project);
     }
 
     static constexpr double smallest_share_of_projection = 1.0 / 16;
@@ -241,9 +245,9 @@ private:
     std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, once it was needed
     bool two_levels_;                                   ///< as long as they are quick enough
     std::unique_ptr<TangentInverse> inverse_;
-    std::vector<double> values_;     ///< tangent
-    std::vector<double> projected_;  ///< its positive projection, where it was needed
-    std::vector<double> blended_;
+    AlignedArray<double> values_;     ///< tangent
+    AlignedArray<double> projected_;  ///< its positive projection, where it was needed
+    AlignedArray<double> blended_;
     double share_ = 0;                                    ///< of the projection in H
     double share_wanted_ = smallest_share_of_projection;  ///< when it was needed last
     struct {

@@ -76,7 +76,7 @@ TEST_CASE("energy of eight tets at a time is that of the laws; forces and stiffn
         for (std::size_t i = 0; i < all_free.size(); ++i) all_free[i] = static_cast<int>(i);
         const auto pattern = linalg::make_pattern(model->node_count(), 3, elements.cliques(all_free));
         std::vector<double> stiffness(pattern.entries(), 0.0);
-        elements.add_tangent(x, elements.stiffness_slots(all_free, pattern), stiffness, false);
+        elements.add_tangent(x, elements.block_sums(all_free, pattern), stiffness, false);
         std::vector<double> product(x.size(), 0.0);
         linalg::add_product(pattern, stiffness, direction, 1, product);
         double largest = 0, wrong = 0;
@@ -112,7 +112,7 @@ TEST_CASE("projected stiffness of eight tets at a time is that of the laws, each
         for (std::size_t i = 0; i < all_free.size(); ++i) all_free[i] = static_cast<int>(i);
         const auto pattern = linalg::make_pattern(model->node_count(), 3, elements.cliques(all_free));
         std::vector<double> stiffness(pattern.entries(), 0.0);
-        elements.add_tangent(x, elements.stiffness_slots(all_free, pattern), stiffness, true);
+        elements.add_tangent(x, elements.block_sums(all_free, pattern), stiffness, true);
         for (int k = 0; k < 6; ++k) {
             std::vector<double> v(x.size()), w(x.size()), product(x.size(), 0.0);
             for (std::size_t i = 0; i < x.size(); ++i) {

@@ -13,19 +13,12 @@ using linalg::Matrix3;
 using linalg::Matrix9;
 using linalg::Vector3;
 
-/// Batches bound the memory of the blocks, and keep them in the cache until they are added.
-constexpr std::size_t batches_at_once = 64;
-constexpr std::size_t batches_per_piece = 4;
 constexpr std::size_t places_per_piece = 1024;
-
-/// A slot says which block of the pattern, and whether it is the transposed one of the pair; held nodes have none.
-constexpr int no_slot = -1;
 
 }  // namespace
 
-std::vector<int> Elements::stiffness_slots(const std::vector<int>& free_index,
-                                           const linalg::SymmetricPattern& pattern) const {
-    std::vector<int> slots(batches() * pairs() * lanes, no_slot);
+BlockSums Elements::block_sums(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern) const {
+    std::vector<int> slots(batches() * pairs() * lanes, BlockSums::no_slot);
     parallel_for(tet_.size(), places_per_piece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place) {
             if (tet_[place] == no_tet) continue;
@@ -41,7 +34,7 @@ std::vector<int> Elements::stiffness_slots(const std::vector<int>& free_index,
             }
         }
     });
-    return slots;
+    return {std::move(slots), batches(), pattern.node_row.size()};
 }
 
 void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
@@ -70,45 +63,19 @@ void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, 
     }
 }
 
-void Elements::add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
-                          std::span<double> values) const {
-    const int* slot = slots.data() + batch * pairs() * lanes;
-    for (std::size_t pair = 0; pair < pairs(); ++pair, blocks += 9 * lanes, slot += lanes) {
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            if (slot[lane] == no_slot) continue;
-            double* to = values.data() + static_cast<std::size_t>(slot[lane] / 2) * 9;
-            const double* from = blocks + lane;
-            if (slot[lane] % 2 == 0) {
-                for (std::size_t k = 0; k < 9; ++k) to[k] += from[k * lanes];
-            } else {
-                for (std::size_t k = 0; k < 9; ++k) to[k] += from[(k % 3 * 3 + k / 3) * lanes];
-            }
-        }
-    }
-}
-
-void Elements::add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values,
-                           bool project, std::span<const material::Law> laws) const {
-    const std::size_t size = pairs() * 9 * lanes;
-    const auto blocks = scratch_.lend(std::min(batches_at_once, batches()) * size);
-    for (std::size_t first = 0; first < batches(); first += batches_at_once) {
-        const std::size_t count = std::min(batches_at_once, batches() - first);
-        parallel_for(count, batches_per_piece, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const material::Law& law = law_among(laws, first + k);
-                const auto form = material::invariant_form(law);
-                double* to = blocks.data() + k * size;
-                if (form && project)
-                    batch_projected_tangent(batch(first + k), *form, x.data(), to);
-                else if (form)
-                    batch_tangent(batch(first + k), *form, x.data(), to);
-                else
-                    tangent_one_by_one(first + k, x, law, project, to);
-            }
-        });
-        // In order, so that the sums are the same on any number of threads.
-        for (std::size_t k = 0; k < count; ++k) add_blocks(first + k, blocks.data() + k * size, slots, values);
-    }
+void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project,
+                           std::span<const material::Law> laws) const {
+    const auto fill = [&](std::size_t b, double* blocks) {
+        const material::Law& law = law_among(laws, b);
+        const auto form = material::invariant_form(law);
+        if (form && project)
+            batch_projected_tangent(batch(b), *form, x.data(), blocks);
+        else if (form)
+            batch_tangent(batch(b), *form, x.data(), blocks);
+        else
+            tangent_one_by_one(b, x, law, project, blocks);
+    };
+    sums.add(fill, 9, values, scratch_);
 }
 
 }  // namespace pliant::sim

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "mesh/order_in_space.hpp"
 #include "sim/model.hpp"
 
 namespace pliant::sim {
@@ -17,6 +18,7 @@ using linalg::Matrix9;
 using linalg::Vector3;
 
 constexpr std::size_t batches_per_piece = 32;
+constexpr std::size_t tets_per_piece = 1024;
 constexpr double gauss_a = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
 constexpr double gauss_b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
 
@@ -35,9 +37,10 @@ std::vector<Barycentric> integration_points(int order) {
 }
 
 /// d N_a / d b_k for the barycentric coordinates b, (nodes, 4).
-Eigen::Matrix<double, Eigen::Dynamic, 4> shape_gradients(int order, const Barycentric& b) {
-    Eigen::Matrix<double, Eigen::Dynamic, 4> gradients(order == 1 ? 4 : 10, 4);
-    gradients.setZero();
+using ShapeGradients = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, 10, 4>;
+
+ShapeGradients shape_gradients(int order, const Barycentric& b) {
+    ShapeGradients gradients = ShapeGradients::Zero(order == 1 ? 4 : 10, 4);
     for (int i = 0; i < 4; ++i) gradients(i, i) = order == 1 ? 1 : 4 * b[i] - 1;
     if (order == 1) return gradients;
     for (int e = 0; e < 6; ++e) {
@@ -46,6 +49,26 @@ Eigen::Matrix<double, Eigen::Dynamic, 4> shape_gradients(int order, const Baryce
         gradients(4 + e, q) = 4 * b[p];
     }
     return gradients;
+}
+
+/// d X / d (b1, b2, b3) with b0 = 1 - b1 - b2 - b3.
+Matrix3 jacobian_of(const mesh::TetMesh& mesh, std::size_t tet, const ShapeGradients& dN) {
+    const auto nodes = mesh.tet(tet);
+    Eigen::Matrix<double, 3, 4> dX = Eigen::Matrix<double, 3, 4>::Zero();
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+        const Vec3& X = mesh.points[nodes[a]];
+        dX += Vector3(X.x, X.y, X.z) * dN.row(static_cast<Eigen::Index>(a));
+    }
+    return dX.rightCols<3>().colwise() - dX.col(0);
+}
+
+/// grad N_a = J^-T d N_a / d (b1, b2, b3), a number every `batch_lanes`.
+void put_gradients(const ShapeGradients& dN, const Matrix3& jacobian, double* gradients) {
+    const Matrix3 inverse = jacobian.inverse().transpose();
+    for (Eigen::Index a = 0; a < dN.rows(); ++a) {
+        const Vector3 gradient = inverse * (dN.row(a).tail<3>().array() - dN(a, 0)).matrix().transpose();
+        for (int k = 0; k < 3; ++k, gradients += batch_lanes) *gradients = gradient[k];
+    }
 }
 
 /// Integral of N_a N_b over a straight tet, as a share of its volume (Zienkiewicz and Taylor, The Finite Element
@@ -73,17 +96,13 @@ std::vector<std::optional<material::InvariantForm>> forms_of(std::span<const mat
     return forms;
 }
 
-/// values at the slots += weight * (gradient a . gradient b), lane by lane.
-void add_products(const double* a, const double* b, const std::array<double, batch_lanes>& weight, const int* slot,
-                  std::span<double> values) {
+/// result (lanes) += stiffness * volume * (gradient a . gradient b).
+void add_products(const double* a, const double* b, double stiffness, const double* volume, double* result) {
     constexpr std::size_t lanes = batch_lanes;
-    std::array<double, lanes> entry;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-        entry[lane] = weight[lane] * (a[lane] * b[lane] + a[lanes + lane] * b[lanes + lane] +
-                                      a[2 * lanes + lane] * b[2 * lanes + lane]);
-    }
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if (slot[lane] >= 0) values[static_cast<std::size_t>(slot[lane] / 2)] += entry[lane];
+        result[lane] +=
+            stiffness * volume[lane] *
+            (a[lane] * b[lane] + a[lanes + lane] * b[lanes + lane] + a[2 * lanes + lane] * b[2 * lanes + lane]);
     }
 }
 
@@ -94,7 +113,6 @@ Result<Elements> Elements::create(const Description& description) {
     Elements elements;
     elements.nodes_per_tet_ = mesh.nodes_per_tet();
     elements.points_per_tet_ = mesh.order == 1 ? 1 : 4;
-    elements.node_mass_.assign(mesh.points.size(), 0.0);
     for (const Material& material : description.materials) {
         elements.laws_.push_back(material.law);
         elements.has_energy_ = elements.has_energy_ && material::has_energy(material.law);
@@ -103,28 +121,35 @@ Result<Elements> Elements::create(const Description& description) {
     if (elements.law_.empty()) {
         for (const int region : mesh.region) elements.law_.push_back(description.material_of_region[region]);
     }
-    elements.group_by_law();
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        if (Status status = elements.integrate_tet(description, t); !status) return tl::unexpected(status.error());
-    }
+    elements.group_by_law(mesh);
+    if (Status status = elements.integrate(mesh); !status) return tl::unexpected(status.error());
+    elements.weigh(description);
     elements.fill_empty_lanes();
     elements.sums_ = NodeSums({elements.nodes_.data(), elements.nodes_.size()}, elements.width(), mesh.points.size());
     return elements;
 }
 
-/// Tets keep their order within each law, so that neighbours in the file remain neighbours in memory.
-void Elements::group_by_law() {
-    std::vector<std::vector<std::size_t>> groups(laws_.size());
-    for (std::size_t t = 0; t < law_.size(); ++t) groups[static_cast<std::size_t>(law_[t])].push_back(t);
+/// Within each law, neighbours in space are neighbours in memory: what tets of a batch, a piece or a run have in common
+/// is many nodes, whatever order the file has them in.
+void Elements::group_by_law(const mesh::TetMesh& mesh) {
+    std::vector<Vec3> centre(law_.size());
+    std::vector<std::vector<int>> groups(laws_.size());
+    for (std::size_t t = 0; t < law_.size(); ++t) {
+        for (const int node : mesh.tet(t).first(4)) centre[t] += 0.25 * mesh.points[node];
+        groups[static_cast<std::size_t>(law_[t])].push_back(static_cast<int>(t));
+    }
+    const double layer = mesh::layer_of(mesh);
     place_.resize(law_.size());
     for (std::size_t law = 0; law < groups.size(); ++law) {
+        mesh::order_in_space(groups[law], centre, layer);
         for (std::size_t k = 0; k < groups[law].size(); ++k) {
+            const auto tet = static_cast<std::size_t>(groups[law][k]);
             if (k % lanes == 0) {
                 batch_law_.push_back(static_cast<int>(law));
                 tet_.resize(tet_.size() + lanes, no_tet);
             }
-            place_[groups[law][k]] = (batch_law_.size() - 1) * lanes + k % lanes;
-            tet_[place_[groups[law][k]]] = groups[law][k];
+            place_[tet] = (batch_law_.size() - 1) * lanes + k % lanes;
+            tet_[place_[tet]] = tet;
         }
     }
     nodes_.resize(batches() * width() * lanes);
@@ -132,45 +157,51 @@ void Elements::group_by_law() {
     volume_.resize(batches() * points() * lanes);
 }
 
-Status Elements::integrate_tet(const Description& description, std::size_t tet) {
-    const mesh::TetMesh& mesh = description.mesh;
-    const auto nodes = mesh.tet(tet);
-    const double density = description.materials[law_[tet]].density_kg_m3;
-    const auto integration = integration_points(mesh.order);
-    const std::size_t batch = place_[tet] / lanes;
-    const std::size_t lane = place_[tet] % lanes;
-    for (std::size_t a = 0; a < width(); ++a) nodes_[(batch * width() + a) * lanes + lane] = nodes[a];
-    tet_mass_.push_back(0);
-    for (std::size_t q = 0; q < integration.size(); ++q) {
-        const Barycentric& b = integration[q];
-        const auto dN = shape_gradients(mesh.order, b);
-        Eigen::Matrix<double, 3, 4> dX = Eigen::Matrix<double, 3, 4>::Zero();
-        for (int a = 0; a < nodes_per_tet_; ++a) {
-            const Vec3& X = mesh.points[nodes[a]];
-            dX += Vector3(X.x, X.y, X.z) * dN.row(a);
+/// Nodes, gradients and volumes. An error names the first tet that is flat.
+Status Elements::integrate(const mesh::TetMesh& mesh) {
+    std::vector<ShapeGradients> shapes;
+    for (const Barycentric& b : integration_points(mesh.order)) shapes.push_back(shape_gradients(mesh.order, b));
+    std::vector<std::size_t> flat((mesh.tet_count() + tets_per_piece - 1) / tets_per_piece, no_tet);
+    parallel_for(mesh.tet_count(), tets_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            for (std::size_t a = 0; a < width(); ++a)
+                nodes_[(place_[t] / lanes * width() + a) * lanes + place_[t] % lanes] = mesh.tet(t)[a];
+            for (std::size_t q = 0; q < points(); ++q) {
+                const Matrix3 jacobian = jacobian_of(mesh, t, shapes[q]);
+                const double determinant = jacobian.determinant();
+                if (!(determinant > 0)) flat[begin / tets_per_piece] = std::min(t, flat[begin / tets_per_piece]);
+                const std::size_t point = place_[t] / lanes * points() + q, lane = place_[t] % lanes;
+                volume_[point * lanes + lane] = determinant / 6 / static_cast<double>(points());
+                put_gradients(shapes[q], jacobian, gradient_.data() + point * width() * 3 * lanes + lane);
+            }
         }
-        Matrix3 jacobian;  // d X / d (b1, b2, b3) with b0 = 1 - b1 - b2 - b3
-        for (int k = 0; k < 3; ++k) jacobian.col(k) = dX.col(k + 1) - dX.col(0);
-        const double determinant = jacobian.determinant();
-        if (!(determinant > 0)) {
-            return input_error("tetrahedron {} of the mesh is flat or inside out at rest (volume {:.3g} m^3)", tet,
-                               determinant / 6);
+    });
+    for (const std::size_t t : flat) {
+        for (std::size_t q = 0; t != no_tet && q < points(); ++q) {
+            const double volume = jacobian_of(mesh, t, shapes[q]).determinant() / 6;
+            if (volume > 0) continue;
+            return input_error("tetrahedron {} of the mesh is flat or inside out at rest (volume {:.3g} m^3)", t,
+                               volume);
         }
-        const Matrix3 inverse = jacobian.inverse();
-        double* gradients = gradient_.data() + (batch * points() + q) * width() * 3 * lanes + lane;
-        for (int a = 0; a < nodes_per_tet_; ++a) {
-            Vector3 local;
-            for (int k = 0; k < 3; ++k) local[k] = dN(a, k + 1) - dN(a, 0);
-            const Vector3 gradient = inverse.transpose() * local;
-            for (int k = 0; k < 3; ++k, gradients += lanes) *gradients = gradient[k];
-        }
-        const double volume = determinant / 6 / static_cast<double>(integration.size());
-        volume_[(batch * points() + q) * lanes + lane] = volume;
-        tet_mass_.back() += density * volume;
-        const auto N = mesh::shape_functions(mesh.order, b);
-        for (int a = 0; a < nodes_per_tet_; ++a) node_mass_[nodes[a]] += density * volume * N[a];
     }
     return {};
+}
+
+/// Masses of tets and nodes.
+void Elements::weigh(const Description& description) {
+    const mesh::TetMesh& mesh = description.mesh;
+    std::vector<std::vector<double>> shares;
+    for (const Barycentric& b : integration_points(mesh.order)) shares.push_back(mesh::shape_functions(mesh.order, b));
+    node_mass_.assign(mesh.points.size(), 0.0);
+    tet_mass_.assign(mesh.tet_count(), 0.0);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const double density = description.materials[law_[t]].density_kg_m3;
+        for (std::size_t q = 0; q < points(); ++q) {
+            const double mass = density * point_volume(t, static_cast<int>(q));
+            tet_mass_[t] += mass;
+            for (std::size_t a = 0; a < width(); ++a) node_mass_[mesh.tet(t)[a]] += mass * shares[q][a];
+        }
+    }
 }
 
 /// The last batch of a law may have lanes left: they repeat its first tet, with no volume.
@@ -282,21 +313,21 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
     return total;
 }
 
-void Elements::add_laplacian(std::span<const int> slots, std::span<double> values) const {
-    std::array<double, lanes> weight{};
-    for (std::size_t batch = 0; batch < batches(); ++batch) {
-        const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[batch])]);
+void Elements::add_laplacian(const BlockSums& sums, std::span<double> values) const {
+    const auto fill = [&](std::size_t b, double* products) {
+        const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
+        std::fill_n(products, pairs() * lanes, 0.0);
         for (std::size_t q = 0; q < points(); ++q) {
-            const double* gradients = gradient_.data() + (batch * points() + q) * width() * 3 * lanes;
-            const double* volume = volume_.data() + (batch * points() + q) * lanes;
-            for (std::size_t lane = 0; lane < lanes; ++lane) weight[lane] = stiffness * volume[lane];
-            const int* slot = slots.data() + batch * pairs() * lanes;
-            for (std::size_t b = 0; b < width(); ++b) {
-                for (std::size_t a = 0; a <= b; ++a, slot += lanes)
-                    add_products(gradients + a * 3 * lanes, gradients + b * 3 * lanes, weight, slot, values);
+            const double* gradients = gradient_.data() + (b * points() + q) * width() * 3 * lanes;
+            const double* volume = volume_.data() + (b * points() + q) * lanes;
+            double* product = products;
+            for (std::size_t j = 0; j < width(); ++j) {
+                for (std::size_t i = 0; i <= j; ++i, product += lanes)
+                    add_products(gradients + i * 3 * lanes, gradients + j * 3 * lanes, stiffness, volume, product);
             }
         }
-    }
+    };
+    sums.add(fill, 1, values, scratch_);
 }
 
 void Elements::apply_laplacian(std::span<const double> u, std::span<double> result) const {
@@ -368,12 +399,17 @@ void Elements::apply_mass(std::span<const double> u, std::span<double> result) c
     }
 }
 
-std::vector<std::vector<int>> Elements::cliques(const std::vector<int>& free_index) const {
-    std::vector<std::vector<int>> cliques(tet_count());
-    for (std::size_t t = 0; t < tet_count(); ++t) {
-        cliques[t].reserve(width());
-        for (int a = 0; a < nodes_per_tet_; ++a) cliques[t].push_back(free_index[node(t, a)]);
-    }
+linalg::Lists Elements::cliques(const std::vector<int>& free_index) const {
+    linalg::Lists cliques;
+    cliques.item.resize(tet_count() * width());
+    cliques.start.resize(tet_count() + 1);
+    parallel_for(tet_count(), tets_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            cliques.start[t + 1] = static_cast<int>((t + 1) * width());
+            for (std::size_t a = 0; a < width(); ++a)
+                cliques.item[t * width() + a] = free_index[node(t, static_cast<int>(a))];
+        }
+    });
     return cliques;
 }
 

@@ -10,6 +10,8 @@
 #include "linalg/small.hpp"
 #include "linalg/sparse.hpp"
 #include "material/law.hpp"
+#include "mesh/tet_mesh.hpp"
+#include "sim/block_sums.hpp"
 #include "sim/element_kernels.hpp"
 #include "sim/node_sums.hpp"
 
@@ -33,17 +35,17 @@ public:
     Evaluation evaluate(std::span<const double> x, std::span<double> forces,
                         std::span<const material::Law> laws = {}) const;
 
-    /// Where the blocks of the tets' stiffness go in a pattern over free nodes (block 3): made once for each pattern.
-    [[nodiscard]] std::vector<int> stiffness_slots(const std::vector<int>& free_index,
-                                                   const linalg::SymmetricPattern& pattern) const;
-    /// Adds the tangent stiffness to the `values` of the pattern of the slots. With `project`, every integration point
-    /// contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
-    void add_tangent(std::span<const double> x, std::span<const int> slots, std::span<double> values, bool project,
+    /// Where the pairs of the tets' nodes go in a pattern over free nodes: made once for each pattern.
+    [[nodiscard]] BlockSums block_sums(const std::vector<int>& free_index,
+                                       const linalg::SymmetricPattern& pattern) const;
+    /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
+    /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
+    void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project,
                      std::span<const material::Law> laws = {}) const;
 
     /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
-    /// for each pair of the pattern of the slots; W = stiffness_bound(law) times volume.
-    void add_laplacian(std::span<const int> slots, std::span<double> values) const;
+    /// for each pair of the pattern of the sums; W = stiffness_bound(law) times volume.
+    void add_laplacian(const BlockSums& sums, std::span<double> values) const;
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 
@@ -80,7 +82,7 @@ public:
     [[nodiscard]] std::size_t tet_count() const { return law_.size(); }
 
     /// Node lists of all tets, as free indices: the cliques of the stiffness pattern.
-    [[nodiscard]] std::vector<std::vector<int>> cliques(const std::vector<int>& free_index) const;
+    [[nodiscard]] linalg::Lists cliques(const std::vector<int>& free_index) const;
 
 private:
     static constexpr std::size_t lanes = batch_lanes;
@@ -103,9 +105,10 @@ private:
                place_[tet] % lanes;
     }
     [[nodiscard]] TetBatch batch(std::size_t b) const;
-    void group_by_law();
+    void group_by_law(const mesh::TetMesh& mesh);
     void fill_empty_lanes();
-    Status integrate_tet(const Description& description, std::size_t tet);
+    Status integrate(const mesh::TetMesh& mesh);
+    void weigh(const Description& description);
     [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t batch) const {
         const auto index = static_cast<std::size_t>(batch_law_[batch]);
         return laws.empty() ? laws_[index] : laws[index];
@@ -117,8 +120,6 @@ private:
                             double* blocks) const;
     template <class ForcesOf>
     void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
-    void add_blocks(std::size_t batch, const double* blocks, std::span<const int> slots,
-                    std::span<double> values) const;
 
     int nodes_per_tet_ = 4;
     int points_per_tet_ = 1;
@@ -134,7 +135,7 @@ private:
     std::vector<double> tet_mass_;  ///< (m) kg
     std::vector<material::Law> laws_;
     NodeSums sums_;
-    mutable ArrayPool<double> scratch_;  ///< sums of pieces and blocks of batches
+    mutable ArrayPool<double> scratch_;  ///< sums of pieces and runs
 };
 
 }  // namespace pliant::sim

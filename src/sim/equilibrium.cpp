@@ -417,19 +417,19 @@ TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& 
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
     for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
-    cliques.insert(cliques.end(), touching.begin(), touching.end());
+    for (const std::vector<int>& clique : touching) cliques.push_back(clique);
     TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
     const Eigen::VectorXd rest = restrict_to_free(rest_);
     for (Eigen::Index k = 0; k < rest.size(); k += 3)
         layout.pattern.points.push_back({rest[k], rest[k + 1], rest[k + 2]});
-    layout.element_slots = model_->elements().stiffness_slots(model_->free_index(), layout.pattern);
+    layout.element_sums = model_->elements().block_sums(model_->free_index(), layout.pattern);
     return layout;
 }
 
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
-    model_->elements().add_tangent(view(state.x), layout.element_slots, values, project, controls.laws);
+    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project, controls.laws);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {

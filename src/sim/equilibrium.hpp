@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/actuator.hpp"
+#include "sim/block_sums.hpp"
 #include "sim/inertia.hpp"
 #include "sim/model.hpp"
 #include "sim/plate.hpp"
@@ -62,7 +63,7 @@ struct Evaluation {
 /// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
 struct TangentLayout {
     linalg::SymmetricPattern pattern;  ///< over free nodes, block 3
-    std::vector<int> element_slots;    ///< Elements::stiffness_slots
+    BlockSums element_sums;            ///< of the tets
 };
 
 /// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/disjoint_sets.hpp"
+#include "mesh/order_in_space.hpp"
 #include "sim/chamber_surface.hpp"
 #include "sim/elements.hpp"
 
@@ -155,7 +156,8 @@ Status check_support(const Support& support) {
     return {};
 }
 
-/// Numbers the free nodes; nodes that no tet uses are held too, they have no stiffness.
+/// Numbers the free nodes, neighbours in space one after the other; nodes that no tet uses are held too, they have no
+/// stiffness.
 Status number_free_nodes(const Description& d, std::vector<int>& free_index, int& count) {
     const int nodes = static_cast<int>(d.mesh.points.size());
     std::vector<int> owner(nodes, -1);
@@ -175,11 +177,14 @@ Status number_free_nodes(const Description& d, std::vector<int>& free_index, int
     }
     std::vector<bool> used(nodes, false);
     for (const int node : d.mesh.nodes) used[node] = true;
-    free_index.assign(nodes, -1);
-    count = 0;
+    std::vector<int> free;
     for (int node = 0; node < nodes; ++node) {
-        if (used[node] && owner[node] < 0) free_index[node] = count++;
+        if (used[node] && owner[node] < 0) free.push_back(node);
     }
+    mesh::order_in_space(free, d.mesh.points, mesh::layer_of(d.mesh));
+    count = static_cast<int>(free.size());
+    free_index.assign(nodes, -1);
+    for (int k = 0; k < count; ++k) free_index[free[k]] = k;
     return {};
 }
 

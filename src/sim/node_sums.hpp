@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "linalg/aggregates.hpp"
+#include "linalg/lists.hpp"
 #include "sim/element_kernels.hpp"
 
 namespace pliant::sim {
@@ -50,8 +50,7 @@ private:
     std::size_t batches_ = 0;
     std::vector<std::uint16_t> place_;           ///< (batches, nodes_per_tet, lanes) in the list of the piece
     std::vector<std::size_t> list_start_ = {0};  ///< (pieces + 1) nodes of the lists before
-    linalg::Members uses_{
-        {0}, {}};  ///< of each node, the places in the lists that add up to its sum, in the order of the pieces
+    linalg::Lists uses_;  ///< of each node, the places in the lists that add up to its sum, in the order of the pieces
 };
 
 }  // namespace pliant::sim

@@ -66,10 +66,10 @@ void Plate::add_hessian(std::span<const double> x, const std::vector<int>& free_
     }
 }
 
-void Plate::append_clique(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const {
+void Plate::append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     std::vector<int> clique;
     for (const int node : nodes_) clique.push_back(free_index[static_cast<std::size_t>(node)]);
-    cliques.push_back(std::move(clique));
+    cliques.push_back(clique);
 }
 
 }  // namespace pliant::sim

@@ -26,7 +26,7 @@ public:
     /// For a pattern over free nodes (block 3) that holds all pairs of the plate's nodes.
     void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values) const;
-    void append_clique(const std::vector<int>& free_index, std::vector<std::vector<int>>& cliques) const;
+    void append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
 private:
     struct Pose {

@@ -39,7 +39,7 @@ TEST_CASE("a plate that moves as a whole has no energy, and its gradient and Hes
 
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.1 * std::cos(5.1 * static_cast<double>(i));
     std::vector<int> free_index = nodes;
-    std::vector<std::vector<int>> cliques;
+    linalg::Lists cliques;
     plate.append_clique(free_index, cliques);
     const auto pattern = linalg::make_pattern(static_cast<int>(count), 3, cliques);
     std::vector<double> hessian(pattern.entries(), 0.0);

@@ -158,7 +158,7 @@ private:
             stiffness->pattern = &body_layout_->pattern;
             stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
             const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-            model_.elements().add_tangent(x, body_layout_->element_slots, stiffness->values, true, controls_.laws);
+            model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true, controls_.laws);
         }
         return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history_, dt, damping,
                                                std::move(stiffness));
@@ -168,7 +168,7 @@ private:
     [[nodiscard]] TangentLayout make_body_layout() const {
         const auto& index = model_.free_index();
         TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};
-        layout.element_slots = model_.elements().stiffness_slots(index, layout.pattern);
+        layout.element_sums = model_.elements().block_sums(index, layout.pattern);
         return layout;
     }
 

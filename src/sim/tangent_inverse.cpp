@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "linalg/cholesky.hpp"
@@ -23,7 +22,7 @@ class DirectInverse final : public TangentInverse {
 public:
     explicit DirectInverse(linalg::Cholesky factor) : factor_(std::move(factor)) {}
 
-    [[nodiscard]] bool set(const std::vector<double>& values, const Eigen::VectorXd&, Effort effort) override {
+    [[nodiscard]] bool set(std::span<const double> values, const Eigen::VectorXd&, Effort effort) override {
         if (factorise(values)) return true;
         if (!is_single() || effort == Effort::little) return false;
         if (effort == Effort::usual && ++refusals_ % refusals_until_asked != 0) return false;
@@ -43,14 +42,14 @@ public:
             return Outcome::solved;
         }
         const Eigen::MatrixXd right = columns;
-        if (const auto first = factor_.solve_and_refine(*values_, view(columns), count, wanted, most_refinements)) {
+        if (const auto first = factor_.solve_and_refine(values_, view(columns), count, wanted, most_refinements)) {
             known_error_ = *first;
             trusted_ = trust;
             return Outcome::solved;
         }
         const Eigen::MatrixXd refined = std::exchange(columns, right);
         factor_.use(linalg::Precision::double_);
-        if (factorise(*values_))
+        if (factorise(values_))
             factor_.solve(view(columns), count);
         else
             columns = refined;
@@ -65,8 +64,8 @@ public:
 
 private:
     [[nodiscard]] bool is_single() const { return factor_.precision() == linalg::Precision::single_; }
-    [[nodiscard]] bool factorise(const std::vector<double>& values) {
-        values_ = &values;
+    [[nodiscard]] bool factorise(std::span<const double> values) {
+        values_ = values;
         untried_ = is_single();
         if (trusted_ > 0)
             --trusted_;
@@ -80,8 +79,8 @@ private:
     static constexpr int trust = 3;                 // factors after one that was tried that are taken to be as good
 
     linalg::Cholesky factor_;
-    const std::vector<double>* values_ = nullptr;  ///< of the factor
-    bool untried_ = false;  ///< nothing has been solved with this factor, and it may need refining
+    std::span<const double> values_;  ///< of the factor
+    bool untried_ = false;            ///< nothing has been solved with this factor, and it may need refining
     double known_error_ = std::numeric_limits<double>::infinity();  ///< of its solutions, as far as is known
     int trusted_ = 0;                                               ///< factors to come that need no trial
     int refusals_ = 0;                                              ///< by single precision
@@ -91,7 +90,7 @@ class TwoLevelInverse final : public TangentInverse {
 public:
     explicit TwoLevelInverse(const linalg::SymmetricPattern& pattern) : levels_(pattern) {}
 
-    [[nodiscard]] bool set(const std::vector<double>& values, const Eigen::VectorXd& positions, Effort) override {
+    [[nodiscard]] bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort) override {
         return levels_.set(values, {positions.data(), static_cast<std::size_t>(positions.size())});
     }
 

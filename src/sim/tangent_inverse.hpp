@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "linalg/analysis.hpp"
 #include "linalg/sparse.hpp"
@@ -19,8 +19,7 @@ public:
     enum class Effort { little, usual, all };
     /// Takes a matrix, of which `values` must live on until the next call, and where its nodes are (3 nodes). False if
     /// it is seen not to be positive definite.
-    [[nodiscard]] virtual bool set(const std::vector<double>& values, const Eigen::VectorXd& positions,
-                                   Effort effort) = 0;
+    [[nodiscard]] virtual bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort effort) = 0;
     enum class Outcome { solved, indefinite, slow };
     /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H; 1e-3 at best, where an
     /// `error` is smaller. Indefinite, slow: they hold how far it got, which still is a direction in which the energy
