@@ -48,16 +48,19 @@ public:
         if (reused_ && care != Care::usual) judge_old(most_left);
         reused_ = reuse;
         at_ = {&state, &controls};
-        enough_ = solution_error(errors);
+        const double error = std::max(errors.residual, errors.violation);
+        enough_ = solution_error(error, errors.wanted);
+        straight_ = error * error < straight_share * errors.wanted;
         if (!reuse) return take_tangent(care == Care::cautious);
         remember();
         turn_.follow(state.x);
         return true;
     }
 
+    /// What a straight motion stretches grows with its square: a short one need not turn.
     [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
         const Eigen::VectorXd end = x + motion;
-        return laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
+        return straight_ ? end : laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
     }
 
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
@@ -112,11 +115,10 @@ private:
     /// How well to solve for a step (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982). Far from
     /// equilibrium the step leaves a good part of the error however well it is solved for; close to it a digit that is
     /// found is one that the next step need not find.
-    [[nodiscard]] static double solution_error(Errors errors) {
-        const double now = std::max(errors.residual, errors.violation);
+    [[nodiscard]] static double solution_error(double now, double wanted) {
         if (now > nearby) return largest_solution_error;
         if (now <= 0) return 0;
-        return std::min(share_of_wanted * errors.wanted / now, largest_solution_error);
+        return std::min(share_of_wanted * wanted / now, largest_solution_error);
     }
 
     /// A step with an inverse from an earlier state left so much of the error.
@@ -235,6 +237,7 @@ private:
     static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
     static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
+    static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -255,6 +258,7 @@ private:
         const Controls* controls;
     } at_{};                         ///< what is at hand, until it is solved with
     double enough_ = 0;              ///< error of the next solution
+    bool straight_ = false;          ///< the next step need not turn
     Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
     BodyTurn turn_;                  ///< since the factor was made
     StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then
