@@ -73,25 +73,27 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
 }
 
 void CoarseSpace::find_pattern() {
-    Seen seen(groups_.count);
+    // Of each group, the later ones that pull at a node that it moves.
+    const Lists later = make_lists(groups_.count, [&] {
+        return [&, seen = Seen(groups_.count)](int g, std::vector<int>& row) mutable {
+            const auto begin = static_cast<std::ptrdiff_t>(row.size());
+            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
+                for (const int h : pulling_[static_cast<std::size_t>(use_[u].node)]) {
+                    if (h > g && seen.is_new(h, g)) row.push_back(h);
+                }
+            }
+            std::sort(row.begin() + begin, row.end());
+        };
+    });
     pattern_.block = 3;
     pattern_.nodes = 2 * groups_.count;
     pattern_.node_start.assign(1, 0);
-    std::vector<int> rows;
     for (int g = 0; g < groups_.count; ++g) {
-        rows.clear();
-        for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
-            const int i = use_[u].node;
-            for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
-                const int h = pulling_.item[e];
-                if (h > g && seen.is_new(h, g)) rows.push_back(h);
-            }
-        }
-        std::sort(rows.begin(), rows.end());
         for (const int half : {0, 1}) {
             if (half == 0) pattern_.node_row.push_back(2 * g);
             pattern_.node_row.push_back(2 * g + 1);
-            for (const int h : rows) pattern_.node_row.insert(pattern_.node_row.end(), {2 * h, 2 * h + 1});
+            for (const int h : later[static_cast<std::size_t>(g)])
+                pattern_.node_row.insert(pattern_.node_row.end(), {2 * h, 2 * h + 1});
             pattern_.node_start.push_back(static_cast<int>(pattern_.node_row.size()));
         }
     }

@@ -20,10 +20,10 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-constexpr int leaf = 64;                       // nodes that are not cut any more
-constexpr int worth_sharing = 4096;            // nodes whose two parts go to two cores
-constexpr double least_side = 0.1;             // of the nodes
-constexpr std::size_t counted_at_once = 4096;  // nodes, by one core
+constexpr int leaf = 64;                     // nodes that are not cut any more
+constexpr int worth_sharing = 4096;          // nodes whose two parts go to two cores
+constexpr double least_side = 0.1;           // of the nodes
+constexpr std::size_t nodes_at_once = 4096;  // by one core
 constexpr int buckets = 256;
 constexpr std::size_t planes = 6;       // directions in which a piece is cut
 constexpr std::size_t levels = planes;  // the field after them: distances along edges
@@ -245,20 +245,23 @@ private:
             cut = best_cut(piece, heights);
         }
         if (!std::isfinite(cut.cost)) return std::nullopt;
+        const auto half = [&](std::size_t i) { return heights[i][cut.field] <= cut.height ? Side::left : Side::right; };
         std::vector<Side> sides(heights.size());
-        for (std::size_t i = 0; i < sides.size(); ++i)
-            sides[i] = heights[i][cut.field] <= cut.height ? Side::left : Side::right;
-        const std::vector<Side> halves = sides;
-        for (int i = 0; i < piece.size(); ++i) {
-            if (halves[i] != cut.from) continue;
-            for (int k = piece.graph.start[i]; k < piece.graph.start[i + 1]; ++k) {
-                if (halves[piece.graph.other[k]] == cut.from) continue;
-                sides[i] = Side::separator;
-                break;
+        for_nodes(sides.size(), [&](std::size_t i) {
+            sides[i] = half(i);
+            for (int k = piece.graph.start[i]; sides[i] == cut.from && k < piece.graph.start[i + 1]; ++k) {
+                if (half(static_cast<std::size_t>(piece.graph.other[k])) != cut.from) sides[i] = Side::separator;
             }
-        }
+        });
         shrink_separator(piece.graph, sides, least_side_of(piece.size()));
         return sides;
+    }
+
+    template <class Body>
+    static void for_nodes(std::size_t nodes, const Body& body) {
+        parallel_for(nodes, nodes_at_once, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) body(i);
+        });
     }
 
     static int least_side_of(int nodes) { return std::max(1, static_cast<int>(least_side * nodes)); }
@@ -280,10 +283,10 @@ private:
             bucket.emplace_back(direction.row(d) * mean, std::sqrt(std::max(variance, 0.0F)));
         }
         std::vector<Heights> heights(piece.point.size());
-        for (std::size_t i = 0; i < heights.size(); ++i) {
+        for_nodes(heights.size(), [&](std::size_t i) {
             const Eigen::Matrix<float, planes, 1> along = direction * piece.point[i];
             for (std::size_t d = 0; d < planes; ++d) heights[i][d] = bucket[d](along[static_cast<Eigen::Index>(d)]);
-        }
+        });
         return heights;
     }
 
@@ -310,9 +313,9 @@ private:
 
     [[nodiscard]] Cut best_cut(const Piece& piece, const std::vector<Heights>& heights) const {
         using AllCounts = std::array<Counts, fields>;
-        std::vector<AllCounts> parts((heights.size() + counted_at_once - 1) / counted_at_once);
-        parallel_for(heights.size(), counted_at_once, [&](std::size_t begin, std::size_t end) {
-            count(piece, heights, begin, end, parts[begin / counted_at_once]);
+        std::vector<AllCounts> parts((heights.size() + nodes_at_once - 1) / nodes_at_once);
+        parallel_for(heights.size(), nodes_at_once, [&](std::size_t begin, std::size_t end) {
+            count(piece, heights, begin, end, parts[begin / nodes_at_once]);
         });
         for (std::size_t p = 1; p < parts.size(); ++p) {
             for (std::size_t f = 0; f < fields; ++f) parts[0][f].add(parts[p][f]);
