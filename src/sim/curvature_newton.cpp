@@ -50,14 +50,15 @@ public:
         at_ = {&state, &controls};
         const double error = std::max(errors.residual, errors.violation);
         enough_ = solution_error(error, errors.wanted);
-        straight_ = error * error < straight_share * errors.wanted;
+        straight_ = left_by_last_ < well_led && error * error < straight_share * errors.wanted;
         if (!reuse) return take_tangent(care == Care::cautious);
         remember();
         turn_.follow(state.x);
         return true;
     }
 
-    /// What a straight motion stretches grows with its square: a short one need not turn.
+    /// What a straight motion stretches grows with its square: a short one need not turn. A small error means a short
+    /// one, unless the body gives way to next to no force; there steps do not lead far.
     [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
         const Eigen::VectorXd end = x + motion;
         return straight_ ? end : laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
@@ -66,6 +67,7 @@ public:
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
 
     void judge(double before, double after) override {
+        left_by_last_ = after / before;
         if (reused_) {
             ++uses_;
             return judge_old(std::clamp(after / before, least_left, most_left));
@@ -238,6 +240,7 @@ private:
     static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
     static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
+    static constexpr double well_led = 0.3;
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -271,6 +274,7 @@ private:
     // Of the error, what a step with an inverse from an earlier state leaves.
     double left_ = hoped_left;           ///< by the next one, as far as is known
     double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
+    double left_by_last_ = 1;            ///< by the last one, with whatever inverse
     double left_by_new_ = 0;             ///< by the last one of its own state; 0 before and far from equilibrium
     int uses_ = 0;                       ///< of the inverse since that step
     int age_ = 0;                        ///< of the inverse, in steps of the program
