@@ -1,11 +1,30 @@
 // The command line: one file per command, each thin over the library.
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "core/text.hpp"
+
+namespace {
+
+/// The first word is neither a command nor an option.
+int refuse(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    const std::string nearest = pliant::nearest_name(word, names);
+    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", word.starts_with('-') ? "option" : "command", word,
+               nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
+    return pliant::app::exit_bad_input;
+}
+
+}  // namespace
 
 // Only running out of memory can escape, and that ends the program in any case.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
@@ -27,6 +46,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        if (app.get_subcommands().empty() && !app.remaining().empty()) return refuse(app, app.remaining().front());
         return app.exit(error) == 0 ? exit_done : exit_bad_input;
     }
     return status;
