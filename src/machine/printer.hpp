@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "machine/marlin_release.hpp"
 
 namespace pliant::machine {
 
@@ -73,6 +74,7 @@ enum class Dialect {
 
 struct Controller {
     Dialect dialect = Dialect::marlin;
+    MarlinRelease firmware = MarlinRelease::v2_1_2;  ///< which Marlin the board runs
     int baud_rate = 115200;
     int window_lines = 4;    ///< lines that may wait for their `ok`: at most the firmware's BUFSIZE
     int window_bytes = 120;  ///< and their bytes: less than its receive buffer

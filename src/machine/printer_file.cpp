@@ -1,4 +1,6 @@
 // From TOML to a Printer: one function per table, then the checks that join tables.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -129,6 +131,12 @@ Controller read_controller(Reader r) {
     Controller c;
     c.dialect =
         r.choice("dialect", {"marlin", "marlin-classic"}, "marlin") == "marlin" ? Dialect::marlin : Dialect::classic;
+    if (r.has("firmware")) {
+        const std::string version = r.text("firmware");
+        const auto release = marlin_release(version);
+        if (!release) r.problem("firmware", fmt::format("\"{}\" is not known; must be 2.1.1, 2.1.2 or 2.1.3", version));
+        c.firmware = release.value_or(c.firmware);
+    }
     c.baud_rate = whole(r, "baud_rate", 9600, 1000000);
     c.window_lines = static_cast<int>(r.integer("window_lines", c.window_lines));
     c.window_bytes = static_cast<int>(r.integer("window_bytes", c.window_bytes));

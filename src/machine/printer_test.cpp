@@ -116,3 +116,17 @@ TEST_CASE("an empty file and a missing file are errors, not crashes") {
     CHECK_FALSE(parse_printer("vat = 3\naxis = \"x\"\nresin = [1]\n", "p.toml"));
     CHECK_FALSE(load_printer("examples/printers/none.toml"));
 }
+
+TEST_CASE("the firmware of a board is one of the known releases, whatever its last number") {
+    CHECK(load_printer(tower_file)->controller.firmware == MarlinRelease::v2_1_2);
+    const auto with = [](const std::string& version) {
+        return parse_printer(replaced(tower_text(), "[controller]\n", "[controller]\nfirmware = \"" + version + "\"\n"),
+                             "p.toml");
+    };
+    CHECK(with("2.1.1")->controller.firmware == MarlinRelease::v2_1_1);
+    CHECK(with("2.1.2.5")->controller.firmware == MarlinRelease::v2_1_2);
+    CHECK(with("2.1.3")->controller.firmware == MarlinRelease::v2_1_3);
+    for (const char* unknown : {"2.1.20", "2.1", "", "klipper"}) {
+        CHECK(holds(with(unknown).error().message, "must be 2.1.1, 2.1.2 or 2.1.3"));
+    }
+}
