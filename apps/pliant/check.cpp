@@ -15,7 +15,7 @@
 #include "core/files.hpp"
 #include "job/job.hpp"
 #include "job/verify.hpp"
-#include "machine/firmware.hpp"
+#include "machine/board_report.hpp"
 #include "machine/printer.hpp"
 #include "mesh/mesh_report.hpp"
 #include "operate/job_file.hpp"

@@ -1,7 +1,8 @@
 // pliant firmware: what the controller must be built with for a machine; and asking a board what it was built with.
 #include "machine/firmware.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "board.hpp"
 #include "command.hpp"
@@ -13,12 +14,19 @@ namespace pliant::app {
 namespace {
 
 struct Options {
-    std::string printer, save;
+    std::string printer, release, save;
 };
 
 Status run_firmware(const Options& options) {
-    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    Result<machine::Printer> printer = machine::load_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
+    if (!options.release.empty()) {
+        const auto release = machine::marlin_release(options.release);
+        if (!release)
+            return input_error("--release {}: must be {}", options.release,
+                               fmt::join(machine::marlin_release_names, ", "));
+        printer->controller.firmware = *release;
+    }
     const Result<std::string> ini = machine::firmware_ini(*printer);
     if (!ini) return input_error("{}: {}", options.printer, ini.error().message);
     if (!options.save.empty()) return write_file(options.save, *ini);
@@ -55,7 +63,7 @@ Result<std::string> ask_board(const std::string& port, int baud_rate) {
     std::string ignored;
     if (Status status = listen(*wire, "nothing more", 0.3, ignored); !status) return tl::unexpected(status.error());
     heard.clear();
-    for (const char* query : {"M115\n", "M503\n", "M119\n", "M113\n"}) {
+    for (const char* query : {"M115\n", "M503\n", "M211\n", "M119\n", "M113\n"}) {
         if (Status status = wire->write(query); !status) return tl::unexpected(status.error());
         if (Status status = listen(*wire, "ok", answer_s, heard); !status) return tl::unexpected(status.error());
     }
@@ -66,6 +74,8 @@ void add_firmware(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("firmware", "list what Marlin must be built with for a machine");
     command->add_option("printer", options->printer, "printer file (TOML)")->required();
+    command->add_option("--release", options->release,
+                        "release of Marlin: 2.1.1, 2.1.2 or 2.1.3 (default: controller.firmware of the printer file)");
     command->add_option("-o,--output", options->save, "file for the list (config.ini of Marlin)");
     command->footer("Example: pliant firmware examples/printers/tower8.toml -o config.ini");
     on_call(*command, status, [options] { return run_firmware(*options); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "machine/marlin_axes.hpp"
+
 namespace pliant::machine {
 namespace {
 
@@ -60,17 +62,11 @@ std::vector<LimitSwitch> switches_of(const Printer& printer) {
 }
 
 std::vector<std::string> switch_names(const Printer& printer, const LimitSwitch& which) {
-    constexpr std::string_view order = "XYZABCUVW", extra = "ijk";
-    const char letter = printer.axis(which.axis).letter;
-    std::vector<std::string> names = {fmt::format("{}_{}", static_cast<char>(letter - 'A' + 'a'), end_name(which))};
-    const std::size_t place = order.find(letter);
-    if (place == std::string_view::npos || place < 3) return names;
-    std::size_t before = 0;  // extra axes take Marlin's places in the order of the alphabet
-    for (const AxisSpec& axis : printer.axes) {
-        const std::size_t other = order.find(axis.letter);
-        if (other != std::string_view::npos && other >= 3 && other < place) ++before;
-    }
-    if (before < extra.size()) names.push_back(fmt::format("{}_{}", extra[before], end_name(which)));
+    const AxisSpec& axis = printer.axis(which.axis);
+    std::vector<std::string> names = {
+        fmt::format("{}_{}", static_cast<char>(axis.letter - 'A' + 'a'), end_name(which))};
+    if (const auto place = marlin_place(printer, axis); place && *place != axis.letter)
+        names.push_back(fmt::format("{}_{}", static_cast<char>(*place - 'A' + 'a'), end_name(which)));
     return names;
 }
 

@@ -79,6 +79,7 @@ void Twin::execute(const Command& c, const Queued& queued) {
 
 /// Soft endstops: an axis that is homed stops at the end of its travel, and the firmware says nothing.
 machine::Position Twin::clamped(machine::Position to) {
+    if (!soft_endstops_) return to;
     const machine::Position asked = to;
     for (const Axis axis : machine::all_axes) {
         const machine::AxisSpec& spec = printer_.axis(axis);
@@ -247,11 +248,18 @@ void Twin::execute_query(const Command& c) {
             " EXTRUDER_COUNT:0");
         for (const char* capability : {"SERIAL_XON_XOFF:0", "EEPROM:0", "AUTOREPORT_TEMP:0", "SDCARD:0"})
             say(fmt::format("Cap:{}", capability));
+        const bool holds_power = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
+        say(fmt::format("Cap:SOFTWARE_POWER:{}", holds_power ? 1 : 0));
         say(fmt::format("Cap:EMERGENCY_PARSER:{}", options_.emergency_parser ? 1 : 0));
     } else if (c.is('M', 119)) {
         say_switches();
     } else if (c.is('M', 503)) {
         say_settings();
+    } else if (c.is('M', 211)) {
+        if (const auto on = c.value('S'))
+            soft_endstops_ = *on != 0;
+        else
+            say_soft_endstops();
     } else if (c.is('M', 118)) {
         say(fmt::format("{}{}", c.value('E') == 1 ? "echo:" : (c.value('A') == 1 ? "//" : ""), c.text));
     } else if (c.is('M', 0) || c.is('M', 1)) {
@@ -278,6 +286,25 @@ void Twin::say_settings() {
         [&](const AxisSpec& a) { return a.drive.known() ? a.drive.steps_per_mm() : unknown_steps_per_mm; });
     row("Max feedrates (units/s)", "M203", [](const AxisSpec& a) { return a.speed_mm_s; });
     row("Max Acceleration (units/s2)", "M201", [](const AxisSpec& a) { return a.acceleration_mm_s2; });
+    double most = 0;
+    for (const AxisSpec& axis : printer_.axes) most = axis.present() ? std::max(most, axis.acceleration_mm_s2) : most;
+    say("echo:; Acceleration (units/s2) (P<print-accel> R<retract-accel> T<travel-accel>):");
+    say(fmt::format("echo:  M204 P{:.2f} R{:.2f} T{:.2f}", most, most, most));
+    row("Home offset", "M206", [](const AxisSpec&) { return 0.0; });
+    say_soft_endstops();
+}
+
+void Twin::say_soft_endstops() {
+    std::string low, high;
+    for (const Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = printer_.axis(axis);
+        if (!spec.present()) continue;
+        low += fmt::format(" {}{:.2f}", spec.letter, spec.min_um / 1000.0);
+        high += fmt::format(" {}{:.2f}", spec.letter, spec.max_um / 1000.0);
+    }
+    say("echo:; Soft endstops:");
+    say(fmt::format("echo:  M211 S{} ; {}", soft_endstops_ ? 1 : 0, soft_endstops_ ? "ON" : "OFF"));
+    say(fmt::format("echo:  Min: {}   Max: {}", low, high));
 }
 
 /// Where the axis really stands, whatever the controller thinks; homed or not.

@@ -207,6 +207,7 @@ void Twin::reset() {
     running_.reset();
     dead_ = false;
     idle_limit_s_ = 120;
+    soft_endstops_ = true;
     busy_every_s_ = options_.busy_every_s;
     outputs_off();
     log_.power_cut = false;

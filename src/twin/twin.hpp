@@ -148,6 +148,7 @@ private:
     void execute_set(const machine::Command& command);
     void execute_other(const machine::Command& command);
     void say_settings();
+    void say_soft_endstops();
     void say_switches();
     [[nodiscard]] bool is_pressed(const machine::LimitSwitch& limit) const;
     void switch_fans(const machine::Command& command, double at_s);
@@ -189,6 +190,7 @@ private:
     std::string output_;
     bool dead_ = false;
     double idle_limit_s_ = 120;
+    bool soft_endstops_ = true;  ///< M211
     double feed_mm_s_ = 0;
     double busy_every_s_ = 2;
     double next_wait_s_ = 0;

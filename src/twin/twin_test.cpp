@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/test_text.hpp"
-#include "machine/firmware.hpp"
+#include "machine/board_report.hpp"
 #include "twin/test_peer.hpp"
 
 using namespace pliant;
@@ -34,12 +34,16 @@ TEST_CASE("asked about its build it answers as a board that fits its machine, an
         options.emergency_parser = parser;
         Peer b(options);
         std::string answers;
-        for (const char* query : {"M115", "M503", "M119", "M113"}) answers += b.send(query);
+        for (const char* query : {"M115", "M503", "M211", "M119", "M113"}) answers += b.send(query);
         CHECK(holds(answers, "echo:  M92 X525.21 Z800.00 Y315.13\n"));
+        CHECK(holds(answers, "echo:  M204 P200.00 R200.00 T200.00\n"));
+        CHECK(holds(answers, "echo:  Min:  X0.00 Z0.00 Y0.00   Max:  X358.00 Z400.00 Y1460.00\n"));
         const auto problems = machine::check_board(machine::parse_board_report(answers), b.printer);
         CHECK(problems.size() == (parser ? 0 : 1));
         b.send("M113 S0");
         CHECK(holds(b.send("M113"), "echo:M113 S0\n"));
+        b.send("M211 S0");
+        CHECK(holds(b.send("M211"), "echo:  M211 S0 ; OFF\n"));
     }
     Peer b;
     CHECK(holds(b.send("M119"), "z_max: open\n"));
