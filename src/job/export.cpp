@@ -23,17 +23,6 @@ std::string file_word(const std::string& text) {
     return word.empty() ? "job" : word;
 }
 
-StackFacts facts_of(const Manifest& manifest, int material, const std::string& prefix) {
-    StackFacts facts{manifest, material, prefix, std::vector<double>(manifest.layers.size(), 0.0), 0};
-    if (!manifest.layers.empty()) facts.layer_um = manifest.layers.front().thickness_um;
-    for (std::size_t k = 0; k < manifest.layers.size(); ++k) {
-        for (const LayerImage& image : manifest.layers[k].images) {
-            if (image.material == material) facts.area_mm2[k] = image.area_mm2;
-        }
-    }
-    return facts;
-}
-
 /// Calls `put(layer, png)` for every layer of a material, blank ones too.
 Status each_layer(const Archive& archive, int material, const std::function<Status(std::size_t, std::string)>& put) {
     const Manifest& m = archive.manifest();
@@ -54,32 +43,61 @@ std::string image_name(Format format, const std::string& prefix, std::size_t lay
     return fmt::format("{}.png", layer + 1);
 }
 
+/// Of every layer's image of a material.
+Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material) {
+    const Manifest& m = archive.manifest();
+    std::vector<ImageAreas> areas(m.layers.size());
+    for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        for (const LayerImage& layer : m.layers[k].images) {
+            if (layer.material != material) continue;
+            const Result<Image> image = archive.image(layer.file);
+            if (!image) return tl::unexpected(image.error());
+            areas[k] = areas_of(*image);
+        }
+    }
+    return areas;
+}
+
+bool is_even(const Manifest& m) {
+    return std::all_of(m.layers.begin(), m.layers.end(),
+                       [&](const Layer& layer) { return layer.thickness_um == m.layers[0].thickness_um; });
+}
+
+/// The files beside the images.
+Result<std::vector<NamedText>> texts_of(const Archive& archive, int material, Format format,
+                                        const std::string& prefix) {
+    const StackFacts facts = facts_of(archive.manifest(), material, prefix);
+    if (format == Format::sl1) return sl1_texts(facts);
+    if (format == Format::zip) return is_even(archive.manifest()) ? zip_texts(facts) : std::vector<NamedText>{};
+    const Result<std::vector<ImageAreas>> areas = layer_areas(archive, material);
+    if (!areas) return tl::unexpected(areas.error());
+    return nanodlp_texts(facts, *areas);
+}
+
+Status fill_stack(const Archive& archive, int material, Format format, ZipWriter& zip) {
+    const std::string prefix = file_word(archive.manifest().name);
+    const Result<std::vector<NamedText>> texts = texts_of(archive, material, format, prefix);
+    if (!texts) return tl::unexpected(texts.error());
+    for (const auto& [name, text] : *texts) {
+        if (auto status = zip.add(name, text, ZipWriter::Method::deflate); !status) return status;
+    }
+    if (format == Format::sl1 && archive.has_file(thumbnail_file)) {
+        const Result<std::string> picture = archive.file(thumbnail_file);
+        if (!picture) return tl::unexpected(picture.error());
+        if (auto status = zip.add("thumbnail/thumbnail400x400.png", *picture, ZipWriter::Method::store); !status)
+            return status;
+    }
+    const Status images = each_layer(archive, material, [&](std::size_t k, std::string png) {
+        return zip.add(image_name(format, prefix, k), std::move(png), ZipWriter::Method::store);
+    });
+    return images ? zip.close() : images;
+}
+
 Status write_stack(const Archive& archive, int material, Format format, const fs::path& path) {
     const fs::path aside = path.string() + ".partial";
-    const auto fill = [&]() -> Status {
-        auto zip = ZipWriter::create(aside);
-        if (!zip) return tl::unexpected(zip.error());
-        const std::string prefix = file_word(archive.manifest().name);
-        const StackFacts facts = facts_of(archive.manifest(), material, prefix);
-        std::vector<NamedText> texts;
-        if (format == Format::sl1) texts = sl1_texts(facts);
-        if (format == Format::nanodlp) texts = nanodlp_texts(facts);
-        for (const auto& [name, text] : texts) {
-            if (auto status = zip->add(name, text, ZipWriter::Method::deflate); !status) return status;
-        }
-        if (format == Format::sl1 && archive.has_file(thumbnail_file)) {
-            const Result<std::string> picture = archive.file(thumbnail_file);
-            if (!picture) return tl::unexpected(picture.error());
-            if (auto status = zip->add("thumbnail/thumbnail400x400.png", *picture, ZipWriter::Method::store); !status)
-                return status;
-        }
-        const Status images = each_layer(archive, material, [&](std::size_t k, std::string png) {
-            return zip->add(image_name(format, prefix, k), std::move(png), ZipWriter::Method::store);
-        });
-        return images ? zip->close() : images;
-    };
     std::error_code code, ignored;
-    Status status = fill();
+    auto zip = ZipWriter::create(aside);
+    Status status = zip ? fill_stack(archive, material, format, *zip) : tl::unexpected(zip.error());
     if (status) {
         fs::rename(aside, path, code);
         if (code) status = failure("{}: cannot be written: {}", path.string(), code.message());

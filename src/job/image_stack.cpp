@@ -7,6 +7,7 @@
 
 #include "core/files.hpp"
 #include "job/png.hpp"
+#include "job/stack_height.hpp"
 #include "zip/zip_file.hpp"
 
 namespace pliant::job {
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t max_image_bytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t max_text_bytes = std::uint64_t{1} << 22;
 constexpr std::uint64_t max_entries = 1 << 22;
 
 struct Entry {
@@ -81,10 +83,12 @@ struct ImageStack::State {
     std::optional<ZipReader> zip;
     std::vector<Entry> entries;
     PngSize size;
+    std::optional<double> layer_um;
 
-    [[nodiscard]] Result<std::string> bytes(std::size_t i) const {
-        return zip ? zip->read(entries[i].name, max_image_bytes) : read_file(path / entries[i].name, max_image_bytes);
+    [[nodiscard]] Result<std::string> read(const std::string& name, std::uint64_t most) const {
+        return zip ? zip->read(name, most) : read_file(path / name, most);
     }
+    [[nodiscard]] Result<std::string> bytes(std::size_t i) const { return read(entries[i].name, max_image_bytes); }
 };
 
 ImageStack::ImageStack(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -105,6 +109,10 @@ Result<ImageStack> ImageStack::open(const fs::path& path) {
     auto entries = choose(*names, path.string());
     if (!entries) return tl::unexpected(entries.error());
     state->entries = std::move(*entries);
+    const auto layer_um =
+        stated_layer_um(*names, [&](const std::string& name) { return state->read(name, max_text_bytes); });
+    if (!layer_um) return input_error("{}: {}", path.string(), layer_um.error().message);
+    state->layer_um = *layer_um;
     const auto first = state->bytes(0);
     if (!first) return tl::unexpected(first.error());
     const auto size = any_png_size(*first, fmt::format("{}: {}", path.string(), state->entries[0].name));
@@ -123,6 +131,10 @@ int ImageStack::width_px() const {
 
 int ImageStack::height_px() const {
     return state_->size.height_px;
+}
+
+std::optional<double> ImageStack::layer_um() const {
+    return state_->layer_um;
 }
 
 Result<slice::Image> ImageStack::image(int layer) const {

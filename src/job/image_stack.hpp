@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/error.hpp"
@@ -15,7 +16,8 @@ namespace pliant::job {
 /// groups of names, as in "cone_0001.png", the largest is the stack. One thread at a time.
 class ImageStack {
 public:
-    /// Errors: no such images, a number that is missing or comes twice, images of different sizes; all with names.
+    /// Errors: no such images, a number that is missing or comes twice, images of different sizes, a layer height that
+    /// cannot be (stack_height.hpp); all with names.
     [[nodiscard]] static Result<ImageStack> open(const std::filesystem::path& path);
     ImageStack(ImageStack&&) noexcept;
     ImageStack& operator=(ImageStack&&) noexcept;
@@ -24,6 +26,8 @@ public:
     [[nodiscard]] int layer_count() const;
     [[nodiscard]] int width_px() const;
     [[nodiscard]] int height_px() const;
+    /// As the files beside the images say; nullopt: they do not.
+    [[nodiscard]] std::optional<double> layer_um() const;
     /// Grey, of any kind of PNG that the file holds. Errors: what libpng refuses.
     [[nodiscard]] Result<slice::Image> image(int layer) const;
 

@@ -1,6 +1,7 @@
 #include "prepare/settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/units.hpp"
@@ -193,6 +194,53 @@ Status check_stacks(const Order& order, const Drawing& drawing) {
     return {};
 }
 
+std::string um_text(double um) {
+    return fmt::format("{:g} um", um);
+}
+
+/// What the stacks say of their layers' height, if they do; all must say the same.
+Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
+    constexpr double same_um = 1e-3;
+    const job::MaterialStack* first = nullptr;
+    for (const job::MaterialStack& s : drawing.stacks) {
+        if (!s.stack.layer_um()) continue;
+        if (first == nullptr) first = &s;
+        if (std::fabs(*s.stack.layer_um() - *first->stack.layer_um()) > same_um)
+            return input_error("images of \"{}\" are for layers of {}, those of \"{}\" for {}: slice them alike",
+                               first->material, um_text(*first->stack.layer_um()), s.material,
+                               um_text(*s.stack.layer_um()));
+    }
+    if (first == nullptr) return std::nullopt;
+    return first->stack.layer_um();
+}
+
+/// --layer, else the height that layer images were made for, else the printer's. Images printed in layers of another
+/// height would give a part that is too high or too low.
+Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawing& drawing) {
+    const Result<std::optional<double>> stacked = stacked_layer_um(drawing);
+    if (!stacked) return tl::unexpected(stacked.error());
+    const Result<int> asked = order.layer.empty() ? printer.layer_um : layer_height_um("--layer", order.layer);
+    if (!asked) return asked;
+    if (!*stacked) {
+        if (!drawing.stacks.empty() && order.layer.empty())
+            drawing.warnings.push_back(fmt::format(
+                "layer images do not say how high their layers are: {} of the printer file are assumed; --layer says "
+                "otherwise",
+                um_text(*asked)));
+        return asked;
+    }
+    const double um = std::round(**stacked);
+    if (std::fabs(um - **stacked) > 1e-3 || um > 1000)
+        return input_error("layer images are for layers of {}: a whole number of micrometres from 1 to 1000 is needed",
+                           um_text(**stacked));
+    if (!order.layer.empty() && *asked != static_cast<int>(um))
+        return input_error(
+            "--layer {}: the layer images are for layers of {}, the part would come out {:.3g} times as high: leave "
+            "--layer out, or slice anew",
+            order.layer, um_text(um), *asked / um);
+    return static_cast<int>(um);
+}
+
 }  // namespace
 
 Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
@@ -208,7 +256,7 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
     settings.light.mask = std::move(mask);
     settings.copies = order.copies;
-    const Result<int> layer_um = order.layer.empty() ? printer.layer_um : layer_height_um("--layer", order.layer);
+    const Result<int> layer_um = layer_of(order, printer, drawing);
     if (!layer_um) return tl::unexpected(layer_um.error());
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(drawing, printer);

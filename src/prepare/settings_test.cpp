@@ -2,8 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <functional>
+#include <utility>
 
+#include "core/files.hpp"
+#include "core/test_folder.hpp"
+#include "job/png.hpp"
 #include "prepare/test_order.hpp"
 
 using namespace pliant;
@@ -32,7 +37,61 @@ std::string refused(const Change& change) {
     return settings.error().message;
 }
 
+/// Two dark images in a folder, with what stands beside them in a .sl1 that was sliced so high ("": nothing).
+void write_stack(const std::filesystem::path& folder, const std::string& layer_height_mm) {
+    std::filesystem::create_directories(folder);
+    const std::string png = job::encode_png(slice::RunImage(200, 100));
+    for (const char* name : {"part00000.png", "part00001.png"}) REQUIRE(write_file(folder / name, png).has_value());
+    if (!layer_height_mm.empty())
+        REQUIRE(write_file(folder / "config.ini", "layerHeight = " + layer_height_mm + "\n").has_value());
+}
+
+/// The drawing of a stack of each material, sliced at these heights.
+Drawing stacks(const pliant::test::Folder& folder, const std::string& soft_mm, const std::string& firm_mm = "none") {
+    std::vector<std::string> inputs;
+    for (const auto& [name, height_mm] : {std::pair("soft", soft_mm), std::pair("firm", firm_mm)}) {
+        if (height_mm == "none") continue;
+        const std::filesystem::path at = folder / (std::string(name) + "_" + height_mm);
+        write_stack(at, height_mm);
+        inputs.push_back(std::string(name) + "=" + at.string());
+    }
+    Progress silent;
+    auto drawing = read_drawing(inputs, {}, silent);
+    REQUIRE_MESSAGE(drawing, (drawing ? "" : drawing.error().message));
+    return std::move(*drawing);
+}
+
+/// The layers' height, or what is said against it.
+std::string layer_or_error(const std::string& layer, Drawing drawing) {
+    Order order;
+    order.layer = layer;
+    const auto settings = job_settings(order, printer(), {}, drawing);
+    if (!settings) return settings.error().message;
+    return fmt::format("{}{}", settings->slicing.layer_um, drawing.warnings.empty() ? "" : " assumed");
+}
+
 }  // namespace
+
+TEST_CASE("layer images are printed as high as they were sliced") {
+    const pliant::test::Folder folder("stacks");
+    CHECK(layer_or_error("", stacks(folder, "0.1")) == "100");  // not the printer's 50
+    CHECK(layer_or_error("100 um", stacks(folder, "0.1")) == "100");
+    CHECK(layer_or_error("0.1 mm", stacks(folder, "0.1", "0.100")) == "100");
+    CHECK(layer_or_error("", stacks(folder, "", "0.025")) == "25");  // one of them says it
+    CHECK(layer_or_error("50 um", stacks(folder, "0.1")) ==
+          "--layer 50 um: the layer images are for layers of 100 um, the part would come out 0.5 times as high: leave "
+          "--layer out, or slice anew");
+    CHECK(layer_or_error("", stacks(folder, "0.1", "0.05")) ==
+          "images of \"soft\" are for layers of 100 um, those of \"firm\" for 50 um: slice them alike");
+    CHECK(layer_or_error("", stacks(folder, "0.0125")).find("layer images are for layers of 12.5 um") == 0);
+    CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
+}
+
+TEST_CASE("images that do not say how high their layers are take --layer, or the printer's with a warning") {
+    const pliant::test::Folder folder("stacks");
+    CHECK(layer_or_error("100 um", stacks(folder, "")) == "100");
+    CHECK(layer_or_error("", stacks(folder, "")) == "50 assumed");
+}
 
 TEST_CASE("what is not asked for is the printer's") {
     const job::JobSettings s = settings_of([](Order&) {});
