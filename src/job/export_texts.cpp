@@ -21,6 +21,44 @@ std::string json_text(const Ordered& value) {
     return value.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
 }
 
+/// A line of info.json.
+Ordered layer_info(const ImageAreas& areas, double pixel_mm2) {
+    return {{"TotalSolidArea", areas.total_px * pixel_mm2},
+            {"LargestArea", areas.largest_px * pixel_mm2},
+            {"SmallestArea", areas.smallest_px * pixel_mm2},
+            {"MinX", areas.min_x},
+            {"MinY", areas.min_y},
+            {"MaxX", areas.max_x},
+            {"MaxY", areas.max_y},
+            {"AreaCount", areas.count}};
+}
+
+/// First and last lit pixel of all layers, as a piece of its own; none where all are dark.
+ImageAreas whole(const std::vector<ImageAreas>& layers) {
+    ImageAreas all;
+    for (const ImageAreas& a : layers) {
+        if (a.count == 0) continue;
+        all.min_x = all.count == 0 ? a.min_x : std::min(all.min_x, a.min_x);
+        all.min_y = all.count == 0 ? a.min_y : std::min(all.min_y, a.min_y);
+        all.max_x = std::max(all.max_x, a.max_x);
+        all.max_y = std::max(all.max_y, a.max_y);
+        all.total_px += a.total_px;
+        all.count = 1;
+    }
+    return all;
+}
+
+/// Lowest and highest of the layers with light, mm: bottom of the one, top of the other.
+std::pair<double, double> z_mm(const Manifest& m, const std::vector<ImageAreas>& layers) {
+    double low = 0, high = 0;
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        if (layers[k].count == 0) continue;
+        if (high == 0) low = (m.layers[k].z_um - m.layers[k].thickness_um) / 1000.0;
+        high = m.layers[k].z_um / 1000.0;
+    }
+    return {low, high};
+}
+
 }  // namespace
 
 double StackFacts::volume_mm3() const {
@@ -102,48 +140,6 @@ std::vector<NamedText> zip_texts(const StackFacts& s) {
                          s.layer_um / 1000, m.width_px, m.height_px, pixel_mm * m.width_px, pixel_mm * m.height_px,
                          std::max(height_mm, 1.0))}};
 }
-
-namespace {
-
-/// A line of info.json.
-Ordered layer_info(const ImageAreas& areas, double pixel_mm2) {
-    return {{"TotalSolidArea", areas.total_px * pixel_mm2},
-            {"LargestArea", areas.largest_px * pixel_mm2},
-            {"SmallestArea", areas.smallest_px * pixel_mm2},
-            {"MinX", areas.min_x},
-            {"MinY", areas.min_y},
-            {"MaxX", areas.max_x},
-            {"MaxY", areas.max_y},
-            {"AreaCount", areas.count}};
-}
-
-/// First and last lit pixel of all layers, as a piece of its own; none where all are dark.
-ImageAreas whole(const std::vector<ImageAreas>& layers) {
-    ImageAreas all;
-    for (const ImageAreas& a : layers) {
-        if (a.count == 0) continue;
-        all.min_x = all.count == 0 ? a.min_x : std::min(all.min_x, a.min_x);
-        all.min_y = all.count == 0 ? a.min_y : std::min(all.min_y, a.min_y);
-        all.max_x = std::max(all.max_x, a.max_x);
-        all.max_y = std::max(all.max_y, a.max_y);
-        all.total_px += a.total_px;
-        all.count = 1;
-    }
-    return all;
-}
-
-/// Lowest and highest of the layers with light, mm: bottom of the one, top of the other.
-std::pair<double, double> z_mm(const Manifest& m, const std::vector<ImageAreas>& layers) {
-    double low = 0, high = 0;
-    for (std::size_t k = 0; k < layers.size(); ++k) {
-        if (layers[k].count == 0) continue;
-        if (high == 0) low = (m.layers[k].z_um - m.layers[k].thickness_um) / 1000.0;
-        high = m.layers[k].z_um / 1000.0;
-    }
-    return {low, high};
-}
-
-}  // namespace
 
 std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<ImageAreas>& areas) {
     const Manifest& m = s.manifest;

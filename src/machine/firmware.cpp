@@ -109,7 +109,7 @@ void add_emergency_line(List& list, const Printer& printer) {
     list.add("PSU_DEFAULT_OFF", "off", "power as soon as the firmware runs; no program may send M80 or M81");
 }
 
-/// A C string whose text neither C nor the reader of config.ini takes for something else, as they would \" and % and #.
+/// A C string. What C or the reader of config.ini would take for something else, such as \" and % and #, becomes '_'.
 std::string c_string(std::string_view name) {
     constexpr std::string_view harmless = " -_.,:()+/";
     std::string text;
@@ -250,10 +250,21 @@ std::string upper(std::string_view text) {
     return result;
 }
 
-void add_door(List& list, const Printer& printer) {
+std::string low_end_of(const Slot& slot) {
+    return lower(std::string_view(&slot.id, 1)) + "_min";
+}
+
+/// A stand-in is told to home where the input is, and so has the switch's settings already.
+bool is_home_of_stand_in(std::string_view input, const std::vector<Slot>& slots) {
+    return std::any_of(slots.begin(), slots.end(),
+                       [&](const Slot& s) { return s.axis == nullptr && low_end_of(s) == input; });
+}
+
+void add_door(List& list, const std::vector<Slot>& slots, const Printer& printer) {
     const DoorSwitch& door = printer.door;
     if (!door.present()) return;
     const std::string id = upper(door.input.substr(0, 1));
+    if (is_home_of_stand_in(door.input, slots)) return;
     if (door.input.ends_with("_min") || door.input.ends_with("_max"))
         return add_plug(list, printer, {id[0], door.input.ends_with("_max"), door.inverted, false},
                         fmt::format("the door: M119 calls its switch {}", door.input));
@@ -279,11 +290,13 @@ void add_axis_switches(List& list, const Printer& printer, const Slot& slot) {
     for (const LimitSwitch& s : switches_of(printer)) {
         if (&printer.axis(s.axis) == slot.axis) (s.at_max == to_max ? home : far).inverted = s.inverted;
     }
-    add_plug(list, printer, home);
+    const bool with_door = printer.door.input == low_end_of(slot);
+    const bool door_only = slot.axis == nullptr && with_door;
+    if (door_only) home.inverted = printer.door.inverted;
+    add_plug(list, printer, home, door_only ? "the door is on this input" : "");
     if (slot.axis != nullptr && has_far_switch(printer, *slot.axis))
         return add_plug(list, printer, far, "the switch at the other end");
-    const std::string low_end = fmt::format("{}_min", lower(std::string_view(&slot.id, 1)));
-    if (to_max && printer.door.input != low_end) add_no_plug(list, printer, slot.id);
+    if (to_max && !with_door) add_no_plug(list, printer, slot.id);
 }
 
 Status add_switches(List& list, const std::vector<Slot>& slots, const Printer& printer) {
@@ -300,7 +313,7 @@ Status add_switches(List& list, const std::vector<Slot>& slots, const Printer& p
             fmt::format("the input {}, which {} leaves free", upper(input->name), upper(input->name.substr(0, 1))));
         ++input;
     }
-    add_door(list, printer);
+    add_door(list, slots, printer);
     list.add("VALIDATE_HOMING_ENDSTOPS", "on", "homing that ends without its switch is an error");
     return {};
 }

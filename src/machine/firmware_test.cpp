@@ -79,10 +79,14 @@ TEST_CASE("lists of machines with a far switch, a door, jerk and an odd name kee
         printer.controller.firmware = release;
         printer.name = "50 % \"tower\"; #2 \\ $x";
         printer.axes[0].jerk_mm_s = 2;
-        for (const std::string door : {"y_max", "z_min", "x_max", "z_probe", "filament"}) {
+        for (const std::string door : {"y_max", "y_min", "z_min", "x_max", "z_probe", "filament"}) {
             printer.door.input = door;
             CHECK(problems(printer) == "");
         }
+        printer.door = {"y_min", true};  // where the stand-in Y would home
+        const bool newer = release == MarlinRelease::v2_1_3;
+        CHECK(value(firmware_settings(printer).value(),
+                    newer ? "Y_MIN_ENDSTOP_HIT_STATE" : "Y_MIN_ENDSTOP_INVERTING") == (newer ? "LOW" : "true"));
         printer.door = {};
         printer.limit_switches = switches_of(printer);
         printer.limit_switches.push_back({Axis::platform, false, true});
