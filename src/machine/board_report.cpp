@@ -146,7 +146,7 @@ private:
         check_home_offset(which, axis);
     }
 
-    /// Moves of all axes, and those that the firmware calls travel, have one more limit beside the axes' own.
+    /// Marlin limits every move by M204 too, beside each axis by its M201.
     void check_common_acceleration() {
         const auto values = board_.values.find("M204");
         if (values == board_.values.end()) return problems_.push_back("M503: does not say M204");
@@ -173,8 +173,7 @@ private:
         const auto offset = values->second.find(axis.letter);
         if (offset != values->second.end() && std::abs(offset->second) >= 0.0005)
             problems_.push_back(
-                fmt::format("M503: M206 {} is {}: the {} stands that far from where it is told: send "
-                            "M206 {}0",
+                fmt::format("M503: M206 {} is {}: the {} stands that far from where it is told: send M206 {}0",
                             axis.letter, decimal(offset->second), axis_name(which), axis.letter));
     }
 
@@ -188,8 +187,9 @@ private:
         }
     }
 
-    /// Soft endstops closer than the travel cut moves short in silence.
+    /// Soft endstops closer than the travel cut moves short in silence. An extruder, which E is, has none.
     void check_soft_travel(Axis which, const AxisSpec& axis) {
+        if (axis.letter == 'E') return;
         constexpr double tolerance_mm = 0.01;  // they are told with two digits
         const auto low = board_.soft_min.find(axis.letter), high = board_.soft_max.find(axis.letter);
         if (low == board_.soft_min.end() || high == board_.soft_max.end()) {

@@ -78,6 +78,15 @@ TEST_CASE("accelerations of all moves, home offsets, soft endstops and the power
     CHECK(problems(silent)[0].find("M211: no answer") == 0);
 }
 
+TEST_CASE("a tower on the extruder of a classic build has no soft endstops") {
+    Printer printer = load_printer("examples/printers/tower8.toml").value();
+    printer.controller.dialect = Dialect::classic;
+    printer.axes[static_cast<std::size_t>(Axis::tower)].letter = 'E';
+    const std::string text = replaced(good_board, "A1460.00", "");
+    for (const std::string& problem : check_board(parse_board_report(text), printer))
+        CHECK_MESSAGE(problem.find("M211") == std::string::npos, problem);
+}
+
 TEST_CASE("soft endstops in the words of older releases") {
     const BoardReport board =
         parse_board_report("echo:Soft endstops: Off  Min: X:0.00 Y:-5.00   Max: X:200.00 Y:210.50\n");
