@@ -106,8 +106,8 @@ private:
         for (std::size_t i = 3; i < axes_.size(); ++i) {
             const std::string& axis = axes_[i];
             for (const std::string& name : {axis + "_ENABLE_ON", "INVERT_" + axis + "_DIR", axis + "_HOME_DIR",
-                                           axis + "_MIN_POS", axis + "_MAX_POS", axis + "_STEP_PIN", axis + "_DIR_PIN",
-                                           axis + "_ENABLE_PIN", fmt::format("AXIS{}_NAME", i + 1)})
+                                            axis + "_MIN_POS", axis + "_MAX_POS", axis + "_STEP_PIN", axis + "_DIR_PIN",
+                                            axis + "_ENABLE_PIN", fmt::format("AXIS{}_NAME", i + 1)})
                 need(name, "the axis " + axis);
             if (!letters.insert(value(fmt::format("AXIS{}_NAME", i + 1))).second)
                 problem("AXIS{}_NAME must be unique", i + 1);
