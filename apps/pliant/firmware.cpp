@@ -23,7 +23,7 @@ Status run_firmware(const Options& options) {
     if (!options.release.empty()) {
         const auto release = machine::marlin_release(options.release);
         if (!release)
-            return input_error("--release {}: must be {}", options.release,
+            return input_error("--release {}: must be one of {}", options.release,
                                fmt::join(machine::marlin_release_names, ", "));
         printer->controller.firmware = *release;
     }
