@@ -6,6 +6,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "operate/job_file.hpp"
+#include "overcure.hpp"
 #include "plan/timeline.hpp"
 #include "report/plan_picture.hpp"
 
@@ -27,8 +28,13 @@ Status make_plan(const Options& options) {
         if (!other) return tl::unexpected(other.error());
         job->printer = std::move(*other);
     }
-    const Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
+    Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
     if (!plan) return tl::unexpected(plan.error());
+    if (options.printer.empty()) {  // the images are for the job's own projector
+        const Result<std::vector<std::string>> overcure = overcure_warnings(job->archive, *plan, job->printer);
+        if (!overcure) return tl::unexpected(overcure.error());
+        plan->warnings.insert(plan->warnings.end(), overcure->begin(), overcure->end());
+    }
     if (!options.picture_file.empty()) {
         const Result<std::string> png = report::plan_picture(*plan, plan::longest_swap(*plan, job->printer));
         if (!png) return tl::unexpected(png.error());

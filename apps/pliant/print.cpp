@@ -24,6 +24,7 @@ namespace {
 struct Options {
     LiveOptions live;
     std::string report_file;
+    std::vector<std::string> accepted;
     bool twin = false;
     bool list_ports = false;
     bool given_speed = false;
@@ -95,7 +96,8 @@ Result<int> print_on_twin(const Options& options) {
     const host::LinkOptions link = operate::link_options(job->printer.controller);
     if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
-    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs);
+    const twin::Judgement judgement{options.live.accepted};
+    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs, judgement);
     if (!report) return tl::unexpected(report.error());
 
     const std::string json = twin::report_json(*report);
@@ -104,7 +106,7 @@ Result<int> print_on_twin(const Options& options) {
             return tl::unexpected(written.error());
     }
     if (!options.live.report.empty()) {
-        Result<report::CuredBlock> block = report::cured_block(bench.twin(), manifest, runs);
+        Result<report::CuredBlock> block = report::cured_block(bench.twin(), manifest, runs, judgement);
         if (!block) return tl::unexpected(block.error());
         const report::PrintExtras extras{"virtual printer", "", record.lines_sent, record.resends,
                                          std::make_shared<const report::CuredBlock>(std::move(*block))};
@@ -126,7 +128,7 @@ int list_ports() {
     return exit_done;
 }
 
-Result<int> print(const Options& options) {
+Result<int> print(Options& options) {
     if (options.list_ports) return list_ports();
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
     if (!options.twin && options.live.port.empty() && !options.live.report.empty())
@@ -135,6 +137,10 @@ Result<int> print(const Options& options) {
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
     if (options.twin && !options.live.clock_file.empty()) return input_error("--clock goes with --port");
     if (options.twin && !options.live.emergency_line.empty()) return input_error("--emergency-line goes with --port");
+    if (!options.twin && !options.accepted.empty()) return input_error("--accept goes with --twin");
+    auto accepted = twin::accepted_findings(options.accepted);
+    if (!accepted) return input_error("--accept: {}", accepted.error().message);
+    options.live.accepted = std::move(*accepted);
     if (options.twin && options.live.resume)
         return input_error("--resume needs a printer that is still there: --port DEVICE");
     if (!options.twin && options.live.projector.empty())
@@ -152,6 +158,11 @@ void add_print(CLI::App& app, int& status) {
     command->add_option("job", live.job, "job file (.zip)");
     command->add_option("--port", live.port, "serial port of the machine");
     command->add_flag("--twin", options->twin, "print on the virtual printer and compare what cured with the model");
+    command
+        ->add_option("--accept", options->accepted,
+                     "a finding of --twin that does not fail the print: overcure, volume, contamination, cleaning")
+        ->type_name("FINDING")
+        ->allow_extra_args(false);
     command->add_flag("--list-ports", options->list_ports, "list the serial ports");
     command->add_option("--projector", live.projector, "folder whose shown.png is the light");
     command->add_flag("--resume", live.resume, "go on with an interrupted print");

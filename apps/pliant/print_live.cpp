@@ -233,11 +233,13 @@ Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, co
     const twin::RunSource images = [&](int layer, int material) {
         return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
     };
+    constexpr double wall_clock_s = 0.05;  // how late a busy computer may be
+    const twin::Judgement judgement{options.accepted, wall_clock_s * std::max(1.0, options.speed)};
     if (options.report.empty())
-        return twin::inspect(twin, manifest, images).map([&](const twin::Report& report) {
+        return twin::inspect(twin, manifest, images, judgement).map([&](const twin::Report& report) {
             return verdict(options, report, ended.status);
         });
-    Result<report::CuredBlock> made = report::cured_block(twin, manifest, images);
+    Result<report::CuredBlock> made = report::cured_block(twin, manifest, images, judgement);
     if (!made) return tl::unexpected(made.error());
     const auto block = std::make_shared<const report::CuredBlock>(std::move(*made));
     if (Status written = write_report(options, ready, ended.last, block); !written)

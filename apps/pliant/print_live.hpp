@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "core/error.hpp"
+#include "twin/finding.hpp"
 
 namespace pliant::app {
 
@@ -21,7 +23,8 @@ struct LiveOptions {
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;
     double speed = 1;
-    std::string clock_file;  ///< of the virtual printer; "": the wall's clock
+    std::vector<twin::Finding::Kind> accepted;  ///< what may be wrong with a print on the virtual printer
+    std::string clock_file;                     ///< of the virtual printer; "": the wall's clock
     Output output;
 };
 

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <random>
 
 #include "core/test_text.hpp"
 #include "halves.hpp"
@@ -213,7 +216,7 @@ TEST_CASE("an exposure that is too short, and one that comes twice, show") {
     twice.replace(line, line + line);
     twice.run();
     CHECK_FALSE(twice.report.passed);
-    CHECK(twice.report.pixels_lit_twice == 30);  // the grey column too: 100 + 100 + 155
+    CHECK(twice.report.wrong_dose_pixels == 30);
 }
 
 TEST_CASE("a forbidden move is refused, stops the print and is reported") {
@@ -377,6 +380,108 @@ TEST_CASE("mutation: any one image that is shown with one pixel changed is notic
             CHECK(report.wrong_pixels >= 1);
             CHECK(holds(report.first_deviation, fmt::format("layer {}", layer)));
         }
+    }
+}
+
+namespace {
+
+/// A random job of the size of the halves, in two resins: what it has of images, and how long they are lit.
+struct RandomJob {
+    std::map<std::pair<int, int>, job::Image> images;
+    job::Manifest job = app::halves::job({});
+
+    explicit RandomJob(std::mt19937& random) {
+        const auto pick = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
+        const int count = 2 + pick(2);
+        job.bottom_layers = pick(1);
+        job.layers.clear();
+        for (job::Material& m : job.materials) {
+            m.model_volume_mm3 = 0;
+            m.exposure_s = 2 + pick(10) / 10.0;
+        }
+        for (int layer = 0; layer < count; ++layer) {
+            job.layers.push_back({50 * (layer + 1), 50, {}});
+            job::Image soft{width_px, height_px, std::vector<std::uint8_t>(width_px * height_px)}, rigid = soft;
+            for (std::size_t i = 0; i < soft.pixels.size(); ++i) {
+                soft.pixels[i] = static_cast<std::uint8_t>(pick(3) == 0 ? pick(255) : 255 * pick(1));
+                rigid.pixels[i] = static_cast<std::uint8_t>(pick(255 - soft.pixels[i]));
+            }
+            soft.pixels[0] = rigid.pixels[1] = 255;
+            soft.pixels[1] = rigid.pixels[0] = 0;
+            add(layer, 0, soft);
+            add(layer, 1, rigid);
+        }
+    }
+    void add(int layer, int material, const job::Image& image) {
+        images[{layer, material}] = image;
+        const double area_mm2 =
+            static_cast<double>(twin::light_of(twin::runs_of(image))) / 255 * app::halves::pixel_mm2;
+        job.layers.back().images.push_back({material, fmt::format("layers/{:05}_{}.png", layer, material), area_mm2});
+        job.materials[static_cast<std::size_t>(material)].model_volume_mm3 += area_mm2 * 0.05;
+    }
+};
+
+using Images = std::map<std::pair<int, int>, job::Image>;
+
+/// Plans and prints a job whose projector shows `shown`, and holds the block against the archive's images.
+twin::Report print_of(const job::Manifest& planned, const RandomJob& asked, const Images& shown,
+                      const Images& archived) {
+    const machine::Printer printer = small_tower();
+    const plan::Plan plan = plan::make_plan(planned, printer).value();
+    app::TwinBench bench(printer);
+    Progress silent;
+    host::PrintRecord record;
+    const auto show = [&](int layer, int material) -> Result<job::Image> { return shown.at({layer, material}); };
+    const Status printed =
+        host::print_job(plan::write_gcode(plan, planned, printer), show, bench.devices(), silent, record);
+    REQUIRE_MESSAGE(printed, (printed ? "" : printed.error().message));
+    return twin::inspect(bench.twin(), asked.job, twin::ImageSource([&](int layer, int material) -> Result<job::Image> {
+                             return archived.at({layer, material});
+                         }))
+        .value();
+}
+
+bool has(const twin::Report& report, twin::Finding::Kind kind) {
+    return std::any_of(report.findings.begin(), report.findings.end(), [&](auto& f) { return f.kind == kind; });
+}
+
+}  // namespace
+
+TEST_CASE("property: random jobs pass; with one voxel, one time or two images changed they fail, and it is named") {
+    using Kind = twin::Finding::Kind;
+    std::mt19937 random(9);
+    const auto pick = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
+    for (int trial = 0; trial < 25; ++trial) {
+        CAPTURE(trial);
+        const RandomJob job(random);
+        const twin::Report good = print_of(job.job, job, job.images, job.images);
+        CHECK_MESSAGE(good.passed, twin::report_text(good));
+        CHECK(good.findings.empty());
+
+        const int layer = pick(static_cast<int>(job.job.layers.size()) - 1), material = pick(1);
+        Images other = job.images;
+        other.at({layer, material}).pixels[static_cast<std::size_t>(pick(47))] ^=
+            static_cast<std::uint8_t>(1 << pick(7));
+        const twin::Report shown = print_of(job.job, job, other, job.images);
+        CHECK(shown.wrong_pixels == 1);
+        CHECK((has(shown, Kind::missing) || has(shown, Kind::stray) || has(shown, Kind::foreign)));
+        CHECK(has(print_of(job.job, job, other, other), Kind::image));
+
+        job::Manifest timed = job.job;
+        constexpr std::array<double, 5> factors{0.95, 1.05, 1.5, 2, 10};
+        timed.layers[static_cast<std::size_t>(layer)].images[static_cast<std::size_t>(material)].exposure_s =
+            job::exposure_s(job.job, static_cast<std::size_t>(layer), static_cast<std::size_t>(material)) *
+            factors[static_cast<std::size_t>(pick(4))];
+        const twin::Report longer = print_of(timed, job, job.images, job.images);
+        CHECK(has(longer, Kind::dose));
+        CHECK(longer.wrong_pixels == 0);
+
+        Images exchanged = job.images;
+        std::swap(exchanged.at({0, material}), exchanged.at({1, material}));
+        const twin::Report swapped = print_of(job.job, job, exchanged, job.images);
+        CHECK(!swapped.passed);
+        CHECK(swapped.wrong_pixels > 1);
+        CHECK(has(print_of(job.job, job, exchanged, exchanged), Kind::image));
     }
 }
 

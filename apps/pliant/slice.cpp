@@ -8,6 +8,7 @@
 #include "core/files.hpp"
 #include "job/png.hpp"
 #include "operate/job_file.hpp"
+#include "overcure.hpp"
 #include "plan/plan.hpp"
 #include "prepare/slice_job.hpp"
 #include "report/job_picture.hpp"
@@ -53,6 +54,16 @@ Status draw_picture(const SliceOptions& options) {
     return write_file(options.picture, *png);
 }
 
+/// What only the finished images can tell.
+Status add_overcure(const std::string& file, const machine::Printer& printer, plan::Plan& plan) {
+    const Result<job::Archive> archive = job::Archive::open(file);
+    if (!archive) return tl::unexpected(archive.error());
+    const Result<std::vector<std::string>> warnings = overcure_warnings(*archive, plan, printer);
+    if (!warnings) return tl::unexpected(warnings.error());
+    plan.warnings.insert(plan.warnings.end(), warnings->begin(), warnings->end());
+    return {};
+}
+
 Result<prepare::PrinterFile> read_printer(const std::string& file) {
     Result<machine::Printer> printer = machine::load_printer(file);
     if (!printer) return tl::unexpected(printer.error());
@@ -70,9 +81,11 @@ Status slice(const SliceOptions& options) {
     const prepare::Order& order = options.order;
     Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
-    const auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
+    auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
     Status status;
+    if (!options.output.quiet) status = add_overcure(options.job, printer->printer, made->plan);
+    if (!status) return status;
     if (!options.picture.empty()) status = draw_picture(options);
     if (status) print_summary(options, made->manifest, made->plan, made->notes);
     return status;

@@ -110,9 +110,10 @@ private:
 
 }  // namespace
 
-Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images) {
+Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images,
+                               const twin::Judgement& judgement) {
     constexpr double any_share = 1e-3;
-    Result<twin::Report> report = twin::inspect(twin, job, images);
+    Result<twin::Report> report = twin::inspect(twin, job, images, judgement);
     if (!report) return tl::unexpected(report.error());
     const machine::Projector& p = twin.printer().projector;
     const int high_um = job.layers.empty() ? 0 : job.layers.back().z_um;

@@ -20,7 +20,8 @@ struct CuredBlock {
 
 /// Inspects the twin's block, which must grow no more, and makes it coarse enough to draw. Cost: every image is asked
 /// for twice. Errors: an image cannot be had.
-[[nodiscard]] Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images);
+[[nodiscard]] Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images,
+                                             const twin::Judgement& judgement = {});
 
 /// Drawing and block side by side from above and in front, 1200 x 540 pixels, PNG; where they differ in shades of red.
 /// What is not as it should be is drawn however little it is. Errors: there is nothing to draw.

@@ -13,13 +13,19 @@ constexpr double rounding_um = 0.01;
 
 }  // namespace
 
+double allowed_overcure_um(const machine::Resin& resin) {
+    return resin.cure_depth_um + resin.bleed_compensation_um;
+}
+
 Cure::Cure(const machine::Printer& printer) : printer_(&printer) {
     for (const machine::Vat& vat : printer.vats) {
         left_ml_.push_back(vat.fill_ml);
         const machine::Resin* resin = printer.find_resin(vat.resin);
         curves_.push_back(resin != nullptr ? working_curve(printer, *resin) : WorkingCurve{});
+        allowed_um_.push_back(resin != nullptr ? allowed_overcure_um(*resin) : 0);
     }
     overcure_mm3_.resize(printer.vats.size());
+    overcure_beyond_mm3_.resize(printer.vats.size());
 }
 
 void Cure::clear() {
@@ -107,11 +113,18 @@ double Cure::overcure_um(const Column& column) const {
 
 /// More light arrives at the ceiling of a column.
 void Cure::add_dose(Column& column, double dose_J_m2) {
+    const auto vat = static_cast<std::size_t>(column.vat);
     const double before = overcure_um(column);
     column.dose_J_m2 += static_cast<float>(dose_J_m2);
     const double after = overcure_um(column);
-    overcure_mm3_[static_cast<std::size_t>(column.vat)] += (after - before) / 1000 * pixel_mm2();
-    deepest_overcure_um_ = std::max(deepest_overcure_um_, after);
+    overcure_mm3_[vat] += (after - before) / 1000 * pixel_mm2();
+    const double allowed = allowed_um_[vat];
+    if (after > allowed) overcure_beyond_mm3_[vat] += (after - std::max(before, allowed)) / 1000 * pixel_mm2();
+    if (after <= deepest_overcure_um_) return;
+    deepest_overcure_um_ = after;
+    const auto at = static_cast<int>(&column - columns_.data());
+    const int width = printer_->projector.width_px;
+    deepest_ = {at / width, at % width, column.bottom_um};
 }
 
 /// Light passes the new layer and all that is solid above it, up to the ceiling of the column.

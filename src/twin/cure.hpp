@@ -46,6 +46,10 @@ struct CuredLayer {
     std::vector<VatLayer> vats;
 };
 
+/// How deep below an underside of the images a resin may cure: one `cure_depth`, within which a layer-wise print can
+/// know an underside at all, and what bleed compensation has left out of the images there.
+[[nodiscard]] double allowed_overcure_um(const machine::Resin& resin);
+
 class Cure {
 public:
     explicit Cure(const machine::Printer& printer);
@@ -70,6 +74,14 @@ public:
     /// Cured below ceilings though no image asks for it, and the deepest of it; by vat. Up to finish().
     [[nodiscard]] const std::vector<double>& overcure_mm3() const { return overcure_mm3_; }
     [[nodiscard]] double deepest_overcure_um() const { return deepest_overcure_um_; }
+    /// Of it what is deeper than a drawing allows, by vat; see allowed_overcure_um.
+    [[nodiscard]] const std::vector<double>& overcure_beyond_mm3() const { return overcure_beyond_mm3_; }
+    struct Place {
+        int row = 0, column = 0;
+        int z_um = 0;  ///< of the underside
+    };
+    /// Where the deepest overcure is.
+    [[nodiscard]] const Place& deepest_overcure() const { return deepest_; }
     /// Cross-section of what was last lit in any vat at the part's lower end, in mm^2.
     [[nodiscard]] double section_mm2() const { return section_mm2_; }
     /// What went wrong with the light, one line each.
@@ -109,14 +121,16 @@ private:
 
     const machine::Printer* printer_;
     std::vector<WorkingCurve> curves_;  ///< by vat
+    std::vector<double> allowed_um_;    ///< by vat: overcure
     std::optional<OpenLayer> open_;
     std::optional<Faint> faint_;
     int top_um_ = 0;  ///< of the part
     std::vector<CuredLayer> layers_;
     std::vector<Column> columns_;  ///< (height, width); empty until something is lit
     std::vector<double> left_ml_;
-    std::vector<double> overcure_mm3_;
+    std::vector<double> overcure_mm3_, overcure_beyond_mm3_;
     double deepest_overcure_um_ = 0;
+    Place deepest_;
     double section_mm2_ = 0;
     long pixels_lit_twice_ = 0;
     std::vector<std::string> faults_;

@@ -44,10 +44,6 @@ Json contamination_json(const Report& r) {
             {"residue", std::move(residue)}};
 }
 
-}  // namespace
-
-namespace {
-
 /// A part full of small holes has thousands of them: the sums are of all, the list is of the largest.
 Json trapped_json(const Report& r) {
     constexpr std::size_t most = 50;
@@ -81,6 +77,13 @@ std::string trapped_text(const Report& r) {
     return text;
 }
 
+Json findings_json(const Report& r) {
+    Json findings = Json::array();
+    for (const Finding& f : r.findings)
+        findings.push_back({{"name", finding_name(f.kind)}, {"text", f.text}, {"accepted", f.accepted}});
+    return findings;
+}
+
 }  // namespace
 
 std::string report_json(const Report& r) {
@@ -92,10 +95,13 @@ std::string report_json(const Report& r) {
                           {"cured_mm3", rounded(resin.cured_mm3)},
                           {"left_ml", rounded(resin.left_ml)},
                           {"foreign_share", rounded(resin.foreign_share)},
-                          {"overcure_mm3", rounded(resin.overcure_mm3)}});
+                          {"overcure_mm3", rounded(resin.overcure_mm3)},
+                          {"overcure_beyond_mm3", rounded(resin.overcure_beyond_mm3)},
+                          {"allowed_overcure_um", rounded(resin.allowed_overcure_um)}});
     }
     const Json json = {{"passed", r.passed},
                        {"reasons", r.reasons},
+                       {"findings", findings_json(r)},
                        {"first_deviation", r.first_deviation},
                        {"materials", std::move(materials)},
                        {"resins", std::move(resins)},
@@ -104,6 +110,13 @@ std::string report_json(const Report& r) {
                        {"stray_layers", r.stray_layers},
                        {"wrong_thickness", r.wrong_thickness},
                        {"wrong_pixels", r.wrong_pixels},
+                       {"missing_pixels", r.missing_pixels},
+                       {"foreign_pixels", r.foreign_pixels},
+                       {"stray_pixels", r.stray_pixels},
+                       {"wrong_dose_pixels", r.wrong_dose_pixels},
+                       {"least_dose", rounded(r.least_dose)},
+                       {"most_dose", rounded(r.most_dose)},
+                       {"wrong_images", r.wrong_images},
                        {"pixels_lit_twice", r.pixels_lit_twice},
                        {"overlit_pixels", r.log.overlit_pixels},
                        {"swaps", r.log.swaps},
@@ -136,7 +149,8 @@ std::string report_text(const Report& r) {
     text += trapped_text(r);
     if (!r.first_deviation.empty()) text += fmt::format("  first: {}\n", r.first_deviation);
     for (const std::string& mishap : r.log.mishaps) text += fmt::format("  fault: {}\n", mishap);
-    for (const std::string& reason : r.reasons) text += fmt::format("  wrong: {}\n", reason);
+    for (const Finding& f : r.findings)
+        text += fmt::format("  {} ({}): {}\n", f.accepted ? "accepted" : "wrong", finding_name(f.kind), f.text);
     return text;
 }
 

@@ -19,6 +19,9 @@ public:
     /// `mask`: 8-bit grey of the projector's size; nullopt where the printer has none.
     Screen(const machine::Projector& projector, std::optional<job::Image> mask);
 
+    /// Whether what is shown is not the coverage itself.
+    [[nodiscard]] bool corrects() const { return covered_.has_value() || mask_.has_value(); }
+
     struct Picture {
         Runs runs;            ///< coverage; 255: the whole pixel
         long overlit_px = 0;  ///< pixels that get more light than a whole one needs

@@ -1,0 +1,19 @@
+// What the light of a job will cure below undersides, told before anything is printed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "job/job.hpp"
+#include "machine/printer.hpp"
+#include "plan/plan.hpp"
+
+namespace pliant::app {
+
+/// One line for each resin; none: no deeper than the drawing allows. Cost: every image is read. Errors: an image cannot
+/// be read, the mask is missing.
+[[nodiscard]] Result<std::vector<std::string>> overcure_warnings(const job::Archive& archive, const plan::Plan& plan,
+                                                                 const machine::Printer& printer);
+
+}  // namespace pliant::app
