@@ -256,7 +256,9 @@ public:
 
 private:
     std::string judge(twin::Twin& twin, Count& count) {
-        const twin::Report report = need(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image)));
+        const twin::Judgement judgement{{}, 0.05 * wanted_.speed};  // the computer may be late by 50 ms
+        const twin::Report report =
+            need(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image), judgement));
         for (const twin::CuredLayer& layer : twin.cured().layers()) {
             for (const twin::VatLayer& vat : layer.vats) {
                 for (const twin::Lit& lit : vat.lit) count.pieces += lit.pieces > 1 ? 1 : 0;

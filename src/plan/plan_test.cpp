@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/test_text.hpp"
+#include "machine/working_curve.hpp"
 #include "plan/check.hpp"
 #include "plan/test_jobs.hpp"
 
@@ -69,7 +70,12 @@ TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
     plan = planned(job, printer);
     CHECK(plan.vat_of_material == std::vector<int>{3, 0, 1});
     CHECK(filled_printer(plan, job, printer).vats[3].resin == "rubber");
-    CHECK(filled_printer(plan, job, printer).find_resin("rubber")->exposure_s == 2.5);
+    const machine::Printer filled = filled_printer(plan, job, printer);
+    CHECK(filled.find_resin("rubber")->exposure_s == 2.5);
+    // Its light is taken to cure two layers, and twice as deep as it comes before it is e times weaker.
+    const machine::WorkingCurve curve = machine::working_curve(filled, *filled.find_resin("rubber"));
+    CHECK(curve.depth_um(2.5 * machine::irradiance_W_m2(filled)) == doctest::Approx(2 * printer.layer_um));
+    CHECK(curve.penetration_um == printer.layer_um);
 }
 
 TEST_CASE("materials of one resin share a vat and need no swap") {

@@ -13,11 +13,20 @@ namespace {
 
 constexpr std::size_t most_lines = 12;
 
+/// What is not as it should be, and was accepted.
+std::vector<std::string> accepted(const twin::Report& r) {
+    std::vector<std::string> texts;
+    for (const twin::Finding& f : r.findings) {
+        if (f.accepted) texts.push_back(f.text);
+    }
+    return texts;
+}
+
 std::string verdict(const twin::Report& r) {
     if (r.passed) {
         return fmt::format(
-            "<p><span class=\"pill good\">as drawn</span> {} layers; every pixel holds what its image asks for.</p>\n",
-            r.layers);
+            "<p><span class=\"pill good\">{}</span> {} layers; every pixel holds what its image asks for.</p>\n",
+            r.findings.empty() ? "as drawn" : "accepted", r.layers);
     }
     return fmt::format(
         "<p><span class=\"pill bad\">not as drawn</span></p>\n<p class=\"message\">First deviation: {}</p>\n",
@@ -102,7 +111,7 @@ std::string block_section(const CuredBlock& block, const std::string& png) {
                "drawing and the block of the virtual printer, platform below{}</figcaption></figure>\n",
                base64(png), block.off.runs().empty() ? "" : "; where they differ in colour, however little it is") +
            tiles(r) + materials(r) + resins(r) + trapped(r) + list("What is wrong", r.reasons) +
-           list("What broke on the way", r.log.mishaps);
+           list("What was accepted", accepted(r)) + list("What broke on the way", r.log.mishaps);
 }
 
 }  // namespace pliant::report

@@ -12,6 +12,7 @@ struct Source {
     int resin = 0;
     const Runs* runs = nullptr;
     double seconds = 0;
+    int pieces = 1;
     std::size_t at = 0;  ///< first run that is not done with
     int value = 0;       ///< in the piece that is being looked at
 };
@@ -23,14 +24,15 @@ struct ResinThere {
     int lacking = 0;                            ///< asked for in vain
     double asked_value_s = 0, lit_value_s = 0;  ///< of every picture its value times its time
     int value = 0;                              ///< asked for in all
+    int pieces = 1;
 };
 
 class Walk {
 public:
     Walk(const std::vector<AskedImage>& asked, const std::vector<ShownPicture>& shown, double slack_s)
         : slack_s_(slack_s) {
-        for (const AskedImage& a : asked) asked_.push_back({a.resin, &a.runs, a.seconds});
-        for (const ShownPicture& s : shown) shown_.push_back({s.resin, s.runs, s.seconds});
+        for (const AskedImage& a : asked) asked_.push_back({a.resin, &a.runs, a.seconds, 1});
+        for (const ShownPicture& s : shown) shown_.push_back({s.resin, s.runs, s.seconds, s.pieces});
         found_.images.resize(asked.size());
         for (std::size_t i = 0; i < asked.size(); ++i) found_.images[i].light = light_of(asked[i].runs);
     }
@@ -97,6 +99,7 @@ private:
             ResinThere& r = there(s.resin);
             r.left += s.value;
             r.lit_value_s += s.value * s.seconds;
+            r.pieces = std::max(r.pieces, s.pieces);
         }
         lacking_.assign(asked_.size(), 0);
         for (std::size_t i = 0; i < asked_.size(); ++i) {
@@ -139,7 +142,7 @@ private:
     /// Grey is a share of the pixel, so pictures that share one light their shares of it: the time is their mean.
     void judge_dose(const ResinThere& r, int pixels) {
         const double asked_s = r.asked_value_s / r.value, lit_s = r.lit_value_s / r.value;
-        if (is_right_dose(asked_s, lit_s, slack_s_)) return;
+        if (is_right_dose(asked_s, lit_s, r.pieces, slack_s_)) return;
         found_.wrong_dose_px += pixels;
         if (asked_s <= 0) return;
         found_.least_share = std::min(found_.least_share, lit_s / asked_s);
@@ -160,7 +163,7 @@ bool all_as_asked(const std::vector<AskedImage>& asked, const std::vector<ShownP
     for (const AskedImage& a : asked) {
         std::size_t i = 0;
         while (i < shown.size() && (taken[i] || shown[i].resin != a.resin || *shown[i].runs != a.runs)) ++i;
-        if (i == shown.size() || !is_right_dose(a.seconds, shown[i].seconds, slack_s)) return false;
+        if (i == shown.size() || !is_right_dose(a.seconds, shown[i].seconds, shown[i].pieces, slack_s)) return false;
         taken[i] = true;
     }
     return true;
@@ -168,7 +171,8 @@ bool all_as_asked(const std::vector<AskedImage>& asked, const std::vector<ShownP
 
 }  // namespace
 
-bool is_right_dose(double asked_s, double lit_s, double slack_s) {
+bool is_right_dose(double asked_s, double lit_s, int pieces, double slack_s) {
+    if (pieces > 1 && lit_s > 1.5 * asked_s) return false;
     return std::abs(lit_s - asked_s) <= 0.01 * asked_s + slack_s;
 }
 

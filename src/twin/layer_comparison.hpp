@@ -21,6 +21,7 @@ struct ShownPicture {
     int resin = 0;
     const Runs* runs = nullptr;  ///< coverage; must outlive the call
     double seconds = 0;
+    int pieces = 1;  ///< in which it was given
 };
 
 /// Pixels are counted once for each resin of which they have too much or too little.
@@ -40,8 +41,9 @@ struct LayerDifference {
 };
 
 /// Whether a light was as long as asked: within 1 % and `slack_s`. A dose that is 1 % off moves the depth that it cures
-/// by 1 % of the resin's depth of penetration, about a micrometre.
-[[nodiscard]] bool is_right_dose(double asked_s, double lit_s, double slack_s);
+/// by 1 % of the resin's depth of penetration, about a micrometre. One that was given in several pieces must not have
+/// been given twice, however little the clock is worth: half as much more is the most.
+[[nodiscard]] bool is_right_dose(double asked_s, double lit_s, int pieces, double slack_s);
 
 [[nodiscard]] LayerDifference difference(const std::vector<AskedImage>& asked, const std::vector<ShownPicture>& shown,
                                          double slack_s);

@@ -55,6 +55,9 @@ TEST_CASE("a light that is longer or shorter than asked is a wrong dose of its p
         CHECK((seconds < 2.5 ? d.least_share : d.most_share) == doctest::Approx(seconds / 2.5));
     }
     CHECK(difference(both, {{0, &left, 2.53}, {1, &right, 2.47}}, slack_s).wrong_dose_px == 0);
+    // Where the clock is worth little, light in one piece may be longer; in two it must not be two lights.
+    for (const int pieces : {1, 2})
+        CHECK(difference(both, {{0, &left, 5, pieces}, {1, &right, 2.5}}, 10).wrong_dose_px == (pieces > 1 ? 5 : 0));
 }
 
 TEST_CASE("images of one resin may come in one picture; grey is a share of the pixel, not of the time") {
