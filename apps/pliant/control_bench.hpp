@@ -137,6 +137,7 @@ struct ControlBench {
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
+    std::function<void()> at_open;   ///< of the port
     std::vector<host::Given> ended;  ///< lights, as the host has told
     host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
@@ -175,19 +176,21 @@ struct ControlBench {
         life = std::make_unique<Life>();
         clock = std::make_unique<TwinClock>(*twin);
         projector = std::make_unique<MortalProjector>(*twin, *life);
-        host::ControlSetup setup{
-            printer,
-            [this]() -> Result<std::unique_ptr<host::Wire>> { return std::make_unique<MortalWire>(*twin, *life); },
-            *projector,
-            *clock,
-            operate::programs_of(printer),
-            operate::link_options(printer.controller),
-            emergency_line,
-            [this](int layer) {
-                if (after_layer) after_layer(layer);
-            },
-            guarded ? &guard : nullptr,
-            [this](const host::Given& given) { ended.push_back(given); }};
+        host::ControlSetup setup{printer,
+                                 [this]() -> Result<std::unique_ptr<host::Wire>> {
+                                     if (at_open) at_open();
+                                     return std::make_unique<MortalWire>(*twin, *life);
+                                 },
+                                 *projector,
+                                 *clock,
+                                 operate::programs_of(printer),
+                                 operate::link_options(printer.controller),
+                                 emergency_line,
+                                 [this](int layer) {
+                                     if (after_layer) after_layer(layer);
+                                 },
+                                 guarded ? &guard : nullptr,
+                                 [this](const host::Given& given) { ended.push_back(given); }};
         life->on_death = [this] {
             guard.host_died();
             twin->light_off();

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 
@@ -38,6 +39,25 @@ std::string block_of(twin::Twin& twin) {
     return text;
 }
 
+constexpr std::array both_releases = {machine::MarlinRelease::v2_1_1, machine::MarlinRelease::v2_1_2};
+
+/// The releases in turn, along the moments of a print.
+machine::MarlinRelease release_at(long moment) {
+    return both_releases[static_cast<std::size_t>(moment / every % 2)];
+}
+
+twin::Options of(machine::MarlinRelease release) {
+    twin::Options options;
+    options.release = release;
+    return options;
+}
+
+twin::Options faulty(twin::Fault::Kind kind, int n, double amount = 0) {
+    twin::Options options;
+    options.faults = {{kind, n, amount}};
+    return options;
+}
+
 /// False if a vat hung half-way on its hooks; else the part must be the undisturbed one.
 bool has_gone_on(ControlBench& b, const std::string& whole) {
     INFO(b.last_error());
@@ -58,7 +78,7 @@ TEST_CASE("a host that is killed anywhere is followed by one that finishes the s
     MESSAGE(deeds << " deeds in a print");
     int resumed = 0;
     for (long n = 1; n < deeds; n += every) {
-        ControlBench b;
+        ControlBench b(of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -84,7 +104,7 @@ TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on i
     const long deeds = undisturbed.life->deeds;
     int resumed = 0, refused = 0, before = 0;
     for (long n = 1; n < deeds; n += every) {
-        ControlBench b;
+        ControlBench b(of(release_at(n)));
         b.life->at_deed = [&](long deed) {
             if (deed == n) b.twin->reset();
         };
@@ -114,7 +134,7 @@ TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked abo
     const long deeds = undisturbed.life->deeds;
     int asked = 0, refused = 0, resumed = 0;
     for (long n = 1; n < deeds; n += every) {
-        ControlBench b;
+        ControlBench b(of(release_at(n)));
         b.guarded = false;
         b.new_host();
         double lit_since_s = 0, lit_s = 0;
@@ -178,8 +198,9 @@ struct Person {
     }
 };
 
+/// Between two lights.
 std::function<bool(const Snapshot&)> completion_above(double share) {
-    return [share](const Snapshot& s) { return s.completion > share; };
+    return [share](const Snapshot& s) { return !s.lit && s.completion > share; };
 }
 
 std::function<bool(const Snapshot&)> lit_on_layer(int layer, double for_s = 0.5) {
@@ -285,7 +306,7 @@ TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print g
     CHECK(b.snapshot().state == State::halted);
     CHECK_FALSE(b.projector->lit);
     CHECK(dark_s - stopped_s < 0.1);
-    CHECK(b.last_error() == "emergency stop");
+    CHECK(b.last_error().find("emergency stop: the board is halted; reset it") == 0);
     b.twin->reset();
     b.life->at_look = {};
     b.start({true, {}});
@@ -314,6 +335,170 @@ public:
 };
 
 }  // namespace
+
+TEST_CASE(
+    "an emergency stop in a move stops it where it is, and says what to do; so does a host that comes too early") {
+    for (const auto release : both_releases) {
+        ControlBench b(of(release));
+        int moving_um = 0;
+        Person person(b, completion_above(0.4), [&] {
+            b.twin->advance_to(b.twin->now() + 0.1);
+            moving_um = b.twin->motors_position()[machine::Axis::platform];
+            b.control->emergency_stop();
+        });
+        b.start();
+        CHECK(person.acted);
+        CHECK(b.twin->interlock().position()[machine::Axis::platform] == moving_um);
+        CHECK(b.snapshot().can_resume);
+        b.life->at_look = {};
+        for (const bool same_host : {true, false}) {
+            if (!same_host) b.new_host();
+            const double before_s = b.twin->now();
+            b.start({true, {}});
+            CHECK(b.twin->now() - before_s < 15);
+            CHECK(b.last_error().find("was halted, and has not been reset since") != std::string::npos);
+            CHECK(b.last_error().find("baud") == std::string::npos);
+            CHECK(b.snapshot().can_resume);
+        }
+        b.twin->reset();
+        b.start({true, {}});
+        if (b.last_error().find("half-way on the hooks") != std::string::npos) continue;
+        CHECK(b.snapshot().finished);
+        b.must_be_whole();
+    }
+}
+
+TEST_CASE("homing to a dead switch is stopped within the time that its way takes, and the switch is named") {
+    for (const int which : {1, 2, 3}) {
+        CAPTURE(which);
+        ControlBench b(faulty(twin::Fault::Kind::dead_switch, which));
+        b.start();
+        const char* name = which == 1   ? "the carriage did not reach its switch (x_min)"
+                           : which == 2 ? "the platform did not reach its switch (z_max)"
+                                        : "the tower did not reach its switch (y_min)";
+        CHECK(b.last_error().find("homing failed: ") == 0);
+        CHECK(b.last_error().find(name) != std::string::npos);
+        CHECK(b.last_error().find("reset the board") != std::string::npos);
+        const machine::AxisSpec& spec = b.printer.axis(which == 1   ? machine::Axis::carriage
+                                                       : which == 2 ? machine::Axis::platform
+                                                                    : machine::Axis::tower);
+        const double travel_s = (spec.max_um - spec.min_um) / 1000.0 / spec.homing_speed_mm_s;
+        CHECK(b.twin->log().pushed_s > 0);
+        CHECK(b.twin->log().pushed_s < 1.1 * travel_s + 10);
+        b.twin->receive("M105\n");
+        CHECK(b.twin->take_output().find("ok") == std::string::npos);  // halted
+    }
+    // One that homes so fast that Marlin gives up before the host does: what it says is not swallowed.
+    ControlBench b(faulty(twin::Fault::Kind::dead_switch, 1), "tower", 2, [](machine::Printer& printer) {
+        printer.axes[static_cast<std::size_t>(machine::Axis::carriage)].homing_speed_mm_s = 200;
+    });
+    b.start();
+    CHECK(b.last_error().find("homing failed: the carriage did not reach its switch (x_min)") == 0);
+}
+
+TEST_CASE("a first try at the wrong port leaves nothing behind: the next one prints") {
+    ControlBench b;
+    b.life->unplugged = true;
+    b.start();
+    CHECK(b.last_error().find("the device is gone") != std::string::npos);
+    CHECK_FALSE(b.snapshot().can_resume);
+    b.life->unplugged = false;
+    b.must_finish();
+    // A host that was killed before anything moved, likewise.
+    ControlBench killed;
+    killed.must_die(3);
+    killed.new_host();
+    CHECK_FALSE(killed.snapshot().can_resume);
+    killed.must_finish();
+}
+
+TEST_CASE("a board that is fresh, resets whenever its port is opened, or loses a tenth of its oks, prints to the end") {
+    for (const auto release : both_releases) {
+        CAPTURE(machine::name_of(release));
+        twin::Options options = of(release);
+        options.boot_s = 1.5;
+        options.homes_first = true;
+        ControlBench fresh(options);
+        fresh.must_finish();
+        CHECK(fresh.snapshot().resends == 0);
+        ControlBench resets(options);
+        resets.at_open = [&] { resets.twin->reset(); };
+        resets.must_die(300);
+        resets.new_host();
+        resets.must_finish({true, {}});
+        CHECK(resets.twin->log().resets == 2);
+        for (int n = 3; n < 3000; n += 10) options.faults.push_back({twin::Fault::Kind::lose_ok, n, 0});
+        ControlBench lossy(options);
+        lossy.must_finish();
+        CHECK(lossy.snapshot().resends == 0);
+    }
+}
+
+TEST_CASE("an ok that a dead host has left behind does not count for the next one") {
+    for (const auto release : both_releases) {
+        for (long n = 200; n < 260; n += 7) {
+            CAPTURE(n);
+            twin::Options options = of(release);
+            options.advanced_ok = true;
+            ControlBench b(options);
+            b.must_die(n);
+            b.new_host();
+            b.must_finish({true, {}});
+            CHECK(b.snapshot().resends == 0);
+        }
+    }
+}
+
+TEST_CASE("progress moves while the axes are homed and a vat is brought, never back, never beyond what was sent") {
+    ControlBench b;
+    double last = 0, longest_s = 0, moved_s = 0;
+    b.life->at_look = [&] {
+        const Snapshot s = b.snapshot();
+        if (s.state != State::printing || s.completion >= 1) return;
+        CHECK(s.completion >= last - 1e-12);
+        if (s.completion > last) moved_s = b.twin->now();
+        longest_s = std::max(longest_s, b.twin->now() - moved_s);
+        last = s.completion;
+    };
+    b.start();
+    CHECK(b.snapshot().finished);
+    CHECK(last > 0.9);
+    CHECK(longest_s < 10);
+}
+
+TEST_CASE("by hand: a second key during a long move stops it where it is; then the axes must be homed") {
+    ControlBench b;
+    const auto serve = [&](Status status) {
+        REQUIRE(status);
+        b.control->serve_until_idle();
+    };
+    serve(b.control->connect());
+    serve(b.control->home({}));
+    const int top_um = b.snapshot().position[machine::Axis::platform];
+    const double begin_s = b.twin->now();
+    int refused = 0;
+    b.life->at_look = [&] {
+        if (b.twin->now() < begin_s + 3 || b.snapshot().state != State::working) return;
+        const Status second = b.control->jog(machine::Axis::platform, 1000, 5);
+        if (!second && second.error().message.find("is stopped instead") != std::string::npos) ++refused;
+    };
+    serve(b.control->jog(machine::Axis::platform, -200000, 5));
+    b.life->at_look = {};
+    CHECK(refused == 1);
+    CHECK(b.snapshot().state == State::idle);
+    CHECK(b.snapshot().message.find("stopped on its way") != std::string::npos);
+    CHECK(b.twin->now() - begin_s < 6);  // not 40 s
+    const int at_um = b.twin->interlock().position()[machine::Axis::platform];
+    CHECK(top_um - at_um > 10000);
+    CHECK(top_um - at_um < 20000);
+    CHECK(b.snapshot().position[machine::Axis::platform] == doctest::Approx(at_um).epsilon(0.0001));
+    serve(b.control->jog(machine::Axis::platform, -1000, 5));
+    CHECK(b.snapshot().message.find("before it is homed") != std::string::npos);
+    serve(b.control->home({}));
+    serve(b.control->jog(machine::Axis::platform, -1000, 5));
+    CHECK(b.snapshot().message.empty());
+    CHECK(b.twin->log().violations.empty());
+}
 
 TEST_CASE("an emergency stop pulls the hardware's line before it says M112; connecting again releases it") {
     CountingLine line;
@@ -355,12 +540,6 @@ namespace {
 
 void with_door(machine::Printer& printer) {
     printer.door.input = "y_max";
-}
-
-twin::Options faulty(twin::Fault::Kind kind, int n, double amount = 0) {
-    twin::Options options;
-    options.faults = {{kind, n, amount}};
-    return options;
 }
 
 /// Somebody who tries to resume all the time; what happened meanwhile.
@@ -683,7 +862,7 @@ TEST_CASE("a host that has connected before it goes on is as sure as one that go
     const long deeds = undisturbed.life->deeds;
     int resumed = 0;
     for (long n = 40; n < deeds; n += 6 * every) {
-        ControlBench b;
+        ControlBench b(of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -703,13 +882,16 @@ TEST_CASE("a host that has connected before it goes on is as sure as one that go
 
 TEST_CASE("every fault of the wire is survived under control too") {
     using twin::Fault;
-    for (const auto kind : {Fault::Kind::corrupt_byte, Fault::Kind::lose_line, Fault::Kind::lose_ok,
-                            Fault::Kind::lose_byte, Fault::Kind::flip_byte, Fault::Kind::resend_loop}) {
+    for (const auto kind :
+         {Fault::Kind::corrupt_byte, Fault::Kind::lose_line, Fault::Kind::lose_ok, Fault::Kind::lose_byte,
+          Fault::Kind::flip_byte, Fault::Kind::resend_loop, Fault::Kind::lose_number}) {
         for (const int n : {7, 40, 123, 260, 391}) {
-            CAPTURE(static_cast<int>(kind));
-            CAPTURE(n);
-            ControlBench b({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}});
-            b.must_finish();
+            for (const auto release : both_releases) {
+                CAPTURE(static_cast<int>(kind));
+                CAPTURE(n);
+                ControlBench b({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}, .release = release});
+                b.must_finish();
+            }
         }
     }
 }

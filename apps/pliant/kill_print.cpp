@@ -2,6 +2,8 @@
 // undisturbed print. Everything is as in a workshop: `pliant print` is a process of its own, killed with SIGKILL at
 // random moments; the virtual printer is at the other end of a pseudo-terminal and sees the light through a folder.
 //
+// The prints take turns on a Marlin 2.1.1 and a 2.1.2. Then one is interrupted twice, which is an emergency stop.
+//
 //   pliant_kill_print PLIANT [--kills N] [--resets N] [--speed X] [--seed S] [--per-print N]
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -97,20 +99,21 @@ Job make_job(const fs::path& folder) {
     return made;
 }
 
-twin::Options booting() {
+twin::Options booting(machine::MarlinRelease release) {
     twin::Options options;
     options.boot_s = 1;
+    options.release = release;
     return options;
 }
 
 /// The virtual printer with a folder for its light, in a thread.
 class Machine {
 public:
-    Machine(const machine::Printer& printer, const fs::path& folder, double speed)
+    Machine(const machine::Printer& printer, const fs::path& folder, double speed, machine::MarlinRelease release)
         : shown_(folder / "shown.png"),
           clock_(need(operate::ClockFile::create(folder / "clock"))),
           pty_(need(twin::Pty::open())),
-          twin_(printer, booting()),
+          twin_(printer, booting(release)),
           thread_([this, speed] {
               twin::ServeOptions options;
               options.speed = speed;
@@ -190,6 +193,7 @@ public:
         } while (std::chrono::steady_clock::now() < end);
         return false;
     }
+    void interrupt() const { ::kill(process_, SIGINT); }
     void kill() {
         ::kill(process_, SIGKILL);
         ::waitpid(process_, &status_, 0);
@@ -228,7 +232,7 @@ public:
         constexpr double longest_s = 300;
         for (const char* rest : {"halves.zip.journal", "halves.zip.journal.guard", "shown.png"})
             fs::remove(folder_ / rest);
-        Machine machine(job_.printer, folder_, wanted_.speed);
+        Machine machine(job_.printer, folder_, wanted_.speed, release);
         bool begun = false;
         std::uniform_real_distribution<double> when(0.05, print_s_ * 0.9);
         for (int i = 0; i <= ends; ++i) {
@@ -252,7 +256,33 @@ public:
         return judge(machine.end(), count);
     }
 
+    /// Ctrl-C twice: an emergency stop at once. Without a reset the next host says that one is wanted, with one it
+    /// finishes the part.
+    std::string interrupt_twice(Count& count) {
+        constexpr double between_s = 0.2, at_once_s = 3, soon_s = 30, longest_s = 300;
+        const auto said = [&] { return read_file(folder_ / "host.log").value_or(""); };
+        for (const char* rest : {"halves.zip.journal", "halves.zip.journal.guard", "shown.png"})
+            fs::remove(folder_ / rest);
+        Machine machine(job_.printer, folder_, wanted_.speed, release);
+        Host host(wanted_, job_, machine.device(), folder_, false);
+        if (host.ends_within(print_s_ * 0.5)) return "the print ended before it was interrupted: " + said();
+        host.interrupt();
+        if (host.ends_within(between_s)) return "it did not wait to be parked: " + said();
+        host.interrupt();
+        if (!host.ends_within(at_once_s)) return host.kill(), "the second Ctrl-C did not end it";
+        if (said().find("emergency stop: the board is halted") == std::string::npos) return "no way on: " + said();
+        Host deaf(wanted_, job_, machine.device(), folder_, true);
+        if (!deaf.ends_within(soon_s)) return deaf.kill(), "it waits for a halted board";
+        if (said().find("has not been reset since") == std::string::npos) return "no word of a reset: " + said();
+        machine.reset();
+        Host last(wanted_, job_, machine.device(), folder_, true);
+        if (!last.ends_within(longest_s)) return last.kill(), "the print does not end";
+        if (said().find("half-way on the hooks") != std::string::npos) return ++count.refused, "";
+        return last.succeeded() ? judge(machine.end(), count) : "the print failed: " + said();
+    }
+
     std::string undisturbed;
+    machine::MarlinRelease release = machine::MarlinRelease::v2_1_1;
 
 private:
     std::string judge(twin::Twin& twin, Count& count) {
@@ -298,6 +328,7 @@ int run(const Wanted& wanted) {
         const bool resets = count.kills >= wanted.kills;
         Round round(wanted, job, folder, random, print_s);
         round.undisturbed = first.undisturbed;
+        round.release = count.prints % 2 == 0 ? machine::MarlinRelease::v2_1_2 : machine::MarlinRelease::v2_1_1;
         const int left = resets ? wanted.resets - count.resets : wanted.kills - count.kills;
         const std::string wrong = round.print(std::min(left, wanted.per_print), resets, count);
         ++count.prints;
@@ -306,6 +337,10 @@ int run(const Wanted& wanted) {
         std::fflush(stdout);
     }
     tell(count);
+    Round twice(wanted, job, folder, random, print_s);
+    twice.undisturbed = first.undisturbed;
+    if (const std::string wrong = twice.interrupt_twice(count); !wrong.empty())
+        ++count.wrong, fmt::print("interrupted twice: {}\n", wrong);
     return count.wrong == 0 ? 0 : 1;
 }
 

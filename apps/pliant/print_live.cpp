@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "core/files.hpp"
 #include "host/control.hpp"
@@ -31,10 +33,24 @@ namespace pliant::app {
 namespace {
 
 // A signal handler can reach nothing but a global.
-volatile std::sig_atomic_t interrupts = 0;
+std::atomic<std::int64_t> first_signal_ms = 0;
+std::atomic<bool> pressed_twice = false;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-void on_interrupt(int) {
-    interrupts = interrupts + 1;
+std::int64_t monotonic_ms() {
+    timespec now{};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000 + 1;
+}
+
+/// The second Ctrl-C counts, unless it comes so soon that no person has pressed it: some programs pass a signal on that
+/// the terminal has sent already. A request to end (SIGTERM) is never more than that.
+void on_interrupt(int signal) {
+    constexpr std::int64_t passed_on_ms = 30;
+    std::int64_t first = 0;
+    const std::int64_t now = monotonic_ms();
+    if (!first_signal_ms.compare_exchange_strong(first, now) && signal == SIGINT && now - first > passed_on_ms)
+        pressed_twice = true;
 }
 
 /// Keys one by one while it lives, if standard input is a terminal.
@@ -147,24 +163,15 @@ void press(host::Control& control, char key) {
     if (key == 'e') control.emergency_stop();
 }
 
-/// Until the print has ended. Ctrl-C suspends it; once more, later, is an emergency stop: some programs send the signal
-/// twice.
+/// Until the print has ended. Ctrl-C suspends it; once more is an emergency stop.
 void attend(host::Control& control, const Output& output) {
-    using namespace std::chrono;
     const Keys keys;
     Display display(output);
-    int served = 0;
-    steady_clock::time_point first;
+    bool suspended = false, stopped = false;
     do {
         press(control, keys.next(100));
-        if (interrupts > 0 && served == 0) {
-            served = interrupts;
-            first = steady_clock::now();
-            (void)control.suspend();
-        } else if (interrupts > served) {
-            served = interrupts;
-            if (steady_clock::now() - first > seconds(1)) control.emergency_stop();
-        }
+        if (first_signal_ms != 0 && !std::exchange(suspended, true)) (void)control.suspend();
+        if (pressed_twice && !std::exchange(stopped, true)) control.emergency_stop();
         display.show(control);
     } while (!is_over(control.snapshot()));
     display.show(control);

@@ -1,6 +1,8 @@
 // The host's link on a wire that damages lines, loses bytes and swallows answers: many lines, each carried out exactly
 // once in effect, the end position exact; then whole prints on the same wire, which the oracle must pass.
 //
+// Both kinds of Marlin answer in turn: 2.1.1, and 2.1.2, which drops repeated lines in silence.
+//
 //   pliant_soak_link [LINES] [SEED]              1 % of the lines with a flipped bit, 1 % with a lost byte
 //   pliant_soak_link [LINES] [SEED] byte SHARE   that share of all bytes flipped and as many lost (0.01: 1 %)
 //   pliant_soak_link throughput [LINES]         lines a second over a pseudo-terminal to a fast virtual printer
@@ -28,6 +30,7 @@ namespace {
 
 using namespace pliant;
 using machine::Axis;
+using Release = machine::MarlinRelease;
 
 struct Noise {
     double flipped = 0.01;  ///< share of lines (or bytes) with a flipped bit
@@ -90,7 +93,7 @@ private:
 
 host::LinkOptions patient() {
     host::LinkOptions options;
-    options.most_repeats = 60;
+    options.most_repeats = options.most_connects = 60;
     return options;
 }
 
@@ -141,8 +144,10 @@ private:
 };
 
 /// Random heights of the platform, one line each; true if all is well.
-bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, bool advanced_ok) {
+bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release,
+                bool advanced_ok) {
     twin::Options twin_options;
+    twin_options.release = release;
     twin_options.advanced_ok = advanced_ok;
     twin::Twin twin(printer, twin_options);
     NoisyWire wire(twin, noise, seed);
@@ -155,9 +160,9 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
     if (status) status = link.fence();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const bool exact = mover.exact();
-    fmt::print("{} lines{}: {} bits flipped, {} bytes lost, {} oks lost; {} bad lines, {} resent, {:.1f} s: {}\n",
-               lines, advanced_ok ? " (ADVANCED_OK)" : "", wire.damage().flipped, wire.damage().lost,
-               wire.damage().lost_oks, twin.log().bad_lines, link.resends(), seconds,
+    fmt::print("{}: {} lines{}: {} bits flipped, {} bytes lost, {} oks lost; {} bad lines, {} resent, {:.1f} s: {}\n",
+               machine::name_of(release), lines, advanced_ok ? " (ADVANCED_OK)" : "", wire.damage().flipped,
+               wire.damage().lost, wire.damage().lost_oks, twin.log().bad_lines, link.resends(), seconds,
                !status ? status.error().message
                : exact ? "each carried out once, end position exact"
                        : "WRONG");
@@ -176,9 +181,12 @@ struct Session {
 
 /// A fresh machine, moved until something is wrong or `lines` have gone through. Every few moves the machine is looked
 /// at from behind, so that a line which has passed its checksum damaged is noticed at once.
-Session soak_session(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, bool judged) {
+Session soak_session(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release,
+                     bool judged) {
     constexpr int together = 10;
-    twin::Twin twin(printer);
+    twin::Options twin_options;
+    twin_options.release = release;
+    twin::Twin twin(printer, twin_options);
     NoisyWire wire(twin, noise, seed);
     app::TwinClock clock(twin);
     host::LinkOptions options = patient();
@@ -201,7 +209,7 @@ Session soak_session(const machine::Printer& printer, long lines, unsigned seed,
 
 /// The noise of whole bytes: how often a damaged line passes the checksum of 8 bits, and what the link makes of it.
 /// True if the link as it is has carried out every line as it was sent, and to the end.
-bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise) {
+bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release) {
     bool good = true;
     for (const bool judged : {false, true}) {
         long sent = 0;
@@ -209,7 +217,7 @@ bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, cons
         std::string last;
         for (; sent < lines && sessions < 10000; ++sessions) {
             const Session s =
-                soak_session(printer, lines - sent, seed + static_cast<unsigned>(sessions), noise, judged);
+                soak_session(printer, lines - sent, seed + static_cast<unsigned>(sessions), noise, release, judged);
             sent += std::max(1L, s.lines);
             wrong += s.wrong ? 1 : 0;
             stopped += s.stopped ? 1 : 0;
@@ -217,10 +225,11 @@ bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, cons
             if (judged && s.stopped && sessions >= 200) break;
         }
         fmt::print(
-            "{:g} % of bytes flipped, as many lost; {}: {} lines in {} sessions, {} with a line that was carried "
+            "{}: {:g} % of bytes flipped, as many lost; {}: {} lines in {} sessions, {} with a line that was carried "
             "out damaged ({}), {} stopped by the link{}\n",
-            100 * noise.flipped, judged ? "the link as it is" : "the link does not judge the wire", sent, sessions,
-            wrong, wrong > 0 ? fmt::format("one in {} lines", sent / wrong) : "none", stopped,
+            machine::name_of(release), 100 * noise.flipped,
+            judged ? "the link as it is" : "the link does not judge the wire", sent, sessions, wrong,
+            wrong > 0 ? fmt::format("one in {} lines", sent / wrong) : "none", stopped,
             last.empty() ? "" : "; last: " + last);
         good = wrong == 0 && stopped == 0;
     }
@@ -237,7 +246,8 @@ Result<job::Image> image_of(int, int material) {
 }
 
 /// Prints until so many lines have been sent.
-bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Noise& noise) {
+bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Noise& noise, Release release) {
+    printer.controller.firmware = release;
     printer.projector.width_px = width;
     printer.projector.height_px = height;
     job::Manifest job;
@@ -270,7 +280,8 @@ bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Nois
         ++wrong;
         fmt::print("print {}: {}\n", prints, !status ? status.error().message : report->first_deviation);
     }
-    fmt::print("{} prints of {} lines in all, {} resent: {} wrong\n", prints, sent, resent, wrong);
+    fmt::print("{}: {} prints of {} lines in all, {} resent: {} wrong\n", machine::name_of(release), prints, sent,
+               resent, wrong);
     return wrong == 0;
 }
 
@@ -326,9 +337,15 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "{}\n", printer.error().message);
         return 2;
     }
-    if (noise.per_byte) return soak_bytes(*printer, lines, seed, noise) ? 0 : 1;
-    bool good = soak_moves(*printer, lines, seed, noise, false);
-    good = soak_moves(*printer, lines, seed, noise, true) && good;
-    good = soak_prints(*printer, lines, seed, noise) && good;
+    bool good = true;
+    for (const Release release : {Release::v2_1_1, Release::v2_1_2}) {
+        if (noise.per_byte) {
+            good = soak_bytes(*printer, lines, seed, noise, release) && good;
+            continue;
+        }
+        good = soak_moves(*printer, lines, seed, noise, release, false) && good;
+        good = soak_moves(*printer, lines, seed, noise, release, true) && good;
+        good = soak_prints(*printer, lines, seed, noise, release) && good;
+    }
     return good ? 0 : 1;
 }

@@ -1,5 +1,6 @@
 // pliant twin: the virtual printer as a device that any host can open.
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <csignal>
 #include <cstdio>
@@ -27,6 +28,8 @@ struct Options {
     double speed = 1;
     double seconds = 0;
     std::vector<std::string> faults;
+    std::string release;
+    bool homes_first = false;
     bool advanced_ok = false, z_sync = false, report_fans = false, waits = false, no_emergency_parser = false;
     bool trace = false;
     Output output;
@@ -42,6 +45,13 @@ Result<twin::Options> twin_options(const Options& options) {
     result.wait_every_s = options.waits ? 1 : 0;
     result.emergency_parser = !options.no_emergency_parser;
     result.boot_s = 1;
+    result.homes_first = options.homes_first;
+    if (!options.release.empty()) {
+        result.release = machine::marlin_release(options.release);
+        if (!result.release)
+            return input_error("--release {}: the twin speaks like Marlin {}", options.release,
+                               fmt::join(machine::marlin_release_names, ", "));
+    }
     for (const std::string& text : options.faults) {
         const Result<twin::Fault> fault = twin::parse_fault(text);
         if (!fault) return tl::unexpected(fault.error());
@@ -149,6 +159,9 @@ void add_twin(CLI::App& app, int& status) {
     command->add_option("--seconds", options->seconds, "ends after so long on the machine's clock");
     command->add_option("--fault", options->faults, "KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
         ->allow_extra_args(false);
+    command->add_option("--release", options->release,
+                        "release of Marlin, 2.1.1, 2.1.2 (any 2.1.2.x) or 2.1.3, instead of the printer file's");
+    command->add_flag("--home-first", options->homes_first, "leave out moves of axes that are not homed");
     command->add_flag("--advanced-ok", options->advanced_ok, "answer ok N12 P15 B3");
     command->add_flag("--z-sync", options->z_sync, "block on moves of the platform and say Z_move_comp");
     command->add_flag("--report-fans", options->report_fans, "say M106 P0 S255 when a fan changes");

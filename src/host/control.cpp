@@ -8,6 +8,7 @@
 #include <deque>
 #include <fstream>
 #include <mutex>
+#include <thread>
 
 #include "host/desk.hpp"
 #include "host/journal.hpp"
@@ -24,6 +25,9 @@ namespace {
 using machine::Axis;
 
 constexpr double idle_listen_s = 0.05;
+constexpr int connects_to_halted = 3;  // a halted controller stays silent
+constexpr const char* after_emergency_stop =
+    "emergency stop: the board is halted; reset it (its button, or its power off and on) before anything else";
 
 bool is_printing(State state) {
     return state == State::printing || state == State::pausing || state == State::paused || state == State::cancelling;
@@ -88,6 +92,8 @@ struct Control::State_ {
     bool quitting = false;
     bool hears_m112 = true;  ///< at once, even while it is busy: EMERGENCY_PARSER
     std::shared_ptr<Wire> wire;
+    bool moves_by_hand = false;    ///< one move, that the next one stops
+    bool stopped_by_hand = false;  ///< that has happened
 
     // ---------------
     std::unique_ptr<Machine> machine;
@@ -96,14 +102,18 @@ struct Control::State_ {
     /// The same, as long as nothing but numbers and questions has been sent since: what is connected and then resumed
     /// is as proven as what is resumed at once.
     std::optional<long> untouched_line;
-    long last_base = 0;  ///< of our own last session
+    long last_base = 0;          ///< of our own last session
+    bool may_be_halted = false;  ///< the controller was, when it was heard last
     std::optional<PrintJob> job;
     Script script;
     std::vector<double> times;
 
     [[nodiscard]] Status ask_for(State next, const std::function<Status(const Snapshot&)>& allowed,
                                  std::function<void()> task);
-    [[nodiscard]] Status by_hand(std::function<Result<std::string>(const machine::Interlock&)> program);
+    [[nodiscard]] bool stop_move();
+    [[nodiscard]] Status run_one_move(const std::string& program);
+    [[nodiscard]] Status by_hand(std::function<Result<std::string>(const machine::Interlock&)> program,
+                                 bool one_move = false);
     bool run_next_task();
 
     [[nodiscard]] Status open();
@@ -258,14 +268,23 @@ Status Control::suspend() {
 
 void Control::emergency_stop() {
     const Status pulled = state_->setup.emergency_line != nullptr ? state_->setup.emergency_line->pull() : Status{};
+    std::shared_ptr<Wire> wire;  // also while the working thread lets go of it
+    bool hears_m112 = true;
     {
         const std::scoped_lock lock(state_->mutex);
-        if (state_->wire) (void)state_->wire->write("\nM112\n");
-        // A firmware that reads it in its turn only is stopped by a reset, where the wire can.
-        if (state_->wire && !state_->hears_m112) (void)state_->wire->reset();
+        wire = state_->wire;
+        hears_m112 = state_->hears_m112;
     }
+    if (wire) (void)wire->write("\nM410\n");
     state_->desk.stop_everything();
     state_->woken.notify_all();
+    if (wire) {
+        // Not on the devices' clock: a virtual one may stand still.
+        std::this_thread::sleep_for(std::chrono::duration<double>(m112_after_m410_s));
+        (void)wire->write("\nM112\n");
+        // A firmware that reads it in its turn only is stopped by a reset, where the wire can.
+        if (!hears_m112) (void)wire->reset();
+    }
     if (!pulled) state_->desk.event("error", pulled.error().message);
     state_->desk.event("error", "emergency stop");
 }
@@ -293,18 +312,45 @@ Status Control::skip_layer(int layer) {
 
 // --- by hand -------------------------------------------------------------------------------------------------------
 
+/// From any thread: M410 to the move by hand that is under way. False if there is none, or the firmware would not hear
+/// it.
+bool Control::State_::stop_move() {
+    const std::scoped_lock lock(mutex);
+    if (!moves_by_hand || stopped_by_hand || !hears_m112 || !wire) return false;
+    stopped_by_hand = true;
+    return wire->write("\nM410\n").has_value();
+}
+
+Status Control::State_::run_one_move(const std::string& program) {
+    {
+        const std::scoped_lock lock(mutex);
+        moves_by_hand = true;
+    }
+    const Status status = machine->run(program);
+    bool stopped = false;
+    {
+        const std::scoped_lock lock(mutex);
+        moves_by_hand = false;
+        stopped = std::exchange(stopped_by_hand, false);
+    }
+    if (!status || !stopped) return status;
+    if (Status asked = machine->stand_where_stopped(); !asked) return asked;
+    return failure("the move was stopped on its way; home the axes before the next one");
+}
+
 /// What `program` makes of where the machine stands is sent; no print may be under way or waiting to be resumed.
-Status Control::State_::by_hand(std::function<Result<std::string>(const machine::Interlock&)> program) {
+Status Control::State_::by_hand(std::function<Result<std::string>(const machine::Interlock&)> program, bool one_move) {
     return ask_for(
         State::working,
         [](const Snapshot& s) -> Status {
             if (s.can_resume) return failure("an interrupted print waits: resume it or cancel it first");
             return only_when_idle(s);
         },
-        [this, program = std::move(program)] {
+        [this, one_move, program = std::move(program)] {
             const auto text = program(machine->state());
             untouched_line.reset();
-            Status status = text ? machine->run(*text) : tl::unexpected(text.error());
+            Status status =
+                text ? (one_move ? run_one_move(*text) : machine->run(*text)) : tl::unexpected(text.error());
             show_machine();
             if (status || (!machine->link().was_reset() && !machine->link().wire_failed() && !desk.stopped())) {
                 if (!status) desk.event("error", status.error().message);
@@ -316,14 +362,16 @@ Status Control::State_::by_hand(std::function<Result<std::string>(const machine:
 }
 
 Status Control::move_to(Axis axis, int um, double feed_mm_s) {
-    return state_->by_hand([this, axis, um, feed_mm_s](const machine::Interlock& at) -> Result<std::string> {
+    if (state_->stop_move()) return failure("the move under way is stopped instead; home the axes before the next one");
+    const auto program = [this, axis, um, feed_mm_s](const machine::Interlock& at) -> Result<std::string> {
         machine::Position to = at.position();
         to[axis] = um;
         const machine::Printer& printer = state_->setup.printer;
         const double feed =
             feed_mm_s > 0 ? std::min(feed_mm_s, printer.axis(axis).speed_mm_s) : printer.axis(axis).speed_mm_s;
         return "G90\n" + machine::write_move(printer, at.position(), to, feed) + "\n";
-    });
+    };
+    return state_->by_hand(program, true);
 }
 
 Status Control::jog(Axis axis, int um, double feed_mm_s) {
@@ -480,9 +528,12 @@ Status Control::State_::open() {
     if (setup.emergency_line != nullptr) {
         if (Status status = setup.emergency_line->release(); !status) return status;
     }
+    LinkOptions options = setup.link;
+    options.may_be_halted = may_be_halted;
+    if (may_be_halted) options.most_connects = std::min(options.most_connects, connects_to_halted);
     if (machine) {
         machine->link().set_watch(nullptr);
-        auto fresh = std::make_unique<Machine>(*wire, setup.clock, setup.printer, setup.link);
+        auto fresh = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
         fresh->stand(machine->state());
         fresh->link().expect_no_start();
         machine = std::move(fresh);
@@ -493,7 +544,7 @@ Status Control::State_::open() {
             const std::scoped_lock lock(mutex);
             wire = std::move(*opened);
         }
-        machine = std::make_unique<Machine>(*wire, setup.clock, setup.printer, setup.link);
+        machine = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
     }
     machine->link().set_watch([this] { return desk.watch(); });
     machine->link().set_listener([this](std::string_view line) {
@@ -504,6 +555,7 @@ Status Control::State_::open() {
     });
     const auto last = machine->link().last_line();
     if (!last) return tl::unexpected(last.error());
+    may_be_halted = false;
     last_line = machine->link().has_started() ? 0 : untouched_line.value_or(*last);
     untouched_line = last_line;
     return {};
@@ -527,13 +579,15 @@ void Control::State_::close() {
 
 void Control::State_::fail(const Error& error) {
     (void)setup.projector.black();
-    desk.event("error", error.message);
+    const std::string message = desk.stopped() ? after_emergency_stop : error.message;
+    desk.event("error", message);
+    may_be_halted = may_be_halted || desk.stopped() || (machine && machine->link().has_halted());
     close();
     desk.update([](Snapshot& s) {
         s.failed = true;
         s.lit = false;
     });
-    desk.state(State::halted, error.message);
+    desk.state(State::halted, message);
     desk.clear_stop();
 }
 
@@ -585,7 +639,7 @@ void Control::State_::look_at_journal() {
     if (job && !job->journal.empty() && std::filesystem::exists(job->journal, none)) {
         const auto journal = Journal::open(job->journal, false);
         const auto facts = journal ? facts_of(journal->records()) : tl::unexpected(journal.error());
-        interrupted = facts && facts->begun && !facts->ended && !facts->cancelled;
+        interrupted = facts && is_interrupted(*facts);
     }
     desk.update([&](Snapshot& s) { s.can_resume = interrupted; });
 }
@@ -634,21 +688,22 @@ Result<Ending> Control::State_::print_anew(Journal* journal) {
     if (journal != nullptr) {
         const auto facts = facts_of(journal->records());
         if (!facts) return tl::unexpected(facts.error());
-        if (facts->begun && !facts->ended && !facts->cancelled) {
+        if (is_interrupted(*facts)) {
             return input_error("{}: this job was interrupted; go on with --resume, or delete the journal to start anew",
                                job->journal.string());
         }
+        may_be_halted = may_be_halted || facts->halted;
         if (Status status = journal->clear(); !status) return tl::unexpected(status.error());
         const auto begun = journal->append(
             "begin", {{"job", job->name}, {"digest", job->digest}, {"printer", setup.printer.name}, {"format", "1"}});
         if (!begun) return tl::unexpected(begun.error());
     }
-    if (Status status = open(); !status) return tl::unexpected(status.error());
-    const Standing standing{machine::Interlock(setup.printer), false};
-    if (Status status = new_session(journal, {}, standing, boot_name()); !status) return tl::unexpected(status.error());
-    if (Status status = preflight(); !status) {
+    Status ready = open();
+    if (ready) ready = new_session(journal, {}, {machine::Interlock(setup.printer), false}, boot_name());
+    if (ready) ready = preflight();
+    if (!ready) {
         if (journal != nullptr) (void)journal->clear();  // nothing has begun
-        return tl::unexpected(status.error());
+        return tl::unexpected(ready.error());
     }
     PrintRun run({setup, *job, script, times, *machine, journal, desk}, {});
     Result<Ending> ending = run.print();
@@ -669,6 +724,7 @@ Result<Ending> Control::State_::go_on(const StartOptions& options, bool abandon,
                                                    {"by", (*open_light)->assumed ? "assumed" : "guard"}});
         if (!noted) return tl::unexpected(noted.error());
     }
+    may_be_halted = may_be_halted || facts->halted;
     if (Status status = open(); !status) return tl::unexpected(status.error());
     const auto standing = standing_of(*facts, script, setup.printer, last_line, options.assume);
     if (!standing) return tl::unexpected(standing.error());
@@ -731,7 +787,7 @@ void Control::State_::finish(const Result<Ending>& ending) {
         desk.update([](Snapshot& s) { s.failed = true; });
         return desk.state(machine ? State::idle : State::offline, ending.error().message);
     }
-    if (!ending) return fail(desk.stopped() ? Error{Cause::failed, "emergency stop"} : ending.error());
+    if (!ending) return fail(ending.error());
     show_machine();
     machine->keep(nullptr);
     desk.update([&](Snapshot& s) {

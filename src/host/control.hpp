@@ -69,7 +69,8 @@ public:
 
     // --- by hand, while no print is under way ---
 
-    /// To an absolute position; refused if the interlocks forbid it.
+    /// To an absolute position; refused if the interlocks forbid it. While such a move or jog() is under way, that one
+    /// is stopped at once (M410) and the new one refused: the axes must then be homed.
     [[nodiscard]] Status move_to(machine::Axis axis, int um, double feed_mm_s);
     /// By so much from where the axis stands.
     [[nodiscard]] Status jog(machine::Axis axis, int um, double feed_mm_s);

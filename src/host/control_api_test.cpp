@@ -26,10 +26,6 @@ struct Bench {
         ControlSetup s{machine::load_printer("examples/printers/tower.toml").value(),
                        [this]() -> Result<std::unique_ptr<Wire>> {
                            auto made = std::make_unique<ScriptedWire>(clock, [](const std::string& line) {
-                               if (line.find("N0 M400") == 0)
-                                   return std::string(
-                                       "Error:Line Number is not Last Line Number+1, Last Line: 0\n"
-                                       "Resend: 1\nok\n");
                                if (line.find("M119") != std::string::npos)
                                    return std::string("x_min: open\nz_max: open\ny_min: open\nok\n");
                                return good_answer(line);

@@ -87,7 +87,7 @@ private:
         facts_.base = *base;
         facts_.before_base = *before;
         facts_.boot = *boot;
-        facts_.stopped_short = false;
+        facts_.stopped_short = facts_.halted = false;
         facts_.go = GoFact{-1, 0, *base + 1, *state, 0};
         return {};
     }
@@ -114,6 +114,7 @@ private:
             if (!given) return tl::unexpected(given.error());
             most = std::max(0L, *given);
         }
+        facts_.moved = true;
         facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state, most};
         return {};
     }
@@ -171,6 +172,9 @@ private:
         const auto quick = r.whole("quick");
         if (!quick) return tl::unexpected(quick.error());
         facts_.stopped_short = facts_.stopped_short || *quick != 0;
+        const std::string* why = r.find("why");
+        facts_.halted =
+            why != nullptr && (why->find("emergency stop") == 0 || why->find("halted") != std::string::npos);
         return {};
     }
 
@@ -211,6 +215,10 @@ Result<Interlock::State> read_state(std::string_view word) {
         if (!read_vat(take(rest, ','), state.slots.emplace_back())) return wrong();
     }
     return state;
+}
+
+bool is_interrupted(const JournalFacts& facts) {
+    return facts.begun && !facts.ended && !facts.cancelled && (facts.moved || !facts.lights.empty());
 }
 
 Result<JournalFacts> facts_of(const std::vector<JournalRecord>& records) {

@@ -50,9 +50,11 @@ struct JournalFacts {
     long base = 0;         ///< line number with which the last session began
     long before_base = 0;  ///< number of the controller's last line before that; -1: it did not know any of ours
     bool begun = false;
-    bool ended = false;                                 ///< the print is complete
-    bool cancelled = false;                             ///< for good
-    bool stopped_short = false;                         ///< motion was stopped on the way (M410): nobody knows where
+    bool ended = false;          ///< the print is complete
+    bool cancelled = false;      ///< for good
+    bool moved = false;          ///< a command that may move the machine was about to be sent
+    bool halted = false;         ///< the last session ended with a halted controller, which answers only after a reset
+    bool stopped_short = false;  ///< motion was stopped on the way (M410): nobody knows where
     std::map<std::size_t, LightFact> lights;            ///< by step of the job
     std::optional<std::size_t> last_light;              ///< step of the last one
     std::map<long, std::vector<std::string>> programs;  ///< commands of inserted programs, by record
@@ -60,6 +62,10 @@ struct JournalFacts {
     std::vector<ChangeFact> changes;
     std::vector<int> skipped_layers;
 };
+
+/// Whether there is a print to go on with. One of which nothing has moved and nothing was lit has not begun: its port
+/// may have been the wrong one.
+[[nodiscard]] bool is_interrupted(const JournalFacts& facts);
 
 /// Errors name the record.
 [[nodiscard]] Result<JournalFacts> facts_of(const std::vector<JournalRecord>& records);

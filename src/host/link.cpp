@@ -107,23 +107,74 @@ Status Link::wait_for_answer(double begin_s, const std::function<bool()>& answer
     return {};
 }
 
+Status Link::no_answer() const {
+    if (options_.may_be_halted)
+        return failure(
+            "the printer does not answer: it was halted, and has not been reset since; press the board's "
+            "reset button, or switch its power off and on");
+    return failure(
+        "the printer does not answer; is this its port and its baud rate? A board that was halted (emergency "
+        "stop, failed homing) answers only after a reset");
+}
+
+/// A number far ahead is refused by every release, whatever the last one was, and the refusal names that. The checksum
+/// is wrong, so that the line is not taken even where its number happens to follow.
+Status Link::put_probe() {
+    return put("\nN2147483640 M400*0\n");
+}
+
+/// The last line that the controller has taken. nullopt: it did not say.
+Result<std::optional<long>> Link::probe_last_line(double begin_s) {
+    wanted_.reset();
+    if (Status status = put_probe(); !status) return tl::unexpected(status.error());
+    if (Status status = wait_for_answer(begin_s, [this] { return wanted_.has_value(); }); !status)
+        return tl::unexpected(status.error());
+    if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
+    ignore_ok_ = false;
+    const auto wanted = std::exchange(wanted_, std::nullopt);
+    if (!wanted || *wanted < 1) return std::nullopt;
+    return *wanted - 1;
+}
+
+/// Bytes get lost on the way here too: a number counts when it has come twice.
 Result<long> Link::last_line() {
     if (Status status = wait_for_boot(); !status) return tl::unexpected(status.error());
     const double begin_s = clock_.now();
-    for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
+    std::optional<long> before;
+    int silences = 0;
+    for (int attempt = 0; attempt < 2 * options_.most_connects && silences < options_.most_connects; ++attempt) {
         if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
-        wanted_.reset();
-        // Number 0 follows no line: it is refused, and the refusal names the last one.
-        if (Status status = put(framed(0, "M400")); !status) return tl::unexpected(status.error());
-        if (Status status = wait_for_answer(begin_s, [this] { return wanted_.has_value(); }); !status)
-            return tl::unexpected(status.error());
-        if (!wanted_ || *wanted_ < 1) continue;
-        const long last = *wanted_ - 1;
-        wanted_.reset();
-        ignore_ok_ = false;
-        return last;
+        const auto last = probe_last_line(begin_s);
+        if (!last) return tl::unexpected(last.error());
+        silences = *last ? 0 : silences + 1;
+        if (*last && *last == before) return **last;
+        before = *last;
     }
-    return failure("the printer does not answer; is this its port and its baud rate?");
+    return tl::unexpected(no_answer().error());
+}
+
+/// M110 counts when it is received, and again when it is carried out; and an ok may be that of a line which another
+/// host has left behind. So what counts is an echo from behind it, and then the number that the controller names.
+Result<bool> Link::set_base(long base, int attempt, double begin_s) {
+    wanted_.reset();
+    fence_seen_ = false;
+    awaited_ = fmt::format("echo:base {} {}", base, attempt);
+    outstanding_.push_back({base, 0});
+    if (Status status = put(framed(base, fmt::format("M110 N{}", base))); !status)
+        return tl::unexpected(status.error());
+    if (Status status = wait_for_answer(begin_s, [this] { return outstanding_.empty() || wanted_.has_value(); });
+        !status)
+        return tl::unexpected(status.error());
+    if (!outstanding_.empty() || wanted_) return false;  // lost, or damaged
+    if (Status status = put(fmt::format("\nM118 E1 base {} {}\n", base, attempt)); !status)
+        return tl::unexpected(status.error());
+    if (Status status = wait_for_answer(begin_s, [this] { return fence_seen_ || wanted_.has_value(); }); !status)
+        return tl::unexpected(status.error());
+    if (!fence_seen_) return false;
+    if (Status status = wait_until_quiet(); !status) return tl::unexpected(status.error());
+    const auto last = probe_last_line(begin_s);
+    if (!last) return tl::unexpected(last.error());
+    return *last == base;
 }
 
 Status Link::connect(long base) {
@@ -131,19 +182,17 @@ Status Link::connect(long base) {
     base_ = base;
     next_number_ = next_to_send_ = base + 1;
     const double begin_s = clock_.now();
-    for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
+    for (int attempt = 0; attempt < options_.most_connects; ++attempt) {
         if (Status status = wait_until_quiet(); !status) return status;
         drop_outstanding([](long) { return true; });
-        outstanding_.push_back({base, 0});
+        const auto is_set = set_base(base, attempt, begin_s);
+        if (!is_set) return tl::unexpected(is_set.error());
         ignore_ok_ = false;
         wanted_.reset();
-        if (Status status = put(framed(base, fmt::format("M110 N{}", base))); !status) return status;
-        const auto answered = [this] { return outstanding_.empty() || wanted_.has_value(); };
-        if (Status status = wait_for_answer(begin_s, answered); !status) return status;
-        connected_ = outstanding_.empty() && !wanted_;
+        connected_ = *is_set;
         if (connected_) return {};
     }
-    return failure("the printer does not answer; is this its port and its baud rate?");
+    return no_answer();
 }
 
 Result<Firmware> Link::introduce() {
@@ -186,7 +235,14 @@ Result<std::vector<std::string>> Link::ask(std::string_view command) {
     return answers;
 }
 
-Status Link::fence() {
+Status Link::fence(double within_s) {
+    deadline_s_ = clock_.now() + within_s;
+    Status status = pass_fence();
+    deadline_s_ = std::numeric_limits<double>::infinity();
+    return status;
+}
+
+Status Link::pass_fence() {
     for (int attempt = 0; attempt < options_.most_repeats; ++attempt) {
         awaited_ = fmt::format("echo:tok {}", ++token_);
         fence_seen_ = false;
@@ -218,6 +274,13 @@ Status Link::listen_for(double seconds, bool repair) {
 
 void Link::urgent(std::string_view command) {
     (void)wire_.write(fmt::format("\n{}\n", command));
+}
+
+void Link::halt() {
+    urgent("M410");
+    clock_.sleep(m112_after_m410_s);
+    urgent("M112");
+    halted_ = true;
 }
 
 void Link::stop(const std::deque<std::string>& commands) {
@@ -267,6 +330,8 @@ Status Link::run_until(const std::function<bool()>& done) {
     for (;;) {
         if (Status status = transmit(); !status) return status;
         if (done()) return {};
+        ran_late_ = clock_.now() > deadline_s_;
+        if (ran_late_) return failure("the printer is not done in time");
         if (Status status = listen(); !status) return status;
     }
 }
@@ -276,7 +341,9 @@ Status Link::run_until(const std::function<bool()>& done) {
 /// Handles the next answers; a long time without one means that it was lost, whatever else is said meanwhile.
 Status Link::listen() {
     const double patience_s = outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s;
-    const auto heard = hear(patience_s);
+    const double left_s = std::max(0.0, deadline_s_ - clock_.now()) + watch_every_s;
+    const auto heard = hear(std::min(patience_s, left_s));
+    if (left_s < patience_s && heard && !*heard) return {};
     if (!heard) return tl::unexpected(heard.error());
     if (wanted_) return resynchronise();
     const bool is_late = clock_.now() - answer_s_ > patience_s;
@@ -325,6 +392,10 @@ Status Link::handle(std::string_view line) {
         return handle_error(line);
     } else if (begins(line, "echo:Unknown command:")) {
         return handle_unknown(line);
+    } else if (begins(line, "echo:Home ") && line.ends_with(" First")) {
+        return connected_ ? failure("the printer has left a move out: {}", line.substr(5)) : Status{};
+    } else if (begins(line, "echo:Homing Failed")) {
+        homing_failed_ = true;
     } else if (begins(line, "echo:busy:")) {
         busy_s_ = answer_s_ = clock_.now();
     } else if (line == "wait") {
@@ -388,13 +459,22 @@ bool Link::has_been_sent(std::string_view command) const {
 Status Link::handle_error(std::string_view line) {
     const bool damaged = contains(line, "Line Number is not Last") || contains(line, "checksum mismatch") ||
                          contains(line, "No Checksum with line number");
-    if (!damaged) return connected_ ? failure("the printer reports: {}", trim(line.substr(6))) : Status{};
+    if (!damaged) return handle_halt(trim(line.substr(6)));
     // The Resend that should follow may be lost: the error itself says as much.
     const std::size_t last = line.find("Last Line:");
     if (last != std::string_view::npos) {
         if (const auto number = whole_number(line.substr(last + 10))) wanted_ = *number + 1;
     }
     return {};
+}
+
+/// An error that is not about a line. A killed firmware answers nothing any more.
+Status Link::handle_halt(std::string_view error) {
+    halted_ = halted_ || contains(error, "halted") || contains(error, "kill()");
+    if (!connected_) return {};
+    if (!halted_) return failure("the printer reports: {}", error);
+    return failure("{}the printer reports: {}; reset the board before anything else",
+                   homing_failed_ ? "homing failed, a limit switch was not found; " : "", error);
 }
 
 void Link::handle_ok(std::string_view line) {
@@ -448,7 +528,9 @@ Status Link::note_refusal() {
 
 /// Lines in flight behind a bad one are refused one by one; only when the wire is quiet is the state known.
 Status Link::resynchronise() {
-    if (Status status = note_refusal(); !status) return status;
+    // After a silence it may turn out that only answers were lost: then no line was damaged.
+    const bool only_answers = probing_ && *wanted_ == next_to_send_;
+    if (Status status = only_answers ? Status{} : note_refusal(); !status) return status;
     if (Status status = wait_until_quiet(); !status) return status;
     ignore_ok_ = false;
     const long number = *std::exchange(wanted_, std::nullopt);
@@ -474,7 +556,8 @@ Status Link::go_back_to(long number) {
     return {};
 }
 
-/// Asks by repeating the oldest line that has had no ok: if it was executed, the firmware asks for the next one.
+/// Asks for the last line that the firmware has taken. (Repeating one would not tell: since 2.1.2 a line that was taken
+/// among the last two is passed over in silence.)
 Status Link::give_up_waiting() {
     if (++silences_ > options_.most_repeats) return failure("the printer has stopped answering");
     answer_s_ = clock_.now();
@@ -482,11 +565,8 @@ Status Link::give_up_waiting() {
         silent_ = true;
         return {};
     }
-    const long oldest = outstanding_.front().number;
-    drop_outstanding([](long) { return true; });
-    if (Status status = go_back_to(oldest); !status) return status;
     probing_ = true;
-    return {};
+    return put_probe();
 }
 
 }  // namespace pliant::host

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,7 +31,9 @@ struct LinkOptions {
     /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
     /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
     double most_refused = 0.2;
-    double talk_s = 60;  ///< how long one that is not busy may say other things before it answers connect()
+    double talk_s = 60;          ///< how long one that is not busy may say other things before it answers connect()
+    int most_connects = 10;      ///< silences in a row before connect() gives up
+    bool may_be_halted = false;  ///< an emergency stop or a halt came last: what a silence means then
 };
 
 /// What M115 says.
@@ -43,6 +46,10 @@ struct Firmware {
 
 /// Stops at the first sign that the machine is not where the stream thinks it is: a restart, an unknown command, an
 /// error that is not about a damaged line. Wire and clock must outlive it.
+/// How long after M410, which stops motion within a millisecond, M112 follows. M112 alone lets a move go on for most of
+/// a second; at the same time as M410 it would be heeded first.
+inline constexpr double m112_after_m410_s = 0.01;
+
 class Link {
 public:
     Link(Wire& wire, Clock& clock, LinkOptions options = {});
@@ -56,7 +63,8 @@ public:
     /// Waits for the firmware to start (or finds it running) and makes `base` the number of the last line: the next one
     /// is `base` + 1.
     [[nodiscard]] Status connect(long base = 0);
-    /// Before connect(): the number of the last line that the controller has taken; 0 if it has just started. A
+    /// Before connect(): the number of the last line that the controller has taken; 0 if it has just started. Every
+    /// release of Marlin names it when a line with a number far ahead arrives, and takes nothing of that line. A
     /// controller that still knows the numbers of an earlier host has not been reset since.
     [[nodiscard]] Result<long> last_line();
     /// Asks who it is (M115). What a build does not say stays unknown.
@@ -69,8 +77,8 @@ public:
     [[nodiscard]] Status send_if_known(std::string_view command);
     /// Sends a query and returns the lines that come back until it has been carried out; the machine stands still then.
     [[nodiscard]] Result<std::vector<std::string>> ask(std::string_view command);
-    /// Returns when everything sent has been executed and all motion is done.
-    [[nodiscard]] Status fence();
+    /// Returns when everything sent has been executed and all motion is done. Errors: not within so long, too.
+    [[nodiscard]] Status fence(double within_s = std::numeric_limits<double>::infinity());
     /// Listens for so long, and lets the watch be asked. Without `repair` what the firmware asks for again is left for
     /// later: nothing delays the end.
     [[nodiscard]] Status listen_for(double seconds, bool repair = true);
@@ -79,6 +87,8 @@ public:
 
     /// Past the window and without a number: M112, M410, M108. May be called from any thread if the wire allows it.
     void urgent(std::string_view command);
+    /// M410 and M112, past the window: nothing moves any more, and the controller must be reset.
+    void halt();
     /// Stops motion at once (M410, past the window) and then sends `commands` unnumbered. The link is of no use after.
     void stop(const std::deque<std::string>& commands);
 
@@ -93,6 +103,12 @@ public:
     [[nodiscard]] bool has_started() const { return started_; }
     /// Before connect(): the controller has been heard before on this wire, there is no `start` to wait for.
     void expect_no_start() { no_start_ = true; }
+    /// Whether the controller has halted itself, and answers nothing before it is reset.
+    [[nodiscard]] bool has_halted() const { return halted_; }
+    /// Whether it has said that homing failed: the switch was not found.
+    [[nodiscard]] bool homing_failed() const { return homing_failed_; }
+    /// Whether fence() ended because its time was over.
+    [[nodiscard]] bool ran_late() const { return ran_late_; }
     /// Whether the wire itself broke.
     [[nodiscard]] bool wire_failed() const { return wire_failed_; }
 
@@ -102,17 +118,23 @@ private:
         std::size_t bytes = 0;
     };
 
+    [[nodiscard]] Status pass_fence();
     [[nodiscard]] Status run_until(const std::function<bool()>& done);
     [[nodiscard]] Status transmit();
     [[nodiscard]] Status listen();
     [[nodiscard]] Result<bool> hear(double timeout_s);
     [[nodiscard]] Result<bool> hear_once(double timeout_s);
     [[nodiscard]] Status wait_for_boot();
+    [[nodiscard]] Status put_probe();
+    [[nodiscard]] Result<std::optional<long>> probe_last_line(double begin_s);
+    [[nodiscard]] Result<bool> set_base(long base, int attempt, double begin_s);
+    [[nodiscard]] Status no_answer() const;
     [[nodiscard]] Status put(std::string_view bytes);
     [[nodiscard]] Status wait_until_quiet();
     [[nodiscard]] Status wait_for_answer(double begin_s, const std::function<bool()>& answered);
     [[nodiscard]] Status handle(std::string_view line);
     [[nodiscard]] Status handle_error(std::string_view line);
+    [[nodiscard]] Status handle_halt(std::string_view error);
     [[nodiscard]] Status handle_unknown(std::string_view line);
     [[nodiscard]] Status handle_restart();
     void handle_ok(std::string_view line);
@@ -147,7 +169,7 @@ private:
     int repeats_ = 0;
     double refused_ = 0;     ///< share of recent lines that had to be repeated
     int silences_ = 0;       ///< since the last ok
-    bool probing_ = false;   ///< a line was repeated after a silence, to find out where the firmware is
+    bool probing_ = false;   ///< after a silence the firmware was asked for its last line
     bool silent_ = false;    ///< nothing is outstanding and nothing came
     bool tolerant_ = false;  ///< unknown commands are no error
     bool connected_ = false;
@@ -155,6 +177,10 @@ private:
     bool was_reset_ = false;
     bool no_start_ = false;
     bool wire_failed_ = false;
+    bool halted_ = false;
+    bool homing_failed_ = false;
+    bool ran_late_ = false;
+    double deadline_s_ = std::numeric_limits<double>::infinity();  ///< of what is waited for
     double last_write_s_ = 0;
     double busy_s_ = 0;    ///< when it last said that it is
     double answer_s_ = 0;  ///< when it last answered a line or was busy; other talk is no answer

@@ -40,6 +40,33 @@ std::map<char, double> axis_values(std::string_view answer) {
     return values;
 }
 
+/// The axes that a G28 names, or all of them.
+std::vector<Axis> homed_by(const Printer& printer, std::string_view command) {
+    std::vector<Axis> axes;
+    const auto parsed = machine::parse_command(command);
+    for (const machine::Word& word : parsed ? parsed->words : std::vector<machine::Word>{}) {
+        if (const auto axis = machine::axis_of_letter(printer, word.letter)) axes.push_back(*axis);
+    }
+    return axes.empty() ? machine::homing_order(printer) : axes;
+}
+
+/// From end to end of the travel, and what Marlin adds: it goes back a little and comes again, slowly.
+double longest_homing_s(const Printer& printer, const std::vector<Axis>& axes) {
+    constexpr double slack = 1.1, again_s = 8;
+    double seconds = 0;
+    for (const Axis axis : axes) {
+        const machine::AxisSpec& spec = printer.axis(axis);
+        if (spec.homes_by_hand) continue;
+        seconds += slack * (spec.max_um - spec.min_um) / 1000.0 / spec.homing_speed_mm_s + again_s;
+    }
+    return seconds;
+}
+
+/// What M119 calls the switch that the axis homes to.
+std::string home_switch(const Printer& printer, Axis axis) {
+    return machine::switch_names(printer, {axis, printer.axis(axis).homes_to_max, false}).front();
+}
+
 }  // namespace
 
 bool same_phase(const Printer& printer, const Interlock& a, const Interlock& b) {
@@ -154,18 +181,27 @@ Status Machine::look_at_switches() {
     return status;
 }
 
-bool Machine::homes_to_switch(std::string_view command) const {
-    return !printer_.limit_switches.empty() && command.substr(0, 3) == "G28";
+/// A dead switch would let the axis push against its end until Marlin gives up, after one and a half times the travel.
+Status Machine::wait_for_homing(std::string_view command) {
+    const std::vector<Axis> axes = homed_by(printer_, command);
+    noted_ = false;
+    const Status status = link_.fence(longest_homing_s(printer_, axes));
+    if (status || !(link_.ran_late() || link_.homing_failed())) return status;
+    if (!link_.has_halted()) link_.halt();
+    std::string where;
+    for (const Axis axis : axes) {
+        where += fmt::format("{}the {} did not reach its switch ({})", where.empty() ? "" : " or ",
+                             machine::axis_name(axis), home_switch(printer_, axis));
+    }
+    return failure("homing failed: {}; the board is halted: look at switch, plug and wire, then reset the board",
+                   where);
 }
 
 /// Of every axis that `command` has homed.
 Status Machine::after_homing(std::string_view command) {
-    const auto parsed = machine::parse_command(command);
-    if (!homes_to_switch(command) || !parsed) return {};
-    for (const machine::Word& word : parsed->words) {
-        const auto axis = machine::axis_of_letter(printer_, word.letter);
-        if (!axis) continue;
-        if (Status status = leave_switch(*axis); !status) return status;
+    if (Status status = wait_for_homing(command); !status || printer_.limit_switches.empty()) return status;
+    for (const Axis axis : homed_by(printer_, command)) {
+        if (Status status = leave_switch(axis); !status) return status;
     }
     return {};
 }
@@ -192,17 +228,21 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;
     if (Status status = after.line(printer_, command); !status)
         return failure("{} is not sent: {}", command, status.error().message);
-    // What is sent after homing to try the switch is no step of this program: it must not be taken for the next ones.
-    const bool alone = homes_to_switch(command);
+    // What is sent after homing, to wait for it and to try the switch, is no step of this program: it must not be taken
+    // for the next ones.
+    const bool alone = command.substr(0, 3) == "G28";
     if (journal_ != nullptr && (!noted_ || alone || !same_phase(printer_, at_.lock, after.lock))) {
         if (Status status = note_go(program, step, at_.lock, alone ? 1 : 0); !status) return status;
+    }
+    if (alone && journal_ == nullptr) {  // the time of homing begins when the moves before it are done
+        if (Status status = link_.fence(); !status) return status;
     }
     if (Status status = link_.send(command); !status) return status;
     // When the tower has done its stroke, the journal says so as soon as it can: in the middle of it nobody knows where
     // it stands.
     if (after.lock.in_hooks_stroke() && after.lock.position() != at_.lock.position()) noted_ = false;
     at_ = std::move(after);
-    return after_homing(command);
+    return alone ? after_homing(command) : Status{};
 }
 
 Status Machine::run(std::string_view program) {
@@ -223,6 +263,22 @@ Status Machine::run(std::string_view program) {
 Status Machine::rest() {
     noted_ = false;
     return link_.fence();
+}
+
+Status Machine::stand_where_stopped() {
+    noted_ = false;
+    machine::Position position = at_.lock.position();
+    const auto answers = link_.ask("M114");
+    for (const std::string& answer : answers ? *answers : std::vector<std::string>{}) {
+        const std::map<char, double> values = axis_values(answer);
+        for (const Axis axis : machine::all_axes) {
+            const auto found = values.find(printer_.axis(axis).letter);
+            if (printer_.axis(axis).present() && found != values.end())
+                position[axis] = static_cast<int>(std::lround(std::clamp(found->second, -1e6, 1e6) * 1000));
+        }
+    }
+    at_.lock.stopped_at(position);
+    return answers ? Status{} : tl::unexpected(answers.error());
 }
 
 Status Machine::rest_in_place() {

@@ -35,8 +35,9 @@ public:
     /// Connects and learns what the firmware can; lines are numbered from `base` on.
     [[nodiscard]] Status connect(long base);
 
-    /// Sends step `step` of program `program` (see GoFact). After homing, the axis leaves its switch and comes back:
-    /// one that stays pressed is stuck. Where a vat is taken, left or carried, the machine first comes to rest and the
+    /// Sends step `step` of program `program` (see GoFact). Homing is waited for, not longer than its way takes: past a
+    /// switch that is dead the machine is halted. Then the axis leaves its switch and comes back: one that stays
+    /// pressed is stuck. Where a vat is taken, left or carried, the machine first comes to rest and the
     /// journal says so. Errors: forbidden by the interlocks, journal, link.
     [[nodiscard]] Status send(long program, std::size_t step, std::string_view command);
     /// Sends a program that is not the job's, and waits until it is done.
@@ -45,6 +46,9 @@ public:
     [[nodiscard]] Status rest();
     /// The same, and the controller says that it is where it has been sent. A controller that cannot say is believed.
     [[nodiscard]] Status rest_in_place();
+
+    /// After M410: asks where it has come to rest. Nothing counts as homed any more: steps may have been lost.
+    [[nodiscard]] Status stand_where_stopped();
 
     // Switches: nothing is asked of a machine whose file lists none and that has no door.
 
@@ -67,7 +71,7 @@ public:
 
 private:
     [[nodiscard]] bool has_switches() const { return !printer_.limit_switches.empty() || printer_.door.present(); }
-    [[nodiscard]] bool homes_to_switch(std::string_view command) const;
+    [[nodiscard]] Status wait_for_homing(std::string_view command);
     [[nodiscard]] Status after_homing(std::string_view command);
     [[nodiscard]] Status leave_switch(machine::Axis axis);
     [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before, long most);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "host/resume_point.hpp"
 
@@ -21,6 +22,12 @@ std::string number(double value) {
 /// Why a run returns before its end without an error of its own.
 tl::unexpected<Error> wish_to_end() {
     return cancelled();
+}
+
+/// Steps at whose end the machine has done everything that was sent: lights, and homing.
+bool is_waited_for(const std::variant<std::string, machine::Expose>& step) {
+    const auto* command = std::get_if<std::string>(&step);
+    return command == nullptr || command->compare(0, 3, "G28") == 0;
 }
 
 }  // namespace
@@ -41,9 +48,15 @@ PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
                 s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         }
     });
+    reach(next_light(facts_, run_.script));
+    run_.machine.link().set_watch([this] {
+        show_progress();
+        return run_.desk.watch();
+    });
 }
 
 PrintRun::~PrintRun() {
+    run_.machine.link().set_watch([&desk = run_.desk] { return desk.watch(); });
     (void)projector_.black();
 }
 
@@ -79,8 +92,17 @@ Result<Ending> PrintRun::abandon(const Recovery& recovery) {
     return Ending::cancelled;
 }
 
+/// The machine has done what stands before step `step`.
+void PrintRun::reach(std::size_t step) {
+    reached_s_ = sent_s_ = run_.times[step];
+    reached_at_s_ = clock_.now();
+}
+
 Result<Ending> PrintRun::steps_from(std::size_t first) {
+    reach(first);
     for (std::size_t i = first; i < run_.script.steps.size(); ++i) {
+        sent_s_ = run_.times[i + 1];
+        show_progress();
         Status status = serve_wishes(i);
         if (status) {
             const auto* command = std::get_if<std::string>(&run_.script.steps[i]);
@@ -89,7 +111,7 @@ Result<Ending> PrintRun::steps_from(std::size_t first) {
         if (!status && status.error().cause == Cause::cancelled)
             return park(run_.desk.wishes().cancel ? Ending::cancelled : Ending::suspended);
         if (!status) return tl::unexpected(status.error());
-        show_progress(i + 1, 0);
+        if (is_waited_for(run_.script.steps[i])) reach(i + 1);
     }
     if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
     if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
@@ -332,6 +354,7 @@ Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begi
 }
 
 Status PrintRun::wait_for_resume() {
+    waits_ = true;
     for (;;) {
         if (Status status = run_.desk.watch(); !status) return status;
         if (wants_to_end()) return wish_to_end();
@@ -340,6 +363,9 @@ Status PrintRun::wait_for_resume() {
         if (Status status = listen_at_door(pause_look_s); !status) return status;
     }
     run_.desk.wish([](Wishes& w) { w.resume = false; });
+    waits_ = false;
+    reached_s_ = done_s_;
+    reached_at_s_ = clock_.now();
     run_.desk.state(State::printing);
     return {};
 }
@@ -400,7 +426,7 @@ void PrintRun::make_safe(const Error& error) {
     const bool emergency = run_.desk.stopped();
     const bool quick = emergency || !(link.was_reset() || link.wire_failed() || journal_failed_);
     (void)note("stop", {{"quick", quick ? "1" : "0"}, {"why", error.message}});
-    if (emergency || link.was_reset() || link.wire_failed()) return;
+    if (emergency || link.was_reset() || link.wire_failed() || link.has_halted()) return;
     if (!journal_failed_) return link.stop(run_.script.stop_commands);
     // Nothing more can be kept: what is under way ends, and nothing else moves.
     for (const std::string& command : run_.script.stop_commands) (void)link.send(command);
@@ -416,15 +442,17 @@ Status PrintRun::note(std::string_view kind, const JournalValues& values) {
     return {};
 }
 
-void PrintRun::show_progress(std::size_t step, double within_s) {
-    const double done_s = run_.times[step] + within_s;
+/// Time goes on while the machine is homed or a vat is brought, but not beyond what has been sent.
+void PrintRun::show_progress() {
     const double all_s = run_.times.back();
+    const double now_s = clock_.now();
+    if (!waits_) done_s_ = std::clamp(reached_s_ + now_s - reached_at_s_, reached_s_, std::max(reached_s_, sent_s_));
     const machine::Interlock& state = run_.machine.state();
     const auto vat = state.hooked_vat();
     run_.desk.update([&](Snapshot& s) {
-        s.completion = all_s > 0 ? done_s / all_s : 1;
-        s.seconds_left = all_s - done_s;
-        s.seconds_done = clock_.now() - begin_s_;
+        s.completion = all_s > 0 ? done_s_ / all_s : 1;
+        s.seconds_left = all_s - done_s_;
+        s.seconds_done = now_s - begin_s_;
         s.position = state.position();
         for (const Axis axis : machine::all_axes) s.homed[static_cast<std::size_t>(axis)] = state.homed(axis);
         s.slot = vat ? printer_.vats[static_cast<std::size_t>(*vat)].slot : 0;

@@ -72,7 +72,8 @@ private:
     [[nodiscard]] bool at_safe_point() const;
     [[nodiscard]] int next_layer(std::size_t step) const;
     [[nodiscard]] bool wants_to_end() const;
-    void show_progress(std::size_t step, double within_s);
+    void show_progress();
+    void reach(std::size_t step);
 
     RunSetup run_;
     JournalFacts facts_;
@@ -80,6 +81,9 @@ private:
     Projector& projector_;
     Clock& clock_;
     double begin_s_;
+    // Seconds of the job as planned: what has been reached for sure (and when), what has been sent, what is shown.
+    double reached_s_ = 0, reached_at_s_ = 0, sent_s_ = 0, done_s_ = 0;
+    bool waits_ = false;       ///< for somebody to resume: that is no time of the job
     int layer_ = -1;           ///< of the last light
     int hooked_layer_ = -1;    ///< for which after_layer has been called
     int refilled_layer_ = -1;  ///< before which a refill has been asked for

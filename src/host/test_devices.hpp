@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <string>
@@ -19,7 +20,18 @@ public:
     double now_s = 0;
 };
 
-/// `answer` gets every written line and says what comes back. What it says before the first line: `start`.
+/// A number far ahead, with which a host asks for the last line.
+inline bool is_probe(const std::string& line) {
+    return line.rfind("N2147483640 ", 0) == 0;
+}
+
+inline std::string refusal(long last_line) {
+    return fmt::format("Error:Line Number is not Last Line Number+1, Last Line: {}\nResend: {}\nok\n", last_line,
+                       last_line + 1);
+}
+
+/// `answer` gets every written line and says what comes back. What it says before the first line: `start`. A probe to
+/// which the answer would be a plain `ok` is answered as a Marlin does that has taken every line so far that had one.
 class ScriptedWire final : public Wire {
 public:
     ScriptedWire(CountingClock& clock, std::function<std::string(const std::string&)> answer)
@@ -33,7 +45,7 @@ public:
             }
             if (line_.empty()) continue;  // a firmware gives no answer to an empty line
             written.push_back(line_);
-            pending_ += answer_(line_);
+            pending_ += answer_to(line_);
             line_.clear();
         }
         return {};
@@ -46,11 +58,23 @@ public:
     }
 
     std::vector<std::string> written;
-    std::string talk;  ///< what it says every second, asked or not
+    std::string forgets;  ///< a line that holds it is not taken, once, whatever the answer to it is
+    std::string talk;     ///< what it says every second, asked or not
 
 private:
+    std::string answer_to(const std::string& line) {
+        const std::string said = answer_(line);
+        if (is_probe(line) && said == "ok\n") return refusal(last_line_);
+        const bool taken =
+            said.size() >= 3 && said.substr(said.size() - 3) == "ok\n" && said.find("Resend") == said.npos;
+        if (!forgets.empty() && line.find(forgets) != line.npos) return forgets.clear(), said;
+        if (line[0] == 'N' && taken && !is_probe(line)) last_line_ = std::atol(line.c_str() + 1);
+        return said;
+    }
+
     CountingClock& clock_;
     std::function<std::string(const std::string&)> answer_;
+    long last_line_ = 0;
     std::string pending_ = "start\n";
     std::string line_;
 };

@@ -27,7 +27,10 @@ Status follow_home(Followed& at, const Printer& printer, const Command& command)
     for (const Axis axis : axes) {
         if (command.is('G', 92) && !printer.axis(axis).homes_by_hand)
             return input_error("G92 moves the origin of {}: coordinates are absolute", printer.axis(axis).letter);
-        at.seconds += home_seconds(printer, axis, at.lock.position()[axis]);
+        // One that is not homed may stand anywhere: the whole way, as the plan takes it.
+        const AxisSpec& spec = printer.axis(axis);
+        const int far_um = spec.homes_to_max ? spec.min_um : spec.max_um;
+        at.seconds += home_seconds(printer, axis, at.lock.homed(axis) ? at.lock.position()[axis] : far_um);
         if (Status status = at.lock.home(axis); !status) return status;
     }
     return {};

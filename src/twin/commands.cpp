@@ -58,20 +58,43 @@ double Twin::blocks_until(const Command& c) {
         }
         return std::numeric_limits<double>::infinity();
     }
-    if (!c.is('G', 28)) return now_s_;
-    double seconds = 0;
-    for (const Axis axis : axes_to_home(c)) seconds += motors_.home_seconds(axis);
-    return still + seconds;
+    return c.is('G', 28) ? still : now_s_;
 }
 
-void Twin::execute(const Command& c, const Queued& queued) {
+/// The switch that the axis homes to is never pressed.
+bool Twin::is_dead(Axis axis) const {
+    const std::vector<machine::LimitSwitch> switches = machine::switches_of(printer_);
+    for (std::size_t i = 0; i < switches.size(); ++i) {
+        const bool homes_here = switches[i].axis == axis && switches[i].at_max == printer_.axis(axis).homes_to_max;
+        if (homes_here && fault_hits(Fault::Kind::dead_switch, static_cast<int>(i) + 1)) return true;
+    }
+    return false;
+}
+
+/// How long homing takes. To a dead switch Marlin goes one and a half times the travel, and pushes from its end on.
+void Twin::plan_homing(Running& running) {
+    for (const Axis axis : axes_to_home(*running.command)) {
+        const double seconds = motors_.home_seconds(axis);
+        if (!is_dead(axis)) {
+            running.done_at_s += seconds;
+            continue;
+        }
+        const machine::AxisSpec& spec = printer_.axis(axis);
+        running.reaches_end_s = running.done_at_s + seconds;
+        running.done_at_s += 1.5 * (spec.max_um - spec.min_um) / 1000.0 / spec.homing_speed_mm_s;
+        return;
+    }
+}
+
+void Twin::execute(const Command& c) {
     if (c.is('G', 0) || c.is('G', 1)) return execute_move(c);
     if (c.is('G', 28)) return execute_home(c);
     if (c.is('G', 92)) return execute_set(c);
     if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c);
     if (c.is('G', 4) || c.is('G', 90) || c.is('M', 400) || is_quiet(c)) {
-        // M110 in an unnumbered line sets the number here; a numbered one did so when it was verified.
-        if (c.is('M', 110) && !queued.number) reader_.set_last_number(static_cast<long>(c.value('N').value_or(0)));
+        // A numbered M110 did so already when it was received: it counts twice.
+        if (const auto number = c.value('N'); number && c.is('M', 110))
+            reader_.set_last_number(static_cast<long>(std::clamp(*number, -2147483648.0, 2147483647.0)));
         return;
     }
     execute_other(c);
@@ -94,6 +117,8 @@ machine::Position Twin::clamped(machine::Position to) {
 void Twin::execute_move(const Command& c) {
     // Motors that stood still for too long have been switched off, silently.
     if (idle_limit_s_ > 0 && now_s_ - motors_.done_at() > idle_limit_s_) motors_.release(now_s_);
+    if (const std::string letters = not_homed(c); options_.homes_first && !letters.empty())
+        return say(fmt::format("echo:Home {} First", letters));
     if (const auto feed = c.value('F'); feed && *feed > 0) feed_mm_s_ = *feed / 60;
     const auto asked = machine::move_target(printer_, c, interlock().position());
     if (!asked) return violation(asked.error().message);
@@ -120,8 +145,19 @@ void Twin::miss_steps(const machine::Position& from, const machine::Position& to
     }
 }
 
+/// The letters of the axes that the move names and that are not homed.
+std::string Twin::not_homed(const Command& command) const {
+    std::string letters;
+    for (const Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = printer_.axis(axis);
+        if (spec.present() && command.has(spec.letter) && !interlock().homed(axis)) letters += spec.letter;
+    }
+    return letters;
+}
+
 void Twin::execute_home(const Command& c) {
     for (const Axis axis : axes_to_home(c)) {
+        if (is_dead(axis)) return kill("echo:Homing Failed");
         ++log_.homings;
         if (Status status = motors_.home(now_s_, axis); !status) violation(status.error().message);
         slip_um_[static_cast<std::size_t>(axis)] = 0;
@@ -222,9 +258,9 @@ void Twin::execute_other(const Command& c) {
         else
             say(fmt::format("echo:M113 S{:g}", busy_every_s_));
     } else if (c.is('M', 112)) {
-        kill();
+        kill("echo:M112 Shutdown");
     } else if (c.is('M', 410)) {
-        if (!options_.emergency_parser) motors_.stop(now_s_);
+        if (!options_.emergency_parser) quick_stop();
     } else if (c.is('M', 999)) {
         // Seen: a request that nobody provoked, and an ok for it besides the command's own.
         if (c.value('S')) return;
@@ -310,6 +346,7 @@ void Twin::say_soft_endstops() {
 /// Where the axis really stands, whatever the controller thinks; homed or not.
 bool Twin::is_pressed(const machine::LimitSwitch& limit) const {
     const machine::AxisSpec& spec = printer_.axis(limit.axis);
+    if (limit.at_max == spec.homes_to_max && is_dead(limit.axis)) return false;
     const int at_um = motors_.position_at(now_s_)[limit.axis] + slip_um_[static_cast<std::size_t>(limit.axis)];
     return limit.at_max ? at_um >= spec.max_um : at_um <= spec.min_um;
 }

@@ -10,13 +10,14 @@ namespace {
 
 using Kind = Fault::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 16> kinds = {{{"corrupt-line", Kind::corrupt_byte},
+constexpr std::array<std::pair<std::string_view, Kind>, 18> kinds = {{{"corrupt-line", Kind::corrupt_byte},
                                                                       {"lose-line", Kind::lose_line},
                                                                       {"lose-ok", Kind::lose_ok},
                                                                       {"lose-resend", Kind::lose_resend},
                                                                       {"reset", Kind::reset},
                                                                       {"lose-byte", Kind::lose_byte},
                                                                       {"flip-byte", Kind::flip_byte},
+                                                                      {"lose-number", Kind::lose_number},
                                                                       {"resend-loop", Kind::resend_loop},
                                                                       {"stall", Kind::stall},
                                                                       {"missed-steps", Kind::missed_steps},
@@ -25,7 +26,8 @@ constexpr std::array<std::pair<std::string_view, Kind>, 16> kinds = {{{"corrupt-
                                                                       {"dead-pump", Kind::dead_pump},
                                                                       {"dark-projector", Kind::dark_projector},
                                                                       {"door-open", Kind::door_open},
-                                                                      {"stuck-switch", Kind::stuck_switch}}};
+                                                                      {"stuck-switch", Kind::stuck_switch},
+                                                                      {"dead-switch", Kind::dead_switch}}};
 
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {

@@ -20,6 +20,7 @@ struct Fault {
         reset,         ///< the controller restarts when the n-th line arrives
         lose_byte,     ///< the n-th received byte never arrives
         flip_byte,     ///< a bit of the n-th received byte flips
+        lose_number,   ///< the n-th received line loses its `N…` number, and so is run unverified
         resend_loop,   ///< from the n-th line on, `amount` good lines (default 3) are refused
         stall,         ///< the controller says and does nothing for `amount` seconds (default 30) from the n-th line on
         // behind it
@@ -30,6 +31,7 @@ struct Fault {
         dark_projector,  ///< the n-th light is none
         door_open,     ///< half a second into the n-th light somebody opens the door, for `amount` seconds (default 30)
         stuck_switch,  ///< the n-th limit switch of the printer file is always pressed
+        dead_switch,   ///< the n-th limit switch of the printer file is never pressed
     };
     Kind kind = Kind::corrupt_byte;
     int n = 1;

@@ -1,5 +1,6 @@
 #include "twin/line_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -14,9 +15,10 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// The number at the beginning of `text`; what follows it is ignored, as strtol does. -1 if there is none.
+/// The number at the beginning of `text`; what follows it is ignored, and none is 0: as strtol does.
 long leading_number(std::string_view text) {
-    long value = -1;
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    long value = 0;
     std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
 }
@@ -53,19 +55,22 @@ std::optional<ReceivedLine> LineReader::finish() {
     return verify(trim(line));
 }
 
-ReceivedLine LineReader::verify(std::string_view line) {
+std::optional<ReceivedLine> LineReader::verify(std::string_view line) {
     ReceivedLine result;
     const std::size_t star = line.rfind('*');
     if (line.empty() || line.front() != 'N') {
         result.command = trim(line.substr(0, star));
         return result;
     }
-    const std::size_t blank = line.find(' ');
-    const std::string_view body = blank == std::string_view::npos ? "" : line.substr(blank + 1);
-    const bool sets_number = body.substr(0, 4) == "M110";
-    const std::size_t second = sets_number ? body.find('N') : std::string_view::npos;
-    const long number = leading_number(second == std::string_view::npos ? line.substr(1) : body.substr(second + 1));
-    if (!sets_number && number != last_number_ + 1) {
+    // Marlin looks for M110 anywhere in the line, and for its N from the fifth character on.
+    const bool sets_number = line.find("M110") != std::string_view::npos;
+    const std::size_t second = sets_number ? line.find('N', 4) : std::string_view::npos;
+    const long number = leading_number(line.substr(second == std::string_view::npos ? 1 : second + 1));
+    const bool follows = sets_number || number == last_number_ + 1;
+    if (!follows && drops_repeats_ && (number == last_number_ || number == last_number_ - 1)) return std::nullopt;
+    constexpr long far_ahead = 1'000'000'000;
+    result.is_question = !follows && number > last_number_ + far_ahead;
+    if (!follows) {
         result.error = "Line Number is not Last Line Number+1";
     } else if (star == std::string_view::npos) {
         result.error = "No Checksum with line number";
@@ -74,7 +79,8 @@ ReceivedLine LineReader::verify(std::string_view line) {
     } else {
         last_number_ = number;
         result.number = number;
-        result.command = trim(line.substr(blank + 1, star - blank - 1));
+        const std::size_t blank = std::min(line.find(' '), star);
+        result.command = blank == star ? "" : trim(line.substr(blank + 1, star - blank - 1));
     }
     return result;
 }

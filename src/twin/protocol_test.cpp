@@ -1,5 +1,5 @@
 // Every behaviour of a real Marlin that a host has to live with, one test each. What they follow was seen on the wire
-// of Marlin 2.1.1 or read in its source.
+// of Marlin 2.1.1 and 2.1.2.1, or read in its source.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 using namespace pliant;
 using namespace pliant::twin;
 using machine::Axis;
+using machine::MarlinRelease;
 using pliant::test::holds;
 using twin::test::Peer;
 
@@ -17,6 +18,12 @@ namespace {
 
 Options with(Options options, std::vector<Fault> faults) {
     options.faults = std::move(faults);
+    return options;
+}
+
+Options of(MarlinRelease release) {
+    Options options;
+    options.release = release;
     return options;
 }
 
@@ -110,10 +117,107 @@ TEST_CASE("answers: after a bad line every line that was under way gives the sam
     CHECK(p.raw(Peer::line(1, "M400")) == "ok\n");
 }
 
-TEST_CASE("answers: a duplicate of a line that has run asks for the next number") {
-    Peer p;
+TEST_CASE("answers: up to 2.1.1 a duplicate of a line that has run asks for the next number") {
+    Peer p(of(MarlinRelease::v2_1_1));
     p.send("M400");
     CHECK(holds(p.raw(Peer::line(1, "M400")), "Resend: 2\nok\n"));
+    Peer fresh(of(MarlinRelease::v2_1_1));
+    CHECK(holds(fresh.raw(Peer::line(0, "M400")), "Last Line: 0\nResend: 1\nok\n"));
+}
+
+TEST_CASE("answers: since 2.1.2 a line numbered as the last one or the one before is dropped without a word") {
+    for (const auto release : {MarlinRelease::v2_1_2, MarlinRelease::v2_1_3}) {
+        Peer p(of(release));
+        CHECK(p.raw(Peer::line(0, "M118 E1 dropped")).empty());  // a fresh start: 0 is the last line
+        CHECK(p.raw("N-1 M400*1\n").empty());
+        for (int i = 0; i < 5; ++i) p.send("M400");
+        CHECK(p.raw(Peer::line(5, "M118 E1 dropped")).empty());
+        CHECK(p.raw(Peer::line(4, "M118 E1 dropped")).empty());
+        CHECK(p.raw("N5 M400*1\n").empty());  // its checksum is not looked at
+        CHECK(holds(p.raw(Peer::line(3, "M400")), "Error:Line Number is not Last Line Number+1, Last Line: 5\n"));
+        CHECK(p.raw(Peer::line(6, "M118 E1 taken")) == "echo:taken\nok\n");
+        p.twin.reset();
+        (void)p.twin.take_output();
+        CHECK(p.raw(Peer::line(0, "M400")).empty());
+    }
+    Peer p;  // the release of the printer file's board
+    CHECK(p.twin.release() == MarlinRelease::v2_1_2);
+    CHECK(p.raw(Peer::line(0, "M400")).empty());
+}
+
+TEST_CASE("answers: a far number with a wrong checksum names the last line on every release, and takes nothing") {
+    for (const auto release : {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3}) {
+        Peer p(of(release));
+        CHECK(holds(p.raw("N2147483640 M400*0\n"), "Last Line: 0\nResend: 1\nok\n"));
+        p.send("M400");
+        CHECK(holds(p.raw("N2147483640 M400*0\n"), "Last Line: 1\nResend: 2\nok\n"));
+        CHECK(p.send("M400") == "ok\n");
+    }
+}
+
+TEST_CASE("framing: M110 counts when it is received and again when it is carried out") {
+    Peer p;
+    p.send("G4 S5");
+    CHECK(p.raw(Peer::line(100, "M110 N100")).empty());        // waits behind the pause, and counts already
+    CHECK(p.raw(Peer::line(101, "M118 E1 between")).empty());  // so this one is taken
+    CHECK(holds(p.raw("", 6), "ok\nok\necho:between\nok\n"));  // and then 100 is the last line again
+    CHECK(holds(p.raw(Peer::line(102, "M400")), "Last Line: 100\nResend: 101\nok\n"));
+    CHECK(p.raw(Peer::line(101, "M118 E1 again")) == "echo:again\nok\n");
+}
+
+TEST_CASE("faults on the wire: a line that loses its number is run unchecked, and asked for again") {
+    Peer p(with({}, {{Fault::Kind::lose_number, 2, 0}}));
+    p.send("M400");
+    CHECK(p.send("M118 E1 twice") == "echo:twice\nok\n");
+    CHECK(holds(p.send("M400"), "Last Line: 1\nResend: 2\nok\n"));
+    CHECK(p.raw(Peer::line(2, "M118 E1 twice")) == "echo:twice\nok\n");
+}
+
+TEST_CASE("machine: NO_MOTION_BEFORE_HOMING leaves moves out of axes that are not homed, with ok") {
+    Options options;
+    options.homes_first = true;
+    Peer p(options);
+    p.send("M84 S0");
+    const int before_um = p.z_um();
+    CHECK(p.send("G1 Z300 F1200") == "echo:Home Z First\nok\n");
+    CHECK(p.send("G1 X10 Z300") == "echo:Home XZ First\nok\n");
+    CHECK(p.z_um() == before_um);
+    CHECK(p.twin.log().violations.empty());
+    p.home();
+    CHECK(p.send("G1 Z300 F1200") == "ok\n");
+}
+
+TEST_CASE("stopping: a move goes on for 0.9 s after M112 alone, and not at all after M410") {
+    const auto way_um = [](bool quick) {
+        Peer p;
+        p.send("M84 S0");
+        p.home();
+        p.send("G1 Z200 F900");
+        p.raw("", 4);
+        const int before_um = p.z_um_now();
+        CHECK(before_um < 400000);
+        if (quick) p.raw("M410\n", 0.01);
+        p.raw("M112\n", 5);
+        CHECK_FALSE(p.twin.interlock().homed(Axis::platform));
+        return before_um - p.z_um();
+    };
+    CHECK(way_um(false) == doctest::Approx(13500).epsilon(0.02));  // 15 mm/s for 0.9 s
+    CHECK(way_um(true) == 0);
+}
+
+TEST_CASE("homing to a dead switch pushes for one and a half times the travel, and kills the firmware") {
+    Peer p(with({}, {{Fault::Kind::dead_switch, 1, 0}}));
+    CHECK(holds(p.send("M119"), "x_min: open\n"));  // where the carriage is parked it should be pressed
+    CHECK(p.send("G28 Z", 100) != "");
+    const double travel_mm = 358;
+    const double longest_s = 1.5 * travel_mm / p.printer.axis(Axis::carriage).homing_speed_mm_s;
+    CHECK_FALSE(holds(p.send("G28 X", longest_s - 1), "Homing Failed"));
+    CHECK(holds(p.raw("", 2), "echo:Homing Failed\nError:Printer halted. kill() called!\n"));
+    CHECK(p.twin.log().pushed_s > longest_s / 3 - 1);
+    CHECK(p.send("M400", 20).empty());
+    p.twin.reset();
+    (void)p.twin.take_output();
+    CHECK(p.raw(Peer::line(1, "M400")) == "ok\n");
 }
 
 TEST_CASE("answers: M999 provokes a request and two oks; with S it is quiet") {
@@ -225,8 +329,8 @@ TEST_CASE("stopping: after M410 the commands that were queued still run, and pos
     p.send("M118 E1 still here");
     p.twin.advance_to(p.twin.now() + 2);
     (void)p.twin.take_output();
-    const std::string said = p.raw("M410\n");
-    CHECK(holds(said, "ok\necho:still here\nok\n"));
+    CHECK(p.raw("M410\n", 0.9).empty());  // for a second the planner takes nothing
+    CHECK(holds(p.raw("", 0.2), "ok\necho:still here\nok\n"));
     CHECK(p.z_um() > 300000);
     CHECK_FALSE(p.twin.interlock().homed(Axis::platform));
 }

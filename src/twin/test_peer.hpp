@@ -33,7 +33,9 @@ struct Peer {
     void home() {
         for (const char* axis : {"G28 Z", "G28 X", "G28 Y"}) send(axis, 100);
     }
+    /// Where the platform goes, and where it is.
     [[nodiscard]] int z_um() const { return twin.interlock().position()[machine::Axis::platform]; }
+    [[nodiscard]] int z_um_now() const { return twin.motors_position()[machine::Axis::platform]; }
 };
 
 }  // namespace pliant::twin::test

@@ -14,7 +14,9 @@ constexpr std::size_t queue_lines = 4;     // Marlin's BUFSIZE
 constexpr std::size_t buffer_bytes = 127;  // RX_BUFFER_SIZE 128 holds one less
 constexpr std::size_t longest_raw_line = 4096;
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr int most_slip_um = 500;  // of a carriage, a table, a tower: beyond that nothing fits any more
+constexpr double runs_on_s = 0.9;   // seen on a Mega: last step of a move after a lone M112
+constexpr double quick_stop_s = 1;  // how long the planner takes no move after M410
+constexpr int most_slip_um = 500;   // of a carriage, a table, a tower: beyond that nothing fits any more
 
 /// Somewhere in the middle of every travel: nobody knows until the axes are homed.
 machine::Position unknown_start(const machine::Printer& printer) {
@@ -116,6 +118,7 @@ void Twin::take_line(std::string line) {
     ++lines_;
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;
+    if (fault_hits(Fault::Kind::lose_number, lines_) && line.front() == 'N') line.erase(0, line.find(' ') + 1);
     if (fault_hits(Fault::Kind::corrupt_byte, lines_) && line.size() > 2) line[line.size() / 2] ^= 4;
     if (const Fault* f = fault_at(Fault::Kind::stall, lines_))
         stalled_until_s_ = now_s_ + (f->amount > 0 ? f->amount : 30);
@@ -123,7 +126,7 @@ void Twin::take_line(std::string line) {
         refuse_more_ = f->amount > 0 ? static_cast<int>(f->amount) : 3;
     const std::string_view plain = without_blanks(std::string_view(line).substr(0, line.size() - 1));
     if (options_.emergency_parser) {
-        if (plain == "M112") return kill();
+        if (plain == "M112") return kill("echo:M112 Shutdown");
         if (plain == "M410") quick_stop();
         if (plain == "M108") user_continues();
     }
@@ -154,25 +157,40 @@ void Twin::drain() {
 
 /// Error, request, and an ok that acknowledges nothing; what else has arrived is thrown away.
 void Twin::refuse(const ReceivedLine& line) {
-    ++log_.bad_lines;
+    if (!line.is_question) ++log_.bad_lines;
     buffer_.clear();
     say(fmt::format("Error:{}, Last Line: {}", line.error, reader_.last_number()));
     if (!fault_hits(Fault::Kind::lose_resend, ++resends_)) say(fmt::format("Resend: {}", reader_.last_number() + 1));
     say("ok");
 }
 
-/// A killed firmware switches everything off, and drops the relay of the emergency line if the machine has one.
-void Twin::kill() {
+/// A killed firmware says so and hears nothing more. What moves then goes on for a while.
+void Twin::kill(std::string_view why) {
+    note_push();
     dead_ = true;
-    outputs_off();
-    log_.power_cut = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
-    motors_.release(now_s_);
     queue_.clear();
     buffer_.clear();
     running_.reset();
-    say("echo:M112 Shutdown");
+    say(why);
     say("Error:Printer halted. kill() called!");
     say("//action:poweroff");
+    if (!motors_.moving(now_s_)) return let_go();
+    lets_go_s_ = now_s_ + runs_on_s;
+}
+
+/// Everything is switched off, and the relay of the emergency line drops if the machine has one.
+void Twin::let_go() {
+    lets_go_s_.reset();
+    outputs_off();
+    log_.power_cut = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
+    motors_.release(now_s_);
+}
+
+/// Homing to a dead switch ends here, whatever ends it.
+void Twin::note_push() {
+    if (!running_ || now_s_ <= running_->reaches_end_s) return;
+    log_.pushed_s += now_s_ - running_->reaches_end_s;
+    mishap(fmt::format("an axis pushed against the end of its travel for {:.0f} s", now_s_ - running_->reaches_end_s));
 }
 
 void Twin::outputs_off() {
@@ -183,10 +201,14 @@ void Twin::outputs_off() {
     }
 }
 
+/// What is queued is carried out later: after a stop the planner takes nothing for a second.
 void Twin::quick_stop() {
     motors_.stop(now_s_);
+    held_until_s_ = now_s_ + quick_stop_s;
     if (!running_) return;
-    running_->done_at_s = now_s_;
+    note_push();
+    running_->reaches_end_s = never;
+    running_->done_at_s = held_until_s_;
     // An interrupted homing has homed nothing, an interrupted pause is over.
     if (running_->command && running_->command->is('G', 28)) running_->command = machine::Command{'M', 400, {}, {}};
 }
@@ -199,6 +221,9 @@ void Twin::user_continues() {
 
 void Twin::reset() {
     ++log_.resets;
+    note_push();
+    lets_go_s_.reset();
+    held_until_s_ = 0;
     motors_.release(now_s_);
     reader_.reset();
     buffer_.clear();
@@ -222,12 +247,13 @@ void Twin::reset() {
 
 /// When an idle firmware says or does something by itself; infinite if never.
 double Twin::idle_event() const {
-    if (!queue_.empty() || !buffer_.empty()) return stalled_until_s_;
+    if (!queue_.empty() || !buffer_.empty()) return std::max(stalled_until_s_, held_until_s_);
     return options_.wait_every_s > 0 && !dead_ ? next_wait_s_ : never;
 }
 
 std::optional<double> Twin::next_event() const {
     if (boots_at_s_) return boots_at_s_;
+    if (lets_go_s_) return lets_go_s_;
     const double next = running_ ? std::min(running_->done_at_s, running_->next_busy_s) : idle_event();
     if (next == never) return std::nullopt;
     return std::max(next, stalled_until_s_);
@@ -236,12 +262,14 @@ std::optional<double> Twin::next_event() const {
 void Twin::advance_to(double seconds) {
     for (;;) {
         if (now_s_ >= stalled_until_s_) drain();
-        if (!running_ && !queue_.empty() && now_s_ >= stalled_until_s_) start_next();
+        if (!running_ && !queue_.empty() && now_s_ >= std::max(stalled_until_s_, held_until_s_)) start_next();
         const auto next = next_event();
         if (!next || *next > seconds) break;
         now_s_ = std::max(now_s_, *next);
         if (boots_at_s_) {
             boot();
+        } else if (lets_go_s_) {
+            let_go();
         } else if (running_ && running_->done_at_s <= now_s_) {
             finish_running();
         } else if (running_) {
@@ -257,17 +285,19 @@ void Twin::advance_to(double seconds) {
 }
 
 void Twin::start_next() {
-    Running running{queue_.front(), std::nullopt, now_s_, busy_every_s_ > 0 ? now_s_ + busy_every_s_ : never};
+    Running running{queue_.front(), std::nullopt, now_s_, busy_every_s_ > 0 ? now_s_ + busy_every_s_ : never, never};
     queue_.pop_front();
     if (auto command = machine::parse_command(running.queued.line)) {
         running.done_at_s = blocks_until(*command);
         running.command = std::move(*command);
+        if (running.command->is('G', 28)) plan_homing(running);
     }
     running_ = std::move(running);
     drain();
 }
 
 void Twin::finish_running() {
+    note_push();
     const Running done = std::move(*running_);
     running_.reset();
     const bool z_move = options_.z_sync && done.command && (done.command->is('G', 0) || done.command->is('G', 1)) &&
@@ -275,7 +305,7 @@ void Twin::finish_running() {
     if (z_move && done.synced) {
         say("Z_move_comp");
     } else if (done.command) {
-        execute(*done.command, done.queued);
+        execute(*done.command);
         if (z_move && !dead_) {
             running_ = done;
             running_->synced = true;

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ struct Options {
     bool advanced_ok = false;  ///< `ok N12 P15 B3` instead of `ok`
     double busy_every_s = 2;   ///< `echo:busy: processing` while a command blocks; 0: never. M113 changes it
     std::vector<Fault> faults;
+    std::optional<machine::MarlinRelease> release{};  ///< none: what the printer file says of its board
+    bool homes_first = false;      ///< NO_MOTION_BEFORE_HOMING: moves of an axis that is not homed are left out
     bool emergency_parser = true;  ///< M112, M108 and M410 act as soon as they arrive
     bool z_sync = false;           ///< NANODLP_Z_SYNC: moves of the platform block and end with `Z_move_comp`
     bool report_fans = false;      ///< `M106 P0 S255` whenever a fan changes
@@ -58,6 +61,7 @@ struct Log {
     std::vector<double> fan_s;    ///< how long each fan has run
     double lit_while_open_s = 0;  ///< light behind an open door
     bool power_cut = false;       ///< the board's relay has dropped (emergency_line), until a reset
+    double pushed_s = 0;          ///< an axis homing to a dead switch pushed against the end of its travel
     int clamped_moves = 0;        ///< that asked for more than an axis' travel, and were cut without a word
     long moves = 0;               ///< carried out; a repeated one changes nothing and is none
     std::uint64_t path = 14695981039346656037ULL;  ///< hash (FNV-1a) of where they went, in order
@@ -101,10 +105,16 @@ public:
     void light_on(const job::Image& image);
     void light_off();
 
+    /// Which Marlin it speaks like.
+    [[nodiscard]] machine::MarlinRelease release() const {
+        return options_.release.value_or(printer_.controller.firmware);
+    }
     /// As if the USB port was opened: position and line number are lost, `start` is said.
     void reset();
 
     [[nodiscard]] const machine::Printer& printer() const { return printer_; }
+    /// Where the axes are now; interlock() knows where they go.
+    [[nodiscard]] machine::Position motors_position() const { return motors_.position_at(now_s_); }
     [[nodiscard]] const machine::Interlock& interlock() const { return motors_.interlock(); }
     [[nodiscard]] const Log& log() const { return log_; }
     [[nodiscard]] const Screen& screen() const { return screen_; }
@@ -129,6 +139,7 @@ private:
         std::optional<machine::Command> command;  ///< nullopt: unknown
         double done_at_s = 0;
         double next_busy_s = 0;
+        double reaches_end_s = std::numeric_limits<double>::infinity();  ///< homing to a dead switch: the axis pushes
         bool synced = false;  ///< a move that its end is waited for has been queued
     };
 
@@ -141,7 +152,10 @@ private:
     void start_next();
     void finish_running();
     [[nodiscard]] double blocks_until(const machine::Command& command);
-    void execute(const machine::Command& command, const Queued& queued);
+    [[nodiscard]] bool is_dead(machine::Axis axis) const;
+    void plan_homing(Running& running);
+    [[nodiscard]] std::string not_homed(const machine::Command& command) const;
+    void execute(const machine::Command& command);
     void execute_move(const machine::Command& command);
     void execute_home(const machine::Command& command);
     void execute_switch(const machine::Command& command);
@@ -164,7 +178,9 @@ private:
     [[nodiscard]] int vat_under_light() const;
     [[nodiscard]] double idle_event() const;
     [[nodiscard]] machine::Position clamped(machine::Position to);
-    void kill();
+    void kill(std::string_view why);
+    void let_go();
+    void note_push();
     void outputs_off();
     void quick_stop();
     /// The fault of that kind for the n-th time something happens; nullptr: none.
@@ -182,13 +198,15 @@ private:
     Log log_;
     double now_s_ = 0;
 
-    LineReader reader_;
+    LineReader reader_{release() != machine::MarlinRelease::v2_1_1};
     std::string arriving_;  ///< the line whose end has not arrived
     std::string buffer_;    ///< received, waiting for a place in the queue
     std::deque<Queued> queue_;
     std::optional<Running> running_;
     std::string output_;
-    bool dead_ = false;
+    bool dead_ = false;                ///< killed: reads nothing, says nothing
+    std::optional<double> lets_go_s_;  ///< killed in motion: the steppers go on until then
+    double held_until_s_ = 0;          ///< after a quick stop the queue waits
     double idle_limit_s_ = 120;
     bool soft_endstops_ = true;  ///< M211
     double feed_mm_s_ = 0;
