@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>  // environ
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -259,7 +260,7 @@ public:
     /// Ctrl-C twice: an emergency stop at once. Without a reset the next host says that one is wanted, with one it
     /// finishes the part.
     std::string interrupt_twice(Count& count) {
-        constexpr double between_s = 0.2, at_once_s = 3, soon_s = 30, longest_s = 300;
+        constexpr double between_s = 0.1, at_once_s = 3, soon_s = 30, longest_s = 300;
         const auto said = [&] { return read_file(folder_ / "host.log").value_or(""); };
         for (const char* rest : {"halves.zip.journal", "halves.zip.journal.guard", "shown.png"})
             fs::remove(folder_ / rest);
@@ -337,7 +338,9 @@ int run(const Wanted& wanted) {
         std::fflush(stdout);
     }
     tell(count);
-    Round twice(wanted, job, folder, random, print_s);
+    Wanted slow = wanted;  // parking must not be over before the second signal
+    slow.speed = std::min(wanted.speed, 50.0);
+    Round twice(slow, job, folder, random, print_s * wanted.speed / slow.speed);
     twice.undisturbed = first.undisturbed;
     if (const std::string wrong = twice.interrupt_twice(count); !wrong.empty())
         ++count.wrong, fmt::print("interrupted twice: {}\n", wrong);

@@ -1,0 +1,20 @@
+// A command as it goes over the wire: numbered and checksummed.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+namespace pliant::host {
+
+/// A line with a line end at both ends. If the one between two lines were lost or damaged, they would become one, and
+/// one in 256 of such passes the checksum; empty lines do nothing.
+inline std::string framed_line(long number, std::string_view command) {
+    const std::string line = fmt::format("N{} {}", number, command);
+    int sum = 0;
+    for (const char c : line) sum ^= static_cast<unsigned char>(c);
+    return fmt::format("\n{}*{}\n", line, sum);
+}
+
+}  // namespace pliant::host
