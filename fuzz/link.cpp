@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "bytes.hpp"
 
@@ -17,12 +18,27 @@ public:
     double now_s = 0;
 };
 
-/// Hands the input out in pieces, some of them late; then it is silent.
+/// Hands the input out in pieces, some of them late; then it is silent. One that is `friendly` first lets itself be
+/// connected, which no input would hit upon.
 class AnyWire final : public host::Wire {
 public:
-    AnyWire(Bytes bytes, CountingClock& clock) : bytes_(bytes), clock_(clock) {}
-    [[nodiscard]] Status write(std::string_view) override { return {}; }
+    AnyWire(Bytes bytes, CountingClock& clock, bool friendly) : bytes_(bytes), clock_(clock), friendly_(friendly) {}
+    [[nodiscard]] Status write(std::string_view line) override {
+        if (!friendly_) return {};
+        const std::size_t echo = line.find("M118 E1 ");
+        if (line.find("N2147483640") != line.npos) {
+            said_ += "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
+            friendly_ = false;
+        } else {
+            said_ += echo == line.npos ? "ok\n" : "echo:" + std::string(line.substr(echo + 8)) + "ok\n";
+        }
+        return {};
+    }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        if (friendly_ || !said_.empty()) {
+            if (said_.empty()) clock_.now_s += std::max(timeout_s, 1e-3);
+            return std::exchange(said_, {});
+        }
         const int length = bytes_.byte();
         if (length == 0) {
             clock_.now_s += std::max(timeout_s, 1e-3);
@@ -35,6 +51,8 @@ public:
 private:
     Bytes bytes_;
     CountingClock& clock_;
+    bool friendly_;
+    std::string said_;
 };
 
 }  // namespace
@@ -45,7 +63,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     host::LinkOptions options;
     options.boot_s = 0.5;
     const bool asks_first = bytes.chance();
-    AnyWire wire(bytes, clock);
+    AnyWire wire(bytes, clock, !asks_first);
     host::Link link(wire, clock, options);
     if (asks_first) (void)link.last_line();
     Status status = link.connect();
