@@ -3,6 +3,7 @@
 #include "job/job.hpp"
 #include "job/manifest.hpp"
 #include "job/png.hpp"
+#include "job/sha256.hpp"
 #include "zip/zip_file.hpp"
 
 namespace pliant::job {
@@ -40,6 +41,28 @@ Status check_images(const ZipReader& zip, const Manifest& manifest, const std::s
     return {};
 }
 
+/// Every entry with a fingerprint is there.
+Status check_listed(const ZipReader& zip, const Manifest& manifest, const std::string& path) {
+    for (const auto& [file, hash] : manifest.sha256) {
+        if (!zip.has(file))
+            return input_error("{}: {}: is missing, though the manifest has its fingerprint", path, file);
+    }
+    return {};
+}
+
+Status check_sha256(const Manifest& manifest, const std::string& file, std::string_view bytes,
+                    const std::string& path) {
+    if (manifest.sha256.empty() || file == "manifest.json") return {};
+    const auto listed = manifest.sha256.find(file);
+    if (listed == manifest.sha256.end())
+        return input_error("{}: {}: the manifest has no fingerprint (sha256) of it, so it was not made with the job",
+                           path, file);
+    if (listed->second == sha256_hex(bytes)) return {};
+    return input_error(
+        "{}: {}: was damaged or changed since the job was made (its sha256 is not the manifest's); slice it again",
+        path, file);
+}
+
 }  // namespace
 
 struct Archive::State {
@@ -63,6 +86,7 @@ Result<Archive> Archive::open(const std::filesystem::path& path) {
     auto manifest = manifest_from_json(*json, name + ": manifest.json");
     if (!manifest) return tl::unexpected(manifest.error());
     if (auto status = check_images(*zip, *manifest, name); !status) return tl::unexpected(status.error());
+    if (auto status = check_listed(*zip, *manifest, name); !status) return tl::unexpected(status.error());
     return Archive(std::make_unique<State>(State{name, std::move(*zip), std::move(*manifest)}));
 }
 
@@ -75,7 +99,11 @@ bool Archive::has_file(const std::string& file) const {
 }
 
 Result<std::string> Archive::file(const std::string& file) const {
-    return state_->zip.read(file, max_file_bytes);
+    auto bytes = state_->zip.read(file, max_file_bytes);
+    if (!bytes) return bytes;
+    if (auto status = check_sha256(state_->manifest, file, *bytes, state_->path); !status)
+        return tl::unexpected(status.error());
+    return bytes;
 }
 
 Result<Image> Archive::image(const std::string& file) const {

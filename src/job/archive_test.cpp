@@ -7,6 +7,7 @@
 #include "core/test_folder.hpp"
 #include "job/job.hpp"
 #include "job/manifest.hpp"
+#include "job/sha256.hpp"
 #include "zip/zip_file.hpp"
 
 using namespace pliant;
@@ -88,7 +89,11 @@ TEST_CASE("a job comes back as it went") {
     CHECK(folder.files() == 1);
     const auto archive = Archive::open(path);
     REQUIRE_MESSAGE(archive.has_value(), (archive ? "" : archive.error().message));
-    CHECK(to_json(archive->manifest()) == to_json(manifest()));
+    Manifest read = archive->manifest();
+    CHECK(read.sha256.size() == 3);
+    CHECK(read.sha256.at("printer.toml") == sha256_hex(std::string(5000, 'x')));
+    read.sha256.clear();
+    CHECK(to_json(read) == to_json(manifest()));
     CHECK(archive->image("layers/00000_soft.png").value() == image_a);
     CHECK(archive->image("layers/00001_rigid.png").value() == image_b);
     CHECK(archive->file("printer.toml").value() == std::string(5000, 'x'));
@@ -96,6 +101,41 @@ TEST_CASE("a job comes back as it went") {
     CHECK(!archive->has_file("plan.json"));
     CHECK(archive->file("plan.json").error().message == path.string() + ": has no entry 'plan.json'");
     CHECK(!archive->image("printer.toml").has_value());
+}
+
+TEST_CASE("an entry that was changed, taken away or put in since the job was made is refused when it is read") {
+    const Folder folder;
+    const fs::path path = folder / "a.zip";
+    const Manifest m = manifest();
+    REQUIRE(write(path).has_value());
+    const auto archive = Archive::open(path).value();
+    std::string json = to_json(archive.manifest());
+    const auto rebuilt = [&](const std::string& printer, bool with_settings) {
+        std::vector<std::pair<std::string, std::string>> entries = {
+            {"layers/00000_soft.png", archive.file("layers/00000_soft.png").value()},
+            {"layers/00001_rigid.png", archive.file("layers/00001_rigid.png").value()},
+            {"manifest.json", json}};
+        if (!printer.empty()) entries.emplace_back("printer.toml", printer);
+        if (with_settings) entries.emplace_back("settings.json", "{}");
+        write_raw(path, entries);
+    };
+    rebuilt(std::string(5000, 'x'), true);
+    auto changed = Archive::open(path);
+    REQUIRE(changed.has_value());
+    CHECK(changed->file("printer.toml").has_value());
+    CHECK(changed->file("settings.json").error().message.find("settings.json: the manifest has no fingerprint") !=
+          std::string::npos);
+    rebuilt(std::string(4999, 'x') + "y", false);
+    changed = Archive::open(path);
+    REQUIRE(changed.has_value());
+    CHECK(changed->file("printer.toml").error().message.find("printer.toml: was damaged or changed") !=
+          std::string::npos);
+    rebuilt("", false);
+    CHECK(refused(path).find("printer.toml: is missing") != std::string::npos);
+    const std::string hash = archive.manifest().sha256.at("layers/00001_rigid.png");
+    json.replace(json.find(hash), 64, std::string(64, 'F'));
+    rebuilt("x", false);
+    CHECK(refused(path).find("64 hex digits") != std::string::npos);
 }
 
 TEST_CASE("the same calls give the same bytes, in any time zone") {

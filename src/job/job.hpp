@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -69,6 +70,9 @@ struct Manifest {
     std::vector<std::string> warnings;  ///< what the slicer repaired or noticed
     bool compensated = false;           ///< images differ from the drawing on purpose
     std::vector<Finding> findings{};
+    bool any_vat = false;  ///< a resin that no vat holds may be filled into any
+    /// Fingerprint (64 hex digits) of every entry but the manifest; empty: a job of format 1, which has none.
+    std::map<std::string, std::string> sha256{};
 };
 
 /// How long image `index` of a layer is lit.
@@ -118,8 +122,9 @@ public:
     [[nodiscard]] Status add_image(const std::string& file, EncodedImage image);
     /// Adds any other file, deflated. Errors as above.
     [[nodiscard]] Status add_file(const std::string& file, std::string_view bytes);
-    /// Adds the manifest, writes everything and renames. Errors: check(), an image that was not added or has another
-    /// size than the manifest says, the disk. The writer is spent either way.
+    /// Adds the manifest with the fingerprints of all that was added, writes everything and renames. Errors: check(),
+    /// an image that was not added or has another size than the manifest says, the disk. The writer is spent either
+    /// way.
     [[nodiscard]] Status finish(const Manifest& manifest);
 
 private:
@@ -140,7 +145,8 @@ public:
 
     [[nodiscard]] const Manifest& manifest() const;
     [[nodiscard]] bool has_file(const std::string& file) const;
-    /// The bytes of an entry of at most 1 GB.
+    /// The bytes of an entry of at most 1 GB. Errors: they are not those that the manifest has the fingerprint of, or
+    /// it has fingerprints but none of this entry.
     [[nodiscard]] Result<std::string> file(const std::string& file) const;
     /// Decodes an image; its size is that of the manifest.
     [[nodiscard]] Result<Image> image(const std::string& file) const;

@@ -222,7 +222,9 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
             std::move(materials),
             {},
             {},
-            !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed};
+            !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed,
+            {},
+            settings.any_vat};
 }
 
 /// What becomes of layers once they are made, in order: told to `note`, stored, listed in the manifest.

@@ -27,6 +27,7 @@ struct JobSettings {
     double least_feature_um = 0;     ///< a warning tells what is narrower; 0: none
     /// Of materials whose layers are not all lit as JobSettings::bottom_layers says.
     std::map<std::string, ExposureRule> exposures{};
+    bool any_vat = false;  ///< as in Manifest
 };
 
 struct MadeJob {

@@ -8,7 +8,8 @@
 
 namespace pliant::job {
 
-inline constexpr int manifest_format = 1;
+/// Of jobs without fingerprints, and with them.
+inline constexpr int plain_format = 1, sealed_format = 2;
 
 /// Whether a name may be an entry of a job: a plain relative path such as "layers/00012_soft.png", of at most 200
 /// printable characters, without empty, "." or ".." parts, backslashes or colons.

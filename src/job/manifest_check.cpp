@@ -3,6 +3,7 @@
 #include <set>
 
 #include "job/manifest.hpp"
+#include "job/sha256.hpp"
 
 namespace pliant::job {
 namespace {
@@ -102,6 +103,23 @@ Status check_findings(const Manifest& m, std::string_view where) {
     return {};
 }
 
+/// A manifest with fingerprints has one of every image.
+Status check_sha256(const Manifest& m, std::string_view where) {
+    if (m.sha256.empty()) return {};
+    for (const auto& [file, hash] : m.sha256) {
+        if (!is_safe_entry_name(file) || file == "manifest.json" || !is_sha256_hex(hash))
+            return input_error("{}: sha256: \"{}\": \"{}\" must be an entry with 64 hex digits in lower case", where,
+                               file, hash);
+    }
+    for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        for (const LayerImage& image : m.layers[k].images) {
+            if (!m.sha256.contains(image.file))
+                return input_error("{}: sha256: \"{}\", an image of layer {}, is missing", where, image.file, k);
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 bool is_safe_entry_name(std::string_view name) {
@@ -130,7 +148,8 @@ Status check(const Manifest& manifest, std::string_view where) {
         return input_error("{}: bottom_layers: {} must be 0 or more", where, manifest.bottom_layers);
     if (auto status = check_materials(manifest.materials, where); !status) return status;
     if (auto status = check_layers(manifest, where); !status) return status;
-    return check_findings(manifest, where);
+    if (auto status = check_findings(manifest, where); !status) return status;
+    return check_sha256(manifest, where);
 }
 
 std::string image_file_name(int layer, std::string_view material) {

@@ -1,4 +1,5 @@
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "job/manifest.hpp"
@@ -60,6 +61,18 @@ public:
         for (std::size_t i = 0; i < value->size() && problem_.empty(); ++i)
             read((*value)[i], fmt::format("{}{}[{}]", path_, key, i));
     }
+    /// An object of texts.
+    std::map<std::string, std::string> texts(const char* key) {
+        std::map<std::string, std::string> result;
+        const json* value = find(key);
+        if (value == nullptr) return result;
+        if (!value->is_object()) return complain(key, "an object is needed"), result;
+        for (const auto& [name, entry] : value->items()) {
+            if (!entry.is_string()) return complain(key, fmt::format("\"{}\": a text is needed", name)), result;
+            result.emplace(name, entry.get<std::string>());
+        }
+        return result;
+    }
     void complain(std::string_view key, std::string_view text) {
         if (problem_.empty()) problem_ = fmt::format("{}{}: {}", path_, key, text);
     }
@@ -110,8 +123,9 @@ Finding read_finding(const json& object, const std::string& path, std::string& p
 Manifest read_manifest(const json& root, std::string& problem) {
     Manifest m;
     Fields f(root, "", problem);
-    if (f.integer("format") != manifest_format)
-        f.complain("format", fmt::format("only format {} is known", manifest_format));
+    const int format = f.integer("format");
+    if (format != plain_format && format != sealed_format)
+        f.complain("format", fmt::format("only formats {} and {} are known", plain_format, sealed_format));
     m.name = f.text("name");
     m.pliant_version = f.text("pliant_version");
     m.width_px = f.integer("width_px");
@@ -128,6 +142,11 @@ Manifest read_manifest(const json& root, std::string& problem) {
         Fields(root, path, problem).complain("", "a text is needed");
     });
     m.compensated = f.flag("compensated");
+    m.any_vat = f.flag("any_vat");
+    if (format == sealed_format) {
+        m.sha256 = f.texts("sha256");
+        if (m.sha256.empty()) f.complain("sha256", "must not be empty");
+    }
     if (!f.has("findings")) return m;
     f.each("findings", [&](const json& entry, const std::string& path) {
         m.findings.push_back(read_finding(entry, path, problem));
@@ -178,8 +197,12 @@ Ordered finding_json(const Finding& f) {
 }  // namespace
 
 std::string to_json(const Manifest& m) {
-    Ordered root{{"format", manifest_format},       {"name", m.name},           {"pliant_version", m.pliant_version},
-                 {"width_px", m.width_px},          {"height_px", m.height_px}, {"pixel_um", m.pixel_um},
+    Ordered root{{"format", m.sha256.empty() ? plain_format : sealed_format},
+                 {"name", m.name},
+                 {"pliant_version", m.pliant_version},
+                 {"width_px", m.width_px},
+                 {"height_px", m.height_px},
+                 {"pixel_um", m.pixel_um},
                  {"bottom_layers", m.bottom_layers}};
     Ordered& materials = root["materials"] = Ordered::array();
     for (const Material& material : m.materials)
@@ -191,6 +214,8 @@ std::string to_json(const Manifest& m) {
                              {"bottom_exposure_s", material.bottom_exposure_s}});
     root["warnings"] = m.warnings;
     if (m.compensated) root["compensated"] = true;
+    if (m.any_vat) root["any_vat"] = true;
+    if (!m.sha256.empty()) root["sha256"] = m.sha256;
     if (!m.findings.empty()) {
         Ordered& findings = root["findings"] = Ordered::array();
         for (const Finding& finding : m.findings) findings.push_back(finding_json(finding));

@@ -4,6 +4,7 @@
 #include "job/job.hpp"
 #include "job/manifest.hpp"
 #include "job/png.hpp"
+#include "job/sha256.hpp"
 #include "zip/zip_file.hpp"
 
 namespace pliant::job {
@@ -13,13 +14,17 @@ struct Writer::State {
     fs::path path, aside;
     ZipWriter zip;
     std::map<std::string, std::pair<int, int>> image_sizes;  ///< of the images added so far
+    std::map<std::string, std::string> sha256;               ///< of all that was added so far
     bool finished = false;
 
     Status add(const std::string& file, std::string bytes, ZipWriter::Method method) {
         if (finished) return failure("{}: is already finished", path.string());
         if (!is_safe_entry_name(file))
             return input_error("{}: entry '{}' must be a plain relative path", path.string(), file);
-        return zip.add(file, std::move(bytes), method);
+        std::string hash = sha256_hex(bytes);
+        if (Status added = zip.add(file, std::move(bytes), method); !added) return added;
+        sha256[file] = std::move(hash);
+        return {};
     }
 
     [[nodiscard]] Status check_images(const Manifest& manifest) const {
@@ -60,7 +65,7 @@ Result<Writer> Writer::create(const fs::path& path) {
     const fs::path aside = path.string() + ".partial";
     auto zip = ZipWriter::create(aside);
     if (!zip) return tl::unexpected(zip.error());
-    return Writer(std::make_unique<State>(State{path, aside, std::move(*zip), {}, false}));
+    return Writer(std::make_unique<State>(State{path, aside, std::move(*zip), {}, {}, false}));
 }
 
 Status Writer::add_image(const std::string& file, const Image& image) {
@@ -84,7 +89,9 @@ Status Writer::add_file(const std::string& file, std::string_view bytes) {
 Status Writer::finish(const Manifest& manifest) {
     if (auto status = check(manifest, state_->path.string()); !status) return status;
     if (auto status = state_->check_images(manifest); !status) return status;
-    if (auto status = add_file("manifest.json", to_json(manifest)); !status) return status;
+    Manifest sealed = manifest;
+    sealed.sha256 = state_->sha256;
+    if (auto status = add_file("manifest.json", to_json(sealed)); !status) return status;
     state_->finished = true;
     std::error_code code, ignored;
     if (auto status = state_->zip.close(); !status) {
