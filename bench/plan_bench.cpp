@@ -19,6 +19,7 @@ job::Manifest tall_job(const machine::Printer& printer) {
     job.height_px = printer.projector.height_px;
     job.pixel_um = printer.projector.pixel_um;
     job.bottom_layers = 3;
+    job.any_vat = true;
     for (int m = 0; m < materials; ++m)
         job.materials.push_back({fmt::format("m{}", m), fmt::format("r{}", m), 0, 0, 2.5, 12});
     for (int i = 0; i < layers; ++i) {

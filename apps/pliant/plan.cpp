@@ -17,6 +17,7 @@ struct Options {
     std::string job;
     std::string printer;
     std::string picture_file;
+    bool any_vat = false;
     Output output;
 };
 
@@ -28,7 +29,9 @@ Status make_plan(const Options& options) {
         if (!other) return tl::unexpected(other.error());
         job->printer = std::move(*other);
     }
-    Result<plan::Plan> plan = plan::make_plan(job->archive.manifest(), job->printer);
+    job::Manifest manifest = job->archive.manifest();
+    manifest.any_vat = manifest.any_vat || options.any_vat;
+    Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
     if (!plan) return tl::unexpected(plan.error());
     if (options.printer.empty()) {  // the images are for the job's own projector
         const Result<std::vector<std::string>> overcure = overcure_warnings(job->archive, *plan, job->printer);
@@ -54,6 +57,7 @@ void add_plan(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("plan", "what a job takes: vats, swaps, times, resin");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_option("--printer", options->printer, "another printer file than the job's own, to compare");
+    command->add_flag("--any-vat", options->any_vat, "as if resins that no vat holds were filled into free ones");
     command->add_option("-o,--output", options->picture_file, "file for a picture of the plan (.png)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant plan gripper.zip -o plan.png");

@@ -12,8 +12,10 @@
 #include "host/serial.hpp"
 #include "operate/job_file.hpp"
 #include "operate/programs.hpp"
+#include "operate/proved_job.hpp"
 #include "plan/plan.hpp"
 #include "print_live.hpp"
+#include "print_vats.hpp"
 #include "report/print_report.hpp"
 #include "twin/inspect.hpp"
 #include "twin_bench.hpp"
@@ -68,19 +70,15 @@ Result<int> report_on_journal(const LiveOptions& live) {
 
 Result<int> print_on_twin(const Options& options) {
     const auto progress = terminal_progress(options.live.output);
-    const Result<operate::OpenJob> job = operate::open_job(options.live.job);
+    const Result<operate::ProvedJob> job = operate::prove_job(options.live.job);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
-    const Result<std::string> gcode = job->archive.file("job.gcode");
-    if (!gcode) return tl::unexpected(gcode.error());
-    const Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
-    if (!plan) return tl::unexpected(plan.error());
-
+    show_vats(job->plan, job->warnings, options.live.output);
     Result<std::optional<job::Image>> mask = operate::mask_of(job->archive, job->printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     twin::Options twin_options;
     twin_options.mask = std::move(*mask);
-    TwinBench bench(plan::filled_printer(*plan, manifest, job->printer), std::move(twin_options));
+    TwinBench bench(plan::filled_printer(job->plan, manifest, job->printer), std::move(twin_options));
     // What has been shown is remembered: decoding is most of the work.
     std::map<std::pair<int, int>, twin::Runs> shown;
     const auto images = [&](int layer, int material) {
@@ -94,7 +92,7 @@ Result<int> print_on_twin(const Options& options) {
     };
     host::PrintRecord record;
     const host::LinkOptions link = operate::link_options(job->printer.controller);
-    if (Status printed = host::print_job(*gcode, images, bench.devices(), *progress, record, link); !printed)
+    if (Status printed = host::print_job(job->gcode, images, bench.devices(), *progress, record, link); !printed)
         return tl::unexpected(printed.error());
     const twin::Judgement judgement{options.live.accepted};
     const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs, judgement);
@@ -173,6 +171,7 @@ void add_print(CLI::App& app, int& status) {
     command->add_option("--emergency-line", live.emergency_line,
                         "what an emergency stop pulls, instead of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
                         "stops), file-low:FILE (0 stops), none");
+    command->add_flag("--yes", live.yes, "the vats are in place and filled: do not ask");
     command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
     command->add_option(
         "--report", live.report,

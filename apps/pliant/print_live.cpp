@@ -23,6 +23,7 @@
 #include "operate/port_station.hpp"
 #include "operate/print_job.hpp"
 #include "plan/plan.hpp"
+#include "print_vats.hpp"
 #include "report/print_report.hpp"
 #include "shared_light.hpp"
 #include "twin/inspect.hpp"
@@ -306,7 +307,12 @@ Result<int> print_live(const LiveOptions& options) {
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     if (!options.journal.empty()) ready->job.journal = options.journal;
-    if (!options.port.empty()) return print_on_port(options, *ready);
+    show_vats(ready->plan, ready->warnings, options.output);
+    if (!options.port.empty()) {
+        if (Status asked = options.yes ? Status{} : ask_for_vats(options.output); !asked)
+            return tl::unexpected(asked.error());
+        return print_on_port(options, *ready);
+    }
     host::SteadyClock steady;
     host::ScaledClock clock(steady, options.speed);
     return print_on_live_twin(options, *ready, clock);

@@ -22,6 +22,7 @@ struct LiveOptions {
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;
+    bool yes = false;  ///< the vats are in place: nobody is asked
     double speed = 1;
     std::vector<twin::Finding::Kind> accepted;  ///< what may be wrong with a print on the virtual printer
     std::string clock_file;                     ///< of the virtual printer; "": the wall's clock

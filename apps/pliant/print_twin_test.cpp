@@ -274,6 +274,7 @@ TEST_CASE("a swap without spray is noticed") {
 TEST_CASE("a job in resins that the printer does not hold prints once the vats are filled as planned") {
     Print p;
     p.job.materials[1].resin = "wax";
+    p.job.any_vat = true;
     p.plan = plan::make_plan(p.job, p.printer).value();
     p.gcode = plan::write_gcode(p.plan, p.job, p.printer);
     p.printer = plan::filled_printer(p.plan, p.job, p.printer);

@@ -108,6 +108,8 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
         command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
     };
     each("--resin", order.resins, "MATERIAL=RESIN", "what a material is printed in");
+    command.add_flag("--any-vat", order.any_vat,
+                     "a resin that no vat of the printer holds is filled into a free vat before the print");
     each("--exposure", order.exposures, "MATERIAL[:FIRST-LAST]=TIME[,BOTTOM]",
          "light of a material, and of its first layers; or of some layers");
     each("--interlock", order.interlocks, "A+B=PIXELS[,LAYERS]",

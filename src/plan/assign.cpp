@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
+
 namespace pliant::plan {
 namespace {
 
@@ -78,6 +80,26 @@ int give_up_duplicate(std::vector<Supply>& supplies) {
 std::string fill_warning(const std::string& resin, const machine::Vat& vat) {
     const std::string holds = vat.resin.empty() ? "is empty" : fmt::format("holds \"{}\"", vat.resin);
     return fmt::format("no vat holds \"{}\": fill it into the vat of slot {}, which {}", resin, vat.slot, holds);
+}
+
+/// "no vat of tower holds "semiflex", ...": with the name that was meant, where one is near.
+Error no_vat_holds(const std::string& resin, const std::vector<job::Material>& job, const Printer& printer) {
+    std::vector<std::string> held, materials;
+    for (const machine::Vat& vat : printer.vats) {
+        if (!vat.resin.empty() && std::find(held.begin(), held.end(), vat.resin) == held.end())
+            held.push_back(vat.resin);
+    }
+    for (const job::Material& m : job) {
+        if (m.resin == resin) materials.push_back(m.name);
+    }
+    const std::string meant = nearest_name(resin, held);
+    const std::string hint = !meant.empty() ? fmt::format("did you mean \"{}\"?", meant)
+                             : held.empty() ? std::string("all are empty")
+                                            : fmt::format("they hold {}", join_names(held));
+    return {Cause::input,
+            fmt::format("no vat of {} holds the resin \"{}\" of \"{}\": {} Slice with --resin MATERIAL=RESIN, or with "
+                        "--any-vat to fill it into a free vat",
+                        printer.name, resin, join_names(materials), hint.back() == '?' ? hint : hint + ".")};
 }
 
 double usable_ml(const Printer& printer, int vat) {
@@ -190,6 +212,16 @@ private:
 
 }  // namespace
 
+Status check_resins(const std::vector<job::Material>& materials, const Printer& printer) {
+    for (const job::Material& m : materials) {
+        const bool held =
+            !m.resin.empty() && std::any_of(printer.vats.begin(), printer.vats.end(),
+                                            [&](const machine::Vat& vat) { return vat.resin == m.resin; });
+        if (!held) return tl::unexpected(no_vat_holds(m.resin, materials, printer));
+    }
+    return {};
+}
+
 Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer) {
     const std::vector<bool> printed = printed_materials(job);
     std::vector<Supply> supplies = needed_resins(job, printed);
@@ -205,6 +237,7 @@ Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer)
     match_vats(supplies, printer);
     for (Supply& supply : supplies) {
         if (!supply.vats.empty()) continue;
+        if (!job.any_vat) return tl::unexpected(no_vat_holds(supply.resin, job.materials, printer));
         int vat = free_vat(supplies, printer);
         if (vat < 0) vat = give_up_duplicate(supplies);
         supply.vats.push_back(vat);

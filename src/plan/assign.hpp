@@ -19,6 +19,9 @@ struct Assignment {
     std::vector<std::string> warnings;
 };
 
+/// Whether some vat holds the resin of each of these materials; the error names the resin and the one that was meant.
+[[nodiscard]] Status check_resins(const std::vector<job::Material>& materials, const machine::Printer& printer);
+
 /// See make_plan. Materials of the same resin share a vat; where the printer holds a resin in several vats, the next
 /// one takes over on the layer that the one before cannot fill.
 [[nodiscard]] Result<Assignment> assign_vats(const job::Manifest& job, const machine::Printer& printer);

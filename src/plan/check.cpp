@@ -20,7 +20,18 @@ struct Reading {
     double feed_mm_s = 0;
     double clock_s = 0;
     double pump_since_s = 0;
+    const Watch& watch;
+    int line = 0;
 };
+
+/// Tells the watch what the line has done, since the machine stood at `from` and its clock at `clock_s`.
+Status tell(const Reading& r, const machine::Position& from, double clock_s, const Command* command,
+            const machine::Directive* directive) {
+    if (!r.watch) return {};
+    const bool travels = command != nullptr && (command->is('G', 0) || command->is('G', 1));
+    return r.watch({r.line, command, directive, from, r.interlock.position(), travels ? r.feed_mm_s : 0,
+                    r.clock_s - clock_s, &r.interlock});
+}
 
 /// The pump's longest stretch, looked at after every command that takes time.
 Status check_pump_time(const Reading& r) {
@@ -100,31 +111,35 @@ std::string_view without_number(std::string_view line) {
     return machine::strip_comment(line.substr(blank + 1, line.rfind('*') - blank - 1));
 }
 
-Status run_command(Reading& r, std::string_view line) {
+Status run_command(Reading& r, const Command& command) {
+    if (command.is('G', 0) || command.is('G', 1)) return run_move(r, command);
+    if (command.is('G', 28)) return run_home(r, command);
+    if (command.is('G', 92)) return run_set(r, command);
+    if (machine::moves_emergency_line(r.printer, command))
+        return input_error("M42 P{}: that pin is the emergency line", r.printer.emergency_line.pin);
+    if (const auto pump = machine::switched(r.printer.pump, command)) return run_pump(r, *pump);
+    if (command.is('G', 90)) r.absolute = true;
+    if (command.is('M', 400) || command.is('G', 4)) r.moving = false;
+    if (command.is('G', 4)) {
+        r.clock_s += command.value('P').value_or(0) / 1000 + command.value('S').value_or(0);
+        return check_pump_time(r);
+    }
+    return run_other(r, command);
+}
+
+Status run_text(Reading& r, std::string_view line) {
     if (line.size() > machine::max_line_chars) return input_error("longer than {} characters", machine::max_line_chars);
     const auto command = machine::parse_command(line);
     if (!command) return tl::unexpected(command.error());
-    if (command->is('G', 0) || command->is('G', 1)) return run_move(r, *command);
-    if (command->is('G', 28)) return run_home(r, *command);
-    if (command->is('G', 92)) return run_set(r, *command);
-    if (machine::moves_emergency_line(r.printer, *command))
-        return input_error("M42 P{}: that pin is the emergency line", r.printer.emergency_line.pin);
-    if (const auto pump = machine::switched(r.printer.pump, *command)) return run_pump(r, *pump);
-    if (command->is('G', 90)) r.absolute = true;
-    if (command->is('M', 400) || command->is('G', 4)) r.moving = false;
-    if (command->is('G', 4)) {
-        r.clock_s += command->value('P').value_or(0) / 1000 + command->value('S').value_or(0);
-        return check_pump_time(r);
-    }
-    return run_other(r, *command);
+    const machine::Position from = r.interlock.position();
+    const double clock_s = r.clock_s;
+    if (Status status = run_command(r, *command); !status) return status;
+    return tell(r, from, clock_s, &*command, nullptr);
 }
 
-Status run_directive(Reading& r, std::string_view line) {
-    const auto directive = machine::parse_directive(line);
-    if (!directive) return tl::unexpected(directive.error());
-    if (!directive->expose) return {};
-    if (directive->expose->seconds > r.printer.limits.exposure_s) {
-        return input_error("{:g} s of light, the limit of {} is {:g} s", directive->expose->seconds, r.printer.name,
+Status run_expose(Reading& r, const machine::Expose& expose) {
+    if (expose.seconds > r.printer.limits.exposure_s) {
+        return input_error("{:g} s of light, the limit of {} is {:g} s", expose.seconds, r.printer.name,
                            r.printer.limits.exposure_s);
     }
     if (Status status = r.interlock.light_on(r.moving); !status) return status;
@@ -132,19 +147,30 @@ Status run_directive(Reading& r, std::string_view line) {
     return {};
 }
 
+Status run_directive(Reading& r, std::string_view line) {
+    const auto directive = machine::parse_directive(line);
+    if (!directive) return tl::unexpected(directive.error());
+    if (directive->expose) {
+        if (Status status = run_expose(r, *directive->expose); !status) return status;
+    }
+    return tell(r, r.interlock.position(), r.clock_s, nullptr, &*directive);
+}
+
 }  // namespace
 
-Result<machine::Interlock> replay_gcode(std::string_view gcode, const machine::Printer& printer, int lines) {
-    Reading reading{printer, machine::Interlock(printer), false, false, 0, 0, 0};
+Result<machine::Interlock> replay_gcode(std::string_view gcode, const machine::Printer& printer, int lines,
+                                        const Watch& watch) {
+    Reading reading{printer, machine::Interlock(printer), false, false, 0, 0, 0, watch};
     for (int number = 1; number <= lines && !gcode.empty(); ++number) {
         const std::string_view raw = gcode.substr(0, gcode.find('\n'));
         gcode.remove_prefix(std::min(gcode.size(), raw.size() + 1));
         const std::string_view line = without_number(machine::strip_comment(raw));
         Status status;
+        reading.line = number;
         if (machine::is_directive(raw))
             status = run_directive(reading, raw);
         else if (!line.empty())
-            status = run_command(reading, line);
+            status = run_text(reading, line);
         if (!status)
             return tl::unexpected(
                 Error{status.error().cause, fmt::format("G-code line {}: {}", number, status.error().message)});

@@ -60,10 +60,10 @@ struct Plan {
     std::vector<std::string> warnings;
 };
 
-/// Plans `job` for `printer`. Each resin takes the vat that holds it; one that no vat holds takes the next free vat
-/// (empty ones first, then those whose resin the job does not need), with a warning. Errors (input): a job that was
-/// made for another projector, is taller than the machine builds, has more resins than there are vats, or whose layers
-/// are not in order.
+/// Plans `job` for `printer`. Each resin takes the vat that holds it. One that no vat holds is an error, or, where the
+/// job says that any vat will do (Manifest::any_vat), takes the next free vat (empty ones first, then those whose resin
+/// the job does not need), with a warning. Further errors (input): a job that was made for another projector, is taller
+/// than the machine builds, has more resins than there are vats, or whose layers are not in order.
 [[nodiscard]] Result<Plan> make_plan(const job::Manifest& job, const machine::Printer& printer,
                                      OrderRule rule = OrderRule::least_cost);
 
@@ -84,6 +84,8 @@ struct Plan {
 [[nodiscard]] std::string plan_json(const Plan& plan);
 /// For people: a table.
 [[nodiscard]] std::string plan_text(const Plan& plan);
+/// For whoever fills the vats: a line for each, "slot 2: semi-flex, 12.3 ml", and what is to be done about it.
+[[nodiscard]] std::vector<std::string> vat_lines(const Plan& plan);
 /// "1:02:03", rounded to seconds.
 [[nodiscard]] std::string clock_text(double seconds);
 

@@ -186,3 +186,33 @@ TEST_CASE("the models of known swap counts: naive and best, as their table gives
     CHECK(counts(bands) == std::pair(9, 9));                                          // alternating_bands
     CHECK(counts(repeated({0, 1, 2, 3, 4, 5, 6, 7}, 200)) == std::pair(1599, 1400));  // checker8
 }
+
+TEST_CASE("a resin that no vat holds is an error with the name that was meant, unless any vat will do") {
+    const machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"semiflex", "rigid-flex"});
+    CHECK(make_plan(job, printer).has_value());
+    job.any_vat = false;
+    const auto refused = make_plan(job, printer);
+    REQUIRE(!refused.has_value());
+    CHECK(refused.error().cause == Cause::input);
+    CHECK(refused.error().message ==
+          "no vat of tower prototype holds the resin \"semiflex\" of \"m0\": did you mean \"semi-flex\"? Slice with "
+          "--resin MATERIAL=RESIN, or with --any-vat to fill it into a free vat");
+    job.materials[0].resin = "zzz";
+    CHECK(make_plan(job, printer)
+              .error()
+              .message.find("they hold semi-flex, rigid-flex, tough and elastomer. Slice with") != std::string::npos);
+    job.materials[0].resin = "";
+    CHECK(!make_plan(job, printer).has_value());
+    job.layers = {};  // a material that prints nothing needs no vat
+    CHECK(make_plan(job, printer).has_value());
+}
+
+TEST_CASE("the vats are listed for whoever fills them") {
+    job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"glue", "rigid-flex"});
+    const Plan plan = make_plan(job, plan::test::tower()).value();
+    CHECK(vat_lines(plan) ==
+          std::vector<std::string>{
+              "slot 1: glue, 0.0 ml, to be filled in: the printer file has another resin there, or none",
+              "slot 2: rigid-flex, 0.0 ml"});
+}

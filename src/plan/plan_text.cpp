@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -110,6 +111,19 @@ std::string plan_json(const Plan& plan) {
                        {"order", order_json(plan)},
                        {"warnings", plan.warnings}};
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> vat_lines(const Plan& plan) {
+    std::vector<std::string> lines;
+    for (const VatUse& use : plan.vats) {
+        std::string line = fmt::format("slot {}: {}, {:.1f} ml", use.slot, use.resin, use.resin_ml);
+        if (use.refill) line += ", to be filled in: the printer file has another resin there, or none";
+        const auto refills = std::count_if(plan.refills.begin(), plan.refills.end(),
+                                           [&](const RefillBefore& refill) { return refill.slot == use.slot; });
+        if (refills > 0) line += fmt::format(", refilled {} times on the way", refills);
+        lines.push_back(std::move(line));
+    }
+    return lines;
 }
 
 std::string clock_text(double seconds) {

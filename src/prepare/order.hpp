@@ -15,6 +15,7 @@ struct Order {
     std::string spacing = "2 mm";
     std::vector<double> turn;
     std::string least_feature;
+    bool any_vat = false;  ///< a resin that no vat holds may be filled into any
     bool no_anti_alias = false;
     double threshold = 0.5;
     std::string support, support_angle, support_spacing, support_tip, support_pillar, lift, raft;

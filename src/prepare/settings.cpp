@@ -6,6 +6,7 @@
 
 #include "core/units.hpp"
 #include "machine/working_curve.hpp"
+#include "plan/assign.hpp"
 #include "prepare/option_text.hpp"
 
 namespace pliant::prepare {
@@ -162,6 +163,22 @@ Status set_exposure(const std::string& text, job::JobSettings& settings) {
     return {};
 }
 
+/// A misspelt resin is told before anything is sliced: of the materials that something is made of.
+Status check_resins(const Drawing& drawing, const std::vector<job::Material>& materials,
+                    const machine::Printer& printer) {
+    std::vector<job::Material> used;
+    for (const job::Material& m : materials) {
+        const auto is_made_of = [&](const slice::Body& b) {
+            return b.material == m.name || (b.blend && b.blend->second == m.name);
+        };
+        const auto shows = [&](const job::MaterialStack& s) { return s.material == m.name; };
+        if (std::any_of(drawing.bodies.begin(), drawing.bodies.end(), is_made_of) ||
+            std::any_of(drawing.stacks.begin(), drawing.stacks.end(), shows))
+            used.push_back(m);
+    }
+    return plan::check_resins(used, printer);
+}
+
 int bottom_layers(const machine::Printer& printer) {
     int layers = 0;
     for (const machine::Resin& resin : printer.resins) layers = std::max(layers, resin.bottom_layers);
@@ -256,10 +273,15 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
     settings.light.mask = std::move(mask);
     settings.copies = order.copies;
+    settings.any_vat = order.any_vat;
     const Result<int> layer_um = layer_of(order, printer, drawing);
     if (!layer_um) return tl::unexpected(layer_um.error());
     settings.slicing.layer_um = *layer_um;
     settings.materials = with_exposures(drawing, printer);
+    if (!order.any_vat) {
+        if (Status status = check_resins(drawing, settings.materials, printer); !status)
+            return tl::unexpected(status.error());
+    }
     settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
     for (const std::string& text : order.exposures) {
         if (Status status = set_exposure(text, settings); !status) return tl::unexpected(status.error());

@@ -177,7 +177,7 @@ TEST_CASE("--exposure: of a material, of its first layers, of some layers") {
     CHECK(refused([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
 }
 
-TEST_CASE("--resin: another resin with its exposures; one that the printer does not know is told") {
+TEST_CASE("--resin: another resin with its exposures; one that no vat holds is an error unless any vat will do") {
     Drawing drawing = two_blocks();
     Order order;
     order.resins = {"soft=firm"};
@@ -186,10 +186,16 @@ TEST_CASE("--resin: another resin with its exposures; one that the printer does 
     CHECK(s->materials[0].resin == "firm");
     CHECK(s->materials[0].exposure_s == 4);
     CHECK(drawing.warnings.empty());
+    CHECK(refused([](Order& o) { o.resins = {"soft=frim"}; }).find("did you mean \"firm\"?") != std::string::npos);
+    const std::string unknown = refused([](Order& o) { o.resins = {"soft=glue"}; });
+    CHECK(unknown.find("no vat of  holds the resin \"glue\" of \"soft\": they hold soft and firm.") == 0);
+    CHECK(unknown.find("--any-vat") != std::string::npos);
     drawing = two_blocks();
     order.resins = {"soft=glue"};
+    order.any_vat = true;
     s = job_settings(order, printer(), {}, drawing);
     REQUIRE(s.has_value());
+    CHECK(s->any_vat);
     CHECK(s->materials[0].exposure_s == 4);  // the longest that is known
     CHECK(s->materials[0].bottom_exposure_s == 9);
     REQUIRE(drawing.warnings.size() == 1);

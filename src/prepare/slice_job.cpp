@@ -1,6 +1,6 @@
 #include "prepare/slice_job.hpp"
 
-#include "plan/check.hpp"
+#include "plan/proof.hpp"
 
 namespace pliant::prepare {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 Status add_files(const Order& order, const PrinterFile& printer, const job::JobSettings& settings,
                  const job::Manifest& manifest, const plan::Plan& plan, job::Writer& writer) {
     const std::string gcode = plan::write_gcode(plan, manifest, printer.printer);
-    Status status = plan::check_gcode(gcode, printer.printer);
+    Status status = plan::prove_program(gcode, plan, manifest, printer.printer);
     if (status) status = writer.add_file("printer.toml", printer.text);
     if (status && settings.light.mask) status = writer.add_image(job::mask_entry, *settings.light.mask);
     if (status) status = writer.add_file("settings.json", job::settings_json(settings, request_of(order, settings)));

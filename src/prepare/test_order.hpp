@@ -21,6 +21,7 @@ inline machine::Printer printer() {
     firm.bottom_exposure_s = 8;
     firm.bottom_layers = 2;
     p.resins = {soft, firm};
+    p.vats = {{1, "soft", 100}, {2, "firm", 100}};
     return p;
 }
 

@@ -372,6 +372,7 @@ std::string PrintSession::describe() const {
                    {"seconds", machine->ready.plan.seconds.total},
                    {"vats", vats},
                    {"refills", refills},
+                   {"warnings", machine->ready.warnings},
                    {"now", history["history"]}});
 }
 

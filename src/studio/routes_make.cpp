@@ -167,11 +167,14 @@ Response save(Studio& studio, const Request& request) {
 Response compare(Studio& studio, const Request&) {
     const auto open = studio.make().job();
     if (!open) return no_job();
+    // What machines are compared by is not what happens to be in their vats.
+    job::Manifest manifest = open->archive.manifest();
+    manifest.any_vat = true;
     Json rows = Json::array();
     for (const BuiltInFile& file : example_printers()) {
         const Result<machine::Printer> printer = machine::parse_printer(file.text, std::string(file.name) + ".toml");
         if (!printer) continue;
-        const Result<plan::Plan> plan = plan::make_plan(open->archive.manifest(), *printer);
+        const Result<plan::Plan> plan = plan::make_plan(manifest, *printer);
         Json row = {{"file", file.name}, {"printer", printer->name}};
         if (plan)
             row.update({{"swaps", plan->swaps},

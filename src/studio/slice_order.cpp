@@ -86,9 +86,10 @@ Status take_other(const std::string& key, const Json& value, Order& order) {
         order.threshold = value.get<double>();
         return {};
     }
-    if (key == "no-anti-alias") {
-        if (!value.is_boolean()) return input_error("--no-anti-alias: true or false is needed");
-        order.no_anti_alias = value.get<bool>();
+    for (const auto& [name, flag] : {std::pair{"no-anti-alias", &order.no_anti_alias}, {"any-vat", &order.any_vat}}) {
+        if (key != name) continue;
+        if (!value.is_boolean()) return input_error("--{}: true or false is needed", key);
+        *flag = value.get<bool>();
         return {};
     }
     return input_error("--{}: there is no such option", key.substr(0, longest_text));

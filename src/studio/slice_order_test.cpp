@@ -17,7 +17,7 @@ std::string refused(const char* json) {
 TEST_CASE("an order of the page is that of the command line") {
     const auto order = read_slice_order(R"({"printer": "tower", "layer": "100 um", "copies": 3, "turn": [90, 0, 0],
         "exposure": ["soft=2 s"], "overlap": ["soft+firm=4,2"], "support": "firm", "support-tip": "0.5 mm",
-        "hollow": "2 mm", "drain": "3 mm", "no-anti-alias": true, "threshold": 0.4})");
+        "hollow": "2 mm", "drain": "3 mm", "no-anti-alias": true, "any-vat": true, "threshold": 0.4})");
     REQUIRE(order);
     CHECK(order->layer == "100 um");
     CHECK(order->copies == 3);
@@ -28,6 +28,7 @@ TEST_CASE("an order of the page is that of the command line") {
     CHECK(order->support_tip == "0.5 mm");
     CHECK(order->hollow == "2 mm");
     CHECK(order->drain == "3 mm");
+    CHECK(order->any_vat);
     CHECK(order->no_anti_alias);
     CHECK(order->threshold == 0.4);
     CHECK(order->spacing == "2 mm");

@@ -33,9 +33,15 @@ function Known() {
       <li class="good">
         <Icon name="check" />
         <span>
-          the job is for this machine: {n.job.layers} layers, {clock(i.seconds)}
+          the job is proved and for this machine: {n.job.layers} layers, {clock(i.seconds)}
         </span>
       </li>
+      {i.warnings.map((text) => (
+        <li key={text}>
+          <Icon name="warn" />
+          <span>{text}</span>
+        </li>
+      ))}
       {i.refills.length > 0 && (
         <li>
           <Icon name="warn" />

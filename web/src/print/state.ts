@@ -58,6 +58,8 @@ export interface PrintInfo {
   taken: number; // tells this machine's pictures from those of the one before
   job: string;
   seconds: number;
+  /** What of the job cannot be proved. */
+  warnings: string[];
   vats: { slot: number; resin: string; ml: number; materials: number[] }[];
   refills: { layer: number; slot: number; text: string }[];
 }
