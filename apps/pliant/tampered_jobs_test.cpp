@@ -312,3 +312,34 @@ TEST_CASE("the program itself: check, print --twin and print --port refuse, each
         }
     }
 }
+
+TEST_CASE("on a terminal a print at a port asks for the vats first; --yes and -q do not wait for anybody") {
+    const test::Folder folder("asked");
+    const fs::path good = folder / "good.zip", said = folder / "said";
+    make_job(good, small_printer("tower"));
+    const auto at_terminal = [&](const std::string& typed, const std::string& options) {
+        const std::string print = fmt::format("{} print {} --port /dev/null --projector {} {}", PLIANT_PROGRAM,
+                                              good.string(), folder.path().string(), options);
+        fs::remove(good.string() + ".journal");
+        (void)std::system(
+            fmt::format("printf '{}' | timeout 60 script -qec '{}' /dev/null >{} 2>&1", typed, print, said.string())
+                .c_str());
+        return read_file(said).value();
+    };
+    const std::string question = "Are these vats in their slots and filled?", begun = "not a serial port";
+    for (const char* no : {"n\\n", "\\n", ""}) {
+        const std::string text = at_terminal(no, "");
+        CHECK(test::holds(text, "slot 1: semi-flex, "));
+        CHECK(test::holds(text, "slot 2: rigid-flex, "));
+        CHECK(test::holds(text, question));
+        CHECK(test::holds(text, "not printed"));
+        CHECK(!test::holds(text, begun));
+        CHECK(!fs::exists(good.string() + ".journal"));
+    }
+    CHECK(test::holds(at_terminal("y\\n", ""), begun));
+    for (const char* option : {"--yes", "-q"}) {
+        const std::string text = at_terminal("", option);
+        CHECK(!test::holds(text, question));
+        CHECK(test::holds(text, begun));
+    }
+}
