@@ -236,6 +236,8 @@ std::vector<Tampering> of_moves() {
              p.gcode.insert(p.gcode.begin() + static_cast<std::ptrdiff_t>(p.gcode.size() / 2), "M84");
              return true;
          }},
+        {"motors that may let go", Kind::meaning,
+         [](Parts& p) { return drop_line(p.gcode, find_line(p.gcode, "M84")); }},
         {"relative coordinates", Kind::meaning,
          [](Parts& p) {
              const Found at = find_line(p.gcode, "G90");
@@ -324,6 +326,11 @@ std::vector<Tampering> of_cleaning() {
                 [](const Parts& p, std::size_t i) {
                     return !p.printer.fans.empty() && p.gcode[i] == p.printer.fans[0].on;
                 }),
+        {"a fan that is not switched off", Kind::meaning,
+         [](Parts& p) {
+             const Found on = p.printer.fans.empty() ? Found() : find_line(p.gcode, p.printer.fans[0].on);
+             return on && drop_line(p.gcode, find_line(p.gcode, p.printer.fans[0].off, *on));
+         }},
         {"a whole change of vats left out", Kind::meaning,
          [](Parts& p) {
              const Found begin = find_line(p.gcode, "; swap"), end = find_line(p.gcode, "; layer", begin.value_or(0));

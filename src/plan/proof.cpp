@@ -81,7 +81,10 @@ public:
 
     Status step(const Step& step) {
         passage_.add(step);
-        if (step.command != nullptr) return check_switch(*step.command);
+        if (step.command != nullptr) {
+            note_motors(*step.command);
+            return check_switch(*step.command);
+        }
         if (step.directive->stop_command) return add_stop(*step.directive->stop_command);
         if (!step.directive->expose) return {};
         const Expose& light = *step.directive->expose;
@@ -89,6 +92,7 @@ public:
         if (Status status = check_image(light); !status) return in_layer(layer, status);
         if (Status status = check_turn(light); !status) return status;
         if (Status status = check_place(light, *step.machine); !status) return in_layer(layer, status);
+        if (Status status = check_rest(); !status) return in_layer(layer, status);
         if (Status status = check_way(light, *step.machine); !status) return status;
         last_ = LastLight{layer, *step.machine->hooked_vat()};
         passage_.restart(job_.layers[layer].z_um);
@@ -190,6 +194,18 @@ private:
         return fillings_.draw(static_cast<std::size_t>(light.layer), index_of(layer, light.material), vat);
     }
 
+    void note_motors(const machine::Command& command) {
+        if ((command.is('M', 84) || command.is('M', 18)) && command.has('S'))
+            motors_stay_ = command.value('S').value_or(0) == 0;
+    }
+
+    /// What must not happen during a light: idle motors would let the platform sink, a fan would move the resin.
+    [[nodiscard]] Status check_rest() const {
+        if (!motors_stay_) return input_error("motors may let go during the light: M84 S0 before it is missing");
+        if (passage_.fans_run()) return input_error("a fan runs during the light");
+        return {};
+    }
+
     /// What the machine has done since the light before.
     [[nodiscard]] Status check_way(const Expose& light, const machine::Interlock& machine) const {
         const auto layer = static_cast<std::size_t>(light.layer);
@@ -266,6 +282,7 @@ private:
     Fillings fillings_;
     Passage passage_;
     std::optional<LastLight> last_;
+    bool motors_stay_ = false;  ///< M84 S0: also when they idle
     std::size_t open_layer_ = 0;
     std::set<int> lit_;  ///< materials of the open layer
     std::vector<machine::Command> stops_;

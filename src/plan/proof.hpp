@@ -16,6 +16,7 @@ namespace pliant::plan {
 ///     it has there, at the layer's height, over a vat that holds its material's resin and has not run dry,
 ///   - the part rests before and after each light and is loosened and lifted after it as the printer file asks,
 ///   - between two vats the part is cleaned and dried: as long as asked for, with the strokes that are asked for,
+///   - during a light no fan runs and no motor may let go,
 ///   - what is switched on has a line that tells the host how to switch it off (`;@stop`),
 ///   - the program ends with the part cleaned and clear of everything, all vats in their places, pump and fans off.
 /// The program need not be the planner's. The error is one line: "G-code line N: layer K: ...". `plan` must be that of
