@@ -152,7 +152,7 @@ Result<std::string> describe_mesh_file(const std::filesystem::path& path) {
         if (!surface) return tl::unexpected(surface.error());
         return surface_text(*surface);
     }
-    return input_error("{}: is no mesh that Pliant reads (tet meshes: {}; surfaces: .stl, .obj or .ply; by content)",
+    return input_error("{}: is no mesh that Pliant reads (tet meshes: {}; surfaces: .stl, .obj, .ply or .off; by content)",
                        path.string(), tet_format_list);
 }
 

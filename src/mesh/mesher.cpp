@@ -455,7 +455,7 @@ std::vector<BodyGeometry> without_seams(std::span<const BodyGeometry> bodies, st
     std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
     for (BodyGeometry& body : result) {
         auto* surface = std::get_if<TriMesh>(&body.shape);
-        const std::size_t closed = surface == nullptr ? 0 : close_seams(*surface);
+        const std::size_t closed = surface == nullptr ? 0 : close_seams(*surface).edges;
         if (closed > 0)
             notes.push_back(
                 fmt::format("body \"{}\": {} open edges of its surface were closed: their ends differ by less "

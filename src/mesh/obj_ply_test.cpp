@@ -93,6 +93,25 @@ TEST_CASE("OBJ: polygons, all kinds of corners, and everything else passed over"
     CHECK(signed_volume(file->mesh) == doctest::Approx(8));
 }
 
+TEST_CASE("OBJ: a backslash continues a line, but not a comment or a name") {
+    std::string text = replaced(obj, "f 1 4 3 2", "f 1 4 \\\n 3\\\n2");
+    text = replaced(text, "v 2 2 0 1.0", "v 2 \\\r\n 2 0 \\\n 1.0");
+    text = replaced(text, "# a cube", "# from C:\\drawings\\");
+    text = replaced(text, "o cube", "o C:\\cube\\");
+    text = replaced(text, "# side", "# side \\");
+    const Result<SurfaceFile> file = parse_surface(text, "a.obj");
+    REQUIRE_MESSAGE(file, (file ? "" : file.error().message));
+    CHECK(file->mesh.triangles.size() == 12);
+    CHECK(signed_volume(file->mesh) == doctest::Approx(8));
+    // Lines are still counted.
+    CHECK(problem(replaced(text, "f 3 4 8 7", "f 3 4 8 9")) == "a:21: a face names vertex 9, there are 8 so far");
+    std::string old_mac;
+    for (const char c : obj) old_mac += c == '\n' ? '\r' : c;
+    CHECK(signed_volume(parse_surface(old_mac, "a.obj")->mesh) == doctest::Approx(8));
+    CHECK(problem("v 1 2 3\\").find("not a finite number") != std::string::npos);
+    CHECK(problem("v 0 0 0\nf 1 1 \\\n").find("a face has 2 corners") != std::string::npos);
+}
+
 TEST_CASE("OBJ: broken files give a reason with the line") {
     CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 9")) == "a:16: a face names vertex 9, there are 8 so far");
     CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);

@@ -1,4 +1,5 @@
-// Wavefront OBJ: the lines "v x y z" and "f a b c ...", where a corner is a number, or number/texture/normal.
+// Wavefront OBJ: the lines "v x y z" and "f a b c ...", where a corner is a number, or number/texture/normal. A
+// backslash at the end of a line joins the next one to it, except in comments and in names (which may end in one).
 #include <charconv>
 
 #include "mesh/point_welder.hpp"
@@ -16,10 +17,12 @@ public:
         while (!scan_.at_end()) {
             const std::string_view keyword = scan_.word_of_line();
             Status status;
+            scan_.join_lines_at_backslash(keyword == "v" || keyword == "f");
             if (keyword == "v")
                 status = read_vertex();
             else if (keyword == "f")
                 status = read_face();
+            scan_.join_lines_at_backslash(false);
             if (!status) return tl::unexpected(status.error());
             scan_.rest_of_line();
         }
@@ -34,6 +37,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const Result<double> one = scan_.number();
             if (!one) return tl::unexpected(one.error());
+            file_.printed.see(scan_.last_word());
             p[k] = *one;
         }
         place_.push_back(welder_.add(p));

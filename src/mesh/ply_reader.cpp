@@ -66,6 +66,8 @@ public:
     }
     /// For text with the line; the values of binary files have none.
     tl::unexpected<Error> error(std::string_view text) const { return scan_.error(text); }
+    /// The word of the last value; "" for bytes.
+    std::string_view printed() const { return encoding_ == Encoding::text ? scan_.last_word() : std::string_view(); }
 
 private:
     std::string_view bytes_;
@@ -173,7 +175,9 @@ private:
             if (!value) return tl::unexpected(value.error());
             if (!is_vertex || property.name.size() != 1) continue;
             const auto axis = std::string_view("xyz").find(property.name);
-            if (axis != std::string_view::npos) p[axis] = *value;
+            if (axis == std::string_view::npos) continue;
+            p[axis] = *value;
+            file_.printed.see(values.printed());
         }
         if (!is_vertex) return {};
         if (!is_finite(p)) return values.error(fmt::format("vertex {} is not finite", row));

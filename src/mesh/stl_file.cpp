@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/files.hpp"
+#include "core/letters.hpp"
 #include "mesh/point_welder.hpp"
 #include "mesh/surface_file.hpp"
 
@@ -60,28 +61,27 @@ Result<SurfaceFile> parse_binary(std::string_view bytes, const std::string& name
     return file;
 }
 
-/// Words of a text with their line; words end at blanks.
+/// Words of a text with their line; words end at blanks, lines at "\n", "\r\n" or "\r".
 class Words {
 public:
     explicit Words(std::string_view text) : text_(text) {}
 
     /// The next word in lower case, or "".
     std::string next() {
-        while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n' ? 1 : 0;
+        for (; at_ < text_.size() && is_blank(text_[at_]); ++at_) line_ += ends_line() ? 1 : 0;
         const std::size_t begin = at_;
         while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
-        std::string word(text_.substr(begin, std::min<std::size_t>(at_ - begin, 64)));
-        std::transform(word.begin(), word.end(), word.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return word;
+        return lower_case(text_.substr(begin, std::min<std::size_t>(at_ - begin, 64)));
     }
-    void skip_line() {
-        while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-    }
+    void skip_line() { at_ = std::min(text_.find_first_of("\r\n", at_), text_.size()); }
     [[nodiscard]] int line() const { return line_; }
 
 private:
     static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\f' || c == '\v'; }
+    /// The second half of "\r\n" does, the first does not.
+    [[nodiscard]] bool ends_line() const {
+        return text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
+    }
     std::string_view text_;
     std::size_t at_ = 0;
     int line_ = 1;
@@ -95,69 +95,94 @@ Result<double> to_number(const std::string& word, const std::string& name, int l
     return input_error("{}:{}: \"{}\" is not a finite number", name, line, word);
 }
 
-/// The three vertices after "outer loop", up to and with "endfacet".
-Result<std::array<int, 3>> parse_loop(Words& words, const std::string& name, PointWelder& welder) {
-    std::array<int, 3> triangle{};
-    for (int v = 0; v < 3; ++v) {
-        const std::string word = words.next();
-        if (word != "vertex")
-            return input_error("{}:{}: \"vertex\" is needed here, a facet has three; found \"{}\"", name, words.line(),
-                               word);
+class AsciiReader {
+public:
+    AsciiReader(std::string_view text, const std::string& name) : words_(text), name_(name) {}
+
+    Result<SurfaceFile> read() {
+        bool in_solid = false;
+        int facet_end = 0;  // the line of the last "endfacet"
+        for (std::string word = words_.next(); !word.empty(); word = words_.next()) {
+            if (word == (in_solid ? "endsolid" : "solid")) {
+                words_.skip_line();  // the rest of the line is the name, whatever it says
+                in_solid = !in_solid;
+            } else if (in_solid && word == "facet") {
+                if (Status status = read_facet(); !status) return tl::unexpected(status.error());
+                facet_end = words_.line();
+            } else if (in_solid && words_.line() == facet_end) {
+                ++strays_;
+            } else {
+                return input_error("{}:{}: \"{}\" has no place here; this is not a complete STL file", name_,
+                                   words_.line(), word);
+            }
+        }
+        return finished(in_solid);
+    }
+
+private:
+    Result<SurfaceFile> finished(bool in_solid) {
+        if (file_.mesh.triangles.empty()) return input_error("{}: holds no facets", name_);
+        if (strays_ > 0)
+            file_.warnings.push_back(fmt::format("{}: {} word(s) after \"endfacet\" were passed over", name_, strays_));
+        if (in_solid) file_.warnings.push_back(fmt::format("{}: the last solid is not closed by \"endsolid\"", name_));
+        file_.mesh.points = welder_.take();
+        return std::move(file_);
+    }
+
+    Status needs(const char* wanted) {
+        const std::string word = words_.next();
+        if (word == wanted) return {};
+        return input_error("{}:{}: \"{}\" is needed here; found \"{}\"", name_, words_.line(), wanted, word);
+    }
+
+    /// What follows "facet", up to and with "endfacet". The normal follows from the vertices, and may be nonsense.
+    Status read_facet() {
+        constexpr int normal_words = 4;
+        std::string word = words_.next();
+        for (int i = 0; i < normal_words && word != "outer"; ++i) word = words_.next();
+        if (word != "outer" || words_.next() != "loop")
+            return input_error("{}:{}: \"outer loop\" is needed after \"facet\"", name_, words_.line());
+        std::array<int, 3> triangle{};
+        for (int& corner : triangle) {
+            const Result<int> point = read_vertex();
+            if (!point) return tl::unexpected(point.error());
+            corner = *point;
+        }
+        for (const char* wanted : {"endloop", "endfacet"}) {
+            if (Status status = needs(wanted); !status) return status;
+        }
+        file_.mesh.triangles.push_back(triangle);
+        return {};
+    }
+
+    Result<int> read_vertex() {
+        if (const std::string word = words_.next(); word != "vertex")
+            return input_error("{}:{}: \"vertex\" is needed here, a facet has three; found \"{}\"", name_,
+                               words_.line(), word);
         Vec3 p;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Result<double> number = to_number(words.next(), name, words.line());
+            const std::string word = words_.next();
+            const Result<double> number = to_number(word, name_, words_.line());
             if (!number) return tl::unexpected(number.error());
+            file_.printed.see(word);
             p[i] = *number;
         }
-        triangle[static_cast<std::size_t>(v)] = welder.add(p);
+        return welder_.add(p);
     }
-    for (const char* wanted : {"endloop", "endfacet"}) {
-        const std::string word = words.next();
-        if (word != wanted)
-            return input_error("{}:{}: \"{}\" is needed here; found \"{}\"", name, words.line(), wanted, word);
-    }
-    return triangle;
-}
 
-Result<SurfaceFile> parse_ascii(std::string_view text, const std::string& name) {
-    Words words(text);
-    PointWelder welder;
-    SurfaceFile file;
-    bool in_solid = false;
-    for (std::string word = words.next(); !word.empty(); word = words.next()) {
-        if (!in_solid && word == "solid") {
-            words.skip_line();  // the rest of the line is the name, whatever it says
-            in_solid = true;
-        } else if (in_solid && word == "endsolid") {
-            words.skip_line();
-            in_solid = false;
-        } else if (in_solid && word == "facet") {
-            words.skip_line();  // the normal follows from the vertices, and may be nonsense
-            if (words.next() != "outer" || words.next() != "loop")
-                return input_error("{}:{}: \"outer loop\" is needed after \"facet\"", name, words.line());
-            const auto triangle = parse_loop(words, name, welder);
-            if (!triangle) return tl::unexpected(triangle.error());
-            file.mesh.triangles.push_back(*triangle);
-        } else {
-            return input_error("{}:{}: \"{}\" has no place here; this is not a complete STL file", name, words.line(),
-                               word);
-        }
-    }
-    if (file.mesh.triangles.empty()) return input_error("{}: holds no facets", name);
-    if (in_solid) file.warnings.push_back(fmt::format("{}: the last solid is not closed by \"endsolid\"", name));
-    file.mesh.points = welder.take();
-    return file;
-}
+    Words words_;
+    const std::string& name_;
+    PointWelder welder_;
+    SurfaceFile file_;
+    std::size_t strays_ = 0;
+};
 
 /// Binary files may begin with "solid" too: a text file has no zero bytes, and its second word line is "facet" or
 /// "endsolid".
 bool looks_ascii(std::string_view bytes) {
     std::size_t begin = bytes.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return false;
-    std::string head(bytes.substr(begin, 5));
-    std::transform(head.begin(), head.end(), head.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (head != "solid") return false;
+    if (lower_case(bytes.substr(begin, 5)) != "solid") return false;
     return bytes.substr(0, 4096).find('\0') == std::string_view::npos;
 }
 
@@ -177,7 +202,7 @@ bool looks_like_stl(std::string_view bytes) {
 Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name) {
     if (bytes.empty()) return input_error("{}: the file is empty", name);
     if (!looks_like_stl(bytes)) return input_error("{}: is not an STL file", name);
-    return looks_ascii(bytes) ? parse_ascii(bytes, name) : parse_binary(bytes, name);
+    return looks_ascii(bytes) ? AsciiReader(bytes, name).read() : parse_binary(bytes, name);
 }
 
 Status write_stl(const std::filesystem::path& path, const TriMesh& mesh) {

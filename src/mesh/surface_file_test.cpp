@@ -95,6 +95,34 @@ TEST_CASE("text files are read whatever their case and line ends, and wrong ones
     CHECK(problem(ascii.substr(0, 60)).find("a.stl:") == 0);
 }
 
+TEST_CASE("text with other line ends, in one line, or with words after endfacet is read") {
+    const auto with_ends = [](const std::string& text, const char* end) {
+        std::string result;
+        for (const char c : text) result += c == '\n' ? std::string(end) : std::string(1, c);
+        return result;
+    };
+    CHECK(parse_stl(with_ends(ascii + ascii, "\r"), "a.stl")->mesh.triangles.size() == 2);
+    CHECK(parse_stl(with_ends(ascii, "\r"), "a.stl")->warnings.empty());
+    std::string missing = ascii;
+    missing.replace(missing.find("  vertex 1 0 0\n"), 15, "");
+    for (const char* end : {"\r", "\r\n"})
+        CHECK(problem(with_ends(missing, end)) ==
+              "a.stl:6: \"vertex\" is needed here, a facet has three; found \"endloop\"");
+    std::string one_line = ascii.substr(ascii.find("facet normal nan"));
+    one_line = "solid\n" + with_ends(one_line, " ") + with_ends(one_line, " ");
+    one_line.replace(one_line.find("endsolid"), 8, "");
+    CHECK(parse_stl(one_line, "a.stl")->mesh.triangles.size() == 2);
+    std::string stray = ascii;
+    stray.replace(stray.find("endfacet\n"), 9, "endfacet 7 attributes\n");
+    const Result<SurfaceFile> file = parse_stl(stray + stray, "a.stl");
+    REQUIRE(file);
+    CHECK(file->mesh.triangles.size() == 2);
+    REQUIRE(file->warnings.size() == 1);
+    CHECK(file->warnings[0] == "a.stl: 4 word(s) after \"endfacet\" were passed over");
+    stray.replace(stray.find(" attributes"), 1, "\n");
+    CHECK(problem(stray) == "a.stl:9: \"attributes\" has no place here; this is not a complete STL file");
+}
+
 TEST_CASE("surfaces that enclose nothing are told apart") {
     TriMesh open = tetrahedron();
     open.triangles.pop_back();

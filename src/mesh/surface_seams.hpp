@@ -22,10 +22,18 @@ struct BorderEdge {
 /// points are those of the surface and then the middles.
 [[nodiscard]] TriMesh border_caps(const TriMesh& surface);
 
-/// Joins points of the border that are no farther apart than rounding to 32 bits may put them, a millionth of the
-/// surface's size, and drops triangles that have become edges: programs reckon a point once for each triangle and
-/// arrive at different last digits. The number of border edges that are gone; the surface stays as it was if there are
-/// none.
-std::size_t close_seams(TriMesh& surface);
+struct ClosedSeams {
+    std::size_t edges = 0;   ///< of the border, that are gone
+    std::size_t points = 0;  ///< that became another one
+};
+
+/// Joins points of the border that are no farther apart than `reach` and drops triangles that have become edges, and
+/// points that no triangle uses any more: programs reckon a point once for each triangle and arrive at different last
+/// digits. No point moves by more than `reach`, however many lie in a row. The surface stays as it was if its border
+/// does not get shorter.
+ClosedSeams close_seams(TriMesh& surface, double reach);
+
+/// The same for what rounding to 32 bits may do to points, a millionth of the surface's size.
+ClosedSeams close_seams(TriMesh& surface);
 
 }  // namespace pliant::mesh

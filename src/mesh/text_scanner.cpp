@@ -17,19 +17,40 @@ std::string_view shortened(std::string_view word) {
 
 }  // namespace
 
+/// The second half of "\r\n" ends the line, the first is a blank.
+bool TextScanner::at_line_end() const {
+    return text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
+}
+
+std::size_t TextScanner::joint() const {
+    if (!backslash_joins_ || text_[at_] != '\\') return 0;
+    const std::string_view after = text_.substr(at_ + 1, 2);
+    if (after == "\r\n") return 3;
+    return after.starts_with('\n') || after.starts_with('\r') ? 2 : 0;
+}
+
 void TextScanner::skip_blanks(bool over_lines) {
-    for (; at_ < text_.size(); ++at_) {
-        if (text_[at_] == '\n' && over_lines)
+    while (at_ < text_.size()) {
+        if (const std::size_t bytes = joint(); bytes > 0) {
             ++line_;
-        else if (!is_blank(text_[at_]))
-            return;
+            at_ += bytes;
+            continue;
+        }
+        const bool line_end = at_line_end();
+        if (line_end ? !over_lines : !is_blank(text_[at_])) return;
+        line_ += line_end ? 1 : 0;
+        ++at_;
     }
 }
 
 std::string_view TextScanner::take_word() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '\n') ++at_;
-    return text_.substr(begin, at_ - begin);
+    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '\n' && joint() == 0) ++at_;
+    return last_word_ = text_.substr(begin, at_ - begin);
+}
+
+void TextScanner::skip_comments(char mark) {
+    for (skip_blanks(true); at_ < text_.size() && text_[at_] == mark; skip_blanks(true)) rest_of_line();
 }
 
 std::string_view TextScanner::word() {
@@ -44,11 +65,16 @@ std::string_view TextScanner::word_of_line() {
 
 std::string_view TextScanner::rest_of_line() {
     skip_blanks(false);
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string_view rest = text_.substr(at_, end - at_);
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !at_line_end()) {
+        at_ = std::min(text_.find_first_of("\r\n", at_ + 1), text_.size());
+    }
+    std::string_view rest = text_.substr(begin, at_ - begin);
     while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
-    at_ = std::min(end + 1, text_.size());
-    line_ += end < text_.size() ? 1 : 0;
+    if (at_ < text_.size()) {
+        ++at_;
+        ++line_;
+    }
     return rest;
 }
 
