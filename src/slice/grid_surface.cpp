@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "mesh/surface_seams.hpp"
 
 namespace pliant::slice {
 namespace {
@@ -73,6 +76,21 @@ Result<GridSurface> snap_to_grid(const mesh::TriMesh& surface_um, std::string_vi
     }
     drop_repetitions(surface.triangles);
     return surface;
+}
+
+/// Whole numbers of 32 bits come back from doubles as they were, and the order of the points stays.
+std::size_t join_near_points(GridSurface& surface, double reach_um) {
+    mesh::TriMesh mesh{{}, surface.triangles};
+    for (const GridPoint& p : surface.points) mesh.points.push_back(vector_of(p));
+    const mesh::ClosedSeams closed = mesh::close_seams(mesh, reach_um * grid_per_um);
+    if (closed.edges == 0) return 0;
+    surface.points.clear();
+    for (const Vec3& p : mesh.points)
+        surface.points.push_back(
+            {static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y), static_cast<std::int32_t>(p.z)});
+    surface.triangles = std::move(mesh.triangles);
+    drop_repetitions(surface.triangles);
+    return closed.points;
 }
 
 double signed_volume6(const GridSurface& surface, const Triangle& t) {

@@ -34,6 +34,10 @@ struct GridSurface {
 /// 2 m, a corner that does not exist.
 [[nodiscard]] Result<GridSurface> snap_to_grid(const mesh::TriMesh& surface_um, std::string_view label);
 
+/// Joins points at open edges that are no farther apart than `reach_um`, as mesh::close_seams() does, and drops what
+/// that made meaningless. How many points became another one.
+std::size_t join_near_points(GridSurface& surface, double reach_um);
+
 /// Six times the signed volume of the tetrahedron from the grid's origin, in grid units cubed.
 [[nodiscard]] double signed_volume6(const GridSurface& surface, const Triangle& triangle);
 

@@ -20,6 +20,11 @@ std::string hole_warning(const Holes& holes, const std::string& label, const Lay
                        layer_at(holes.z_high, layers));
 }
 
+std::string join_warning(std::size_t points, const std::string& label, double join_um) {
+    return fmt::format("{}: {} point(s) at open edges lay within {:.3g} um of another and were joined to it", label,
+                       points, join_um);
+}
+
 /// Orients triangles and closes holes.
 Status close_surface(GridSurface& surface, const std::string& label, const Layers& layers,
                      std::vector<std::string>& warnings) {
@@ -37,7 +42,8 @@ Status close_surface(GridSurface& surface, const std::string& label, const Layer
 
 }  // namespace
 
-Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers) {
+Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers,
+                        double join_um) {
     auto snapped = snap_to_grid(surface_um, label);
     if (!snapped) return tl::unexpected(snapped.error());
     Repaired result{std::move(*snapped), {}};
@@ -46,6 +52,8 @@ Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& labe
     const double area = area_mm2(surface);
     std::vector<EdgeUse> uses = edge_uses(surface.triangles);
     if (!all_paired(uses)) {
+        if (const std::size_t points = join_near_points(surface, join_um); points > 0)
+            result.warnings.push_back(join_warning(points, label, join_um));
         if (auto status = close_surface(surface, label, layers, result.warnings); !status)
             return tl::unexpected(status.error());
         uses = edge_uses(surface.triangles);

@@ -15,6 +15,9 @@
 namespace pliant::slice {
 namespace {
 
+/// Points of open edges as near as this are one, in pixels: no image shows the difference.
+constexpr double join_px = 0.1;
+
 Status check(const Settings& settings) {
     if (auto status = check(settings.raster); !status) return status;
     if (settings.layer_um < 1 || settings.layer_um > 10000)
@@ -107,7 +110,7 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
         measures_.push_back({stack->volume_mm3(), stack->area_mm2()});
         shapes_.emplace_back(std::move(*stack));
     } else {
-        auto repaired = repair(body.surface_um, label, layers_);
+        auto repaired = repair(body.surface_um, label, layers_, join_px * settings_.raster.pixel_um);
         if (!repaired) return tl::unexpected(repaired.error());
         std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(warnings_));
         measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
