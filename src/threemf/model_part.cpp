@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "threemf/properties.hpp"
+#include "threemf/remarks.hpp"
 
 namespace pliant::threemf {
 namespace {
@@ -13,6 +14,8 @@ constexpr std::string_view known_extensions[] = {"http://schemas.microsoft.com/3
                                                  "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
                                                  "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07",
                                                  "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"};
+
+constexpr std::string_view object_types[] = {"model", "support", "solidsupport", "surface", "other"};
 
 double unit_mm(std::string_view unit) {
     if (unit.empty() || unit == "millimeter") return 1;
@@ -31,6 +34,7 @@ public:
     Result<ModelPart> read() {
         const pugi::xml_node root = part_.root();
         model_.name = part_.name();
+        model_.warnings = remarks_on(part_);
         if (!part_.is(root, Space::core, "model"))
             return input_error("{}", part_.at(root, "is no <model> of the 3MF core specification"));
         read_head(root);
@@ -63,19 +67,8 @@ private:
                 problem_.note(part_.at(root, fmt::format("requires the extension {} ({}), which Pliant does not know",
                                                          prefix, address.empty() ? "no namespace" : address)));
         }
-        for (const pugi::xml_node& node : part_.children(root, Space::core, "metadata")) read_metadata(node);
-    }
-
-    void read_metadata(const pugi::xml_node& node) {
-        constexpr std::string_view known[] = {"Title",        "Designer",         "Description",
-                                              "Copyright",    "LicenseTerms",     "Rating",
-                                              "CreationDate", "ModificationDate", "Application"};
-        const std::string_view name = part_.needed(node, "name", problem_);
-        if (name.find(':') != std::string_view::npos ||
-            std::find(std::begin(known), std::end(known), name) != std::end(known))
-            return;
-        model_.warnings.push_back(part_.at(
-            node, fmt::format("name=\"{}\" is none that the core specification knows (its section 3.4.1)", name)));
+        for (const pugi::xml_node& node : part_.children(root, Space::core, "metadata"))
+            (void)part_.needed(node, "name", problem_);
     }
 
     void read_resource(const pugi::xml_node& node) {
@@ -87,7 +80,7 @@ private:
         if (part_.is(node, Space::core, "object")) {
             model_.objects[id] = read_object(node, id);
         } else if (part_.is(node, Space::slice, "slicestack")) {
-            model_.stacks[id] = read_slice_stack(part_, node, problem_);
+            model_.stacks[id] = read_slice_stack(part_, node, problem_, model_.warnings);
         } else {
             (void)read_property_group(part_, node, id, properties_, textures_, problem_);
         }
@@ -97,6 +90,9 @@ private:
         Object object;
         object.name = node.attribute("name") ? node.attribute("name").value() : fmt::format("object {}", id);
         object.type = node.attribute("type") ? node.attribute("type").value() : "model";
+        if (std::find(std::begin(object_types), std::end(object_types), object.type) == std::end(object_types))
+            problem_.note(part_.at(
+                node, fmt::format("type=\"{}\" must be model, support, solidsupport, surface or other", object.type)));
         const int group = part_.index_or(node, "pid", -1, problem_);
         const int property = part_.index_or(node, "pindex", group < 0 ? -1 : 0, problem_);
         if (group < 0 && property >= 0) problem_.note(part_.at(node, "a pindex needs a pid"));

@@ -54,10 +54,26 @@ Status Package::find_model() {
     if (!model_.starts_with('/')) model_ = "/" + model_;
     if (!zip_.has(entry_of(model_)))
         return input_error("{}: _rels/.rels names the model {}, which is not in the file", name_, model_);
+    check_targets(*part, "/");
     return {};
 }
 
-Status Package::check_relationships_of_model() const {
+/// `folder`: of the part that the relationships belong to, for targets that do not begin at the root.
+void Package::check_targets(const XmlPart& relationships, const std::string& folder) {
+    constexpr std::size_t most = 20;
+    for (const pugi::xml_node& node : relationships.root().children("Relationship")) {
+        const std::string target = node.attribute("Target").value();
+        const bool outside = std::string_view(node.attribute("TargetMode").value()) == "External";
+        if (outside || target.empty() || target.find('%') != std::string::npos || warnings_.size() >= most) continue;
+        const std::filesystem::path path = target.front() == '/' ? target : folder + target;
+        if (!zip_.has(entry_of(path.lexically_normal().generic_string())))
+            warnings_.push_back(relationships.at(
+                node,
+                fmt::format("names the part {}, which is not in the file (core specification, section 2.1)", target)));
+    }
+}
+
+Status Package::check_relationships_of_model() {
     const std::string entry = entry_of(model_);
     const std::size_t slash = entry.rfind('/') == std::string::npos ? 0 : entry.rfind('/') + 1;
     const std::string rels = entry.substr(0, slash) + "_rels/" + entry.substr(slash) + ".rels";
@@ -66,6 +82,7 @@ Status Package::check_relationships_of_model() const {
     if (!part) return tl::unexpected(part.error());
     if (const auto tickets = relationships(*part, ticket_type); tickets.size() > 1)
         return input_error("{}: {} print tickets in {}, at most one is allowed", name_, tickets.size(), rels);
+    check_targets(*part, "/" + entry.substr(0, slash));
     return {};
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "threemf/xml_part.hpp"
 #include "zip/zip_file.hpp"
@@ -18,16 +19,20 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Path of the start part, as in "/3D/3dmodel.model".
     [[nodiscard]] const std::string& model() const { return model_; }
+    /// Relationships to parts that are not in the file, where no body needs them.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
     /// A part by its path from the root of the package. Errors: missing, above 1 GB, no well-formed XML.
     [[nodiscard]] Result<XmlPart> part(std::string_view path) const;
 
 private:
     Package(ZipReader zip, std::string name) : zip_(std::move(zip)), name_(std::move(name)) {}
     Status find_model();
-    Status check_relationships_of_model() const;
+    Status check_relationships_of_model();
+    void check_targets(const XmlPart& relationships, const std::string& folder);
 
     ZipReader zip_;
     std::string name_, model_;
+    std::vector<std::string> warnings_;
 };
 
 }  // namespace pliant::threemf

@@ -90,7 +90,7 @@ PropertyGroup read_multi(const XmlPart& part, const pugi::xml_node& node, const 
                          const std::map<int, std::string>& textures, Problem& problem) {
     PropertyGroup result{Kind::multi, {}};
     const PropertyGroup* material = nullptr;
-    std::size_t place = 0, n = 0;
+    std::size_t place = 0, n = 0, colours = 0;
     for (const int id : indices(part, node, "pids", problem)) {
         ++n;
         if (textures.contains(id)) continue;
@@ -98,6 +98,8 @@ PropertyGroup read_multi(const XmlPart& part, const pugi::xml_node& node, const 
         if (layer == nullptr || problem.found()) return result;
         if (layer->kind == Kind::multi)
             problem.note(part.at(node, fmt::format("pids: {} is a group of multiproperties itself", id)));
+        if (layer->kind == Kind::colour && ++colours > 1)
+            problem.note(part.at(node, "pids: more than one group of colours, at most one is allowed"));
         if (layer->kind == Kind::base || layer->kind == Kind::composite) {
             if (material != nullptr)
                 problem.note(part.at(node, "pids: more than one group of materials, at most one is allowed"));

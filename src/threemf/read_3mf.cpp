@@ -10,6 +10,8 @@ namespace {
 Result<ThreeMf> assemble(const XmlPart& xml, const Package* package, const std::string& file) {
     auto start = read_model_part(xml);
     if (!start) return tl::unexpected(start.error());
+    if (package != nullptr)
+        start->warnings.insert(start->warnings.end(), package->warnings().begin(), package->warnings().end());
     return Build(package, file).assemble(std::move(*start));
 }
 

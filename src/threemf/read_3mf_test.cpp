@@ -109,6 +109,58 @@ TEST_CASE("a slice stack is the body") {
     CHECK(refused(model(stack + object(7, "s:slicestackid=\"4\""), "")).find("no slice stack 4") != std::string::npos);
 }
 
+TEST_CASE("a polygon of a slice that encloses nothing is left out with a warning") {
+    const std::string stack =
+        "<s:slicestack id=\"3\"><s:slice ztop=\"2\"><s:vertices><s:vertex x=\"0\" y=\"0\"/><s:vertex x=\"1\" y=\"0\"/>"
+        "<s:vertex x=\"0\" y=\"1\"/></s:vertices>"
+        "<s:polygon startv=\"0\"><s:segment v2=\"1\"/><s:segment v2=\"0\"/></s:polygon>"
+        "<s:polygon startv=\"0\"><s:segment v2=\"1\"/><s:segment v2=\"2\"/><s:segment v2=\"0\"/></s:polygon>"
+        "<s:polygon startv=\"2\"/></s:slice></s:slicestack>";
+    const ThreeMf file = read(model(stack + object(7, "s:slicestackid=\"3\""), "<item objectid=\"7\"/>"));
+    REQUIRE(file.bodies[0].slices.size() == 1);
+    CHECK(file.bodies[0].slices[0].contours.size() == 1);
+    REQUIRE(file.warnings.size() == 1);
+    CHECK(file.warnings[0] ==
+          "a.3mf:4: <s:slicestack>: 2 polygon(s) of fewer than three points enclose nothing and were left out");
+}
+
+TEST_CASE("what the specification forbids but harms no body is a warning with its section") {
+    const std::string item = "<item objectid=\"7\"/>";
+    const auto warnings = [&](const std::string& before, const std::string& objects, const std::string& items) {
+        std::string text = model(objects, items);
+        return read(text.insert(text.find("<resources>"), before)).warnings;
+    };
+    const std::string plain = object(7, "");
+    CHECK(warnings("<metadata name=\"Title\">x</metadata>", plain, item).empty());
+    CHECK(warnings("<metadata name=\"m:Own\">x</metadata>", plain, item).empty());
+    const auto one = [&](const std::string& before, const std::string& objects, const std::string& items) {
+        const auto found = warnings(before, objects, items);
+        REQUIRE(found.size() == 1);
+        return found[0];
+    };
+    CHECK(one("<metadata name=\"Mine\">x</metadata>", plain, item).find("section 3.4.1") != std::string::npos);
+    CHECK(one("<metadata name=\"vendor:Mine\">x</metadata>", plain, item).find("prefix has no namespace") !=
+          std::string::npos);
+    CHECK(one("<metadata name=\"Title\">x</metadata>\n<metadata name=\"Title\">y</metadata>", plain, item)
+              .find("a.3mf:4: <metadata>: name=\"Title\" is given twice") == 0);
+    std::string grouped = plain;
+    grouped.insert(grouped.find("<mesh>"), "<metadatagroup><metadata name=\"Mine\">x</metadata></metadatagroup>");
+    CHECK(one("", grouped, item).find("section 3.4.1") != std::string::npos);
+    CHECK(one("", plain,
+              "<item objectid=\"7\"><metadatagroup><metadata name=\"v:Mine\">x</metadata></metadatagroup></item>")
+              .find("prefix has no namespace") != std::string::npos);
+    CHECK(one("", object(7, "colour=\"red\""), item).find("knows no attribute colour here") != std::string::npos);
+    CHECK(one("", object(7, "xml:space=\"preserve\""), item).find("knows no attribute xml:space") != std::string::npos);
+    CHECK(one("<colours/>", plain, item).find("<colours>: the core specification knows no such element") !=
+          std::string::npos);
+    CHECK(one("", object(7, ""), "<item objectid=\"7\" a=\"1\"/><item objectid=\"7\" a=\"1\"/>").find("attribute a ") !=
+          std::string::npos);
+    CHECK(warnings("", plain, "<item objectid=\"7\" printable=\"1\"/>").empty());
+    std::string crowd;
+    for (int i = 0; i < 1000; ++i) crowd += fmt::format("<metadata name=\"own {}\"/>", i);
+    CHECK(warnings(crowd, plain, item).size() == 50);
+}
+
 TEST_CASE("errors name the line, what is wrong and what would be right") {
     const std::string item = "<item objectid=\"7\"/>";
     CHECK(refused(model(object(7, ""), "<item objectid=\"9\"/>")) ==
@@ -132,6 +184,18 @@ TEST_CASE("errors name the line, what is wrong and what would be right") {
     CHECK(refused(text).find("requires the extension q") != std::string::npos);
     CHECK(refused("<!DOCTYPE x []>" + model("", "")).find("document type") != std::string::npos);
     CHECK(refused(model("<q:x id=\"1\"/>", "")).find("prefix has no namespace") != std::string::npos);
+    CHECK(refused(model(object(7, "type=\"invalidtype\""), item)).find("type=\"invalidtype\" must be model, support") !=
+          std::string::npos);
+    CHECK(read(model(object(7, "type=\"solidsupport\""), item)).bodies.size() == 1);
+    const std::string colours = "<m:colorgroup id=\"{}\"><m:color color=\"#00a0e8\"/></m:colorgroup>";
+    CHECK(refused(model(fmt::format(fmt::runtime(colours + colours), 2, 3) +
+                            "<m:multiproperties id=\"4\" pids=\"2 3\"><m:multi pindices=\"0 0\"/></m:multiproperties>" +
+                            object(7, ""),
+                        item))
+              .find("pids: more than one group of colours") != std::string::npos);
+    std::string latin = model(object(7, ""), item);
+    latin.insert(latin.find("?>"), " encoding=\"ISO-8859-1\"");
+    CHECK(refused(latin) == "a.3mf: is encoded as \"iso-8859-1\"; 3MF allows UTF-8 and UTF-16 only");
     CHECK(refused("PK").find("not well-formed") != std::string::npos);
     std::string vertex = model(object(7, ""), item);
     vertex.replace(vertex.find("v2=\"2\""), 6, "v2=\"4\"");

@@ -19,7 +19,9 @@ struct SliceStack {
     std::vector<Reference> references;
 };
 
-/// Notes: tops that do not rise, points that are not there, outlines of fewer than three points.
-[[nodiscard]] SliceStack read_slice_stack(const XmlPart& part, const pugi::xml_node& node, Problem& problem);
+/// Notes: tops that do not rise, points that are not there. Outlines of fewer than three points enclose nothing: they
+/// are left out, and one of the `warnings` counts them.
+[[nodiscard]] SliceStack read_slice_stack(const XmlPart& part, const pugi::xml_node& node, Problem& problem,
+                                          std::vector<std::string>& warnings);
 
 }  // namespace pliant::threemf

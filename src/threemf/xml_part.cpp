@@ -6,14 +6,10 @@
 #include <cmath>
 #include <memory>
 
+#include "core/letters.hpp"
+
 namespace pliant::threemf {
 namespace {
-
-std::pair<std::string_view, std::string_view> split_name(std::string_view name) {
-    const std::size_t colon = name.find(':');
-    if (colon == std::string_view::npos) return {"", name};
-    return {name.substr(0, colon), name.substr(colon + 1)};
-}
 
 Space space_at(std::string_view address) {
     if (address == "http://schemas.microsoft.com/3dmanufacturing/core/2015/02") return Space::core;
@@ -38,18 +34,39 @@ bool declared(pugi::xml_node node, std::string_view prefix) {
     return false;
 }
 
+/// The encoding that a text declares, in small letters; "" where it declares none.
+std::string declared_encoding(std::string_view text) {
+    const std::string_view head = text.substr(0, text.substr(0, 1024).find("?>"));
+    const std::size_t declaration = head.find("<?xml");
+    const std::size_t key = head.find("encoding");
+    if (declaration == std::string_view::npos || declaration > 3 || key == std::string_view::npos) return {};
+    const std::size_t begin = head.find_first_of("\"'", key);
+    if (begin == std::string_view::npos) return {};
+    const std::size_t end = head.find(head[begin], begin + 1);
+    return end == std::string_view::npos ? std::string() : lower_case(head.substr(begin + 1, end - begin - 1));
+}
+
+}  // namespace
+
+std::pair<std::string_view, std::string_view> split_name(std::string_view name) {
+    const std::size_t colon = name.find(':');
+    if (colon == std::string_view::npos) return {"", name};
+    return {name.substr(0, colon), name.substr(colon + 1)};
+}
+
 pugi::xml_node next_in_document(pugi::xml_node node) {
     if (node.first_child()) return node.first_child();
     while (node && !node.next_sibling()) node = node.parent();
     return node.next_sibling();
 }
 
-}  // namespace
-
 Result<XmlPart> XmlPart::parse(std::string text, std::string name) {
     XmlPart part;
     part.name_ = std::move(name);
     part.text_ = std::move(text);
+    if (const std::string encoding = declared_encoding(part.text_);
+        !encoding.empty() && encoding != "utf-8" && encoding != "utf-16")
+        return input_error("{}: is encoded as \"{}\"; 3MF allows UTF-8 and UTF-16 only", part.name_, encoding);
     part.document_ = std::make_unique<pugi::xml_document>();
     const auto result =
         part.document_->load_buffer(part.text_.data(), part.text_.size(), pugi::parse_default | pugi::parse_doctype);

@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -31,7 +32,7 @@ enum class Space { none, core, material, production, slice };
 class XmlPart {
 public:
     /// `name`: of file and part, for messages. Refuses what is not well-formed: also several roots and prefixes without
-    /// a namespace, which pugixml lets pass; and a document type.
+    /// a namespace, which pugixml lets pass; a document type; and an encoding other than UTF-8 or UTF-16.
     [[nodiscard]] static Result<XmlPart> parse(std::string text, std::string name);
 
     [[nodiscard]] pugi::xml_node root() const { return document_->document_element(); }
@@ -67,6 +68,12 @@ private:
     std::unique_ptr<pugi::xml_document> document_;
     std::map<std::string, std::string, std::less<>> addresses_;  ///< of the prefixes that the root declares
 };
+
+/// The next node of the document after this one, children first; none after the last.
+[[nodiscard]] pugi::xml_node next_in_document(pugi::xml_node node);
+
+/// "m" and "color" of "m:color"; no prefix is "".
+[[nodiscard]] std::pair<std::string_view, std::string_view> split_name(std::string_view name);
 
 /// Splits "a b  c" at blanks.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text);
