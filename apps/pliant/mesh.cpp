@@ -140,7 +140,7 @@ Status run(const Options& options) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-    command.add_option("files", options.files, "a robot file with -o, or mesh files (.vtk, .msh, .stl, ...)")
+    command.add_option("files", options.files, "a robot file with -o, or mesh files (.vtk, .msh, .stl, .off, ...)")
         ->required();
     command.add_option("-o,--output", options.output_file,
                        fmt::format("mesh file to write: {}", mesh::tet_writer_list));

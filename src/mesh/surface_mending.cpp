@@ -12,7 +12,7 @@ namespace {
 /// Two copies of a point, each off by some steps along every axis.
 constexpr double float_steps = 16;
 constexpr double printed_steps = 4;
-/// Few digits may mean that the numbers are round: never join what lies as far apart as a part of an edge.
+/// Few digits may mean that the numbers are round: what is farther apart than this part of an edge is not joined.
 constexpr double share_of_edge = 0.1;
 
 double largest_coordinate(const TriMesh& surface) {
@@ -33,9 +33,8 @@ void join_points(SurfaceFile& file, const std::string& name) {
     const std::vector<BorderEdge> border = border_edges(file.mesh);
     const double largest = largest_coordinate(file.mesh);
     if (border.empty() || largest == 0) return;
-    const double printed =
-        std::min(printed_steps * file.printed.step(largest), share_of_edge * mean_length(file.mesh, border));
-    const double reach = std::max(float_steps * float_step(largest), printed);
+    const double known = std::max(float_steps * float_step(largest), printed_steps * file.printed.step(largest));
+    const double reach = std::min(known, share_of_edge * mean_length(file.mesh, border));
     const ClosedSeams closed = close_seams(file.mesh, reach);
     if (closed.points == 0) return;
     file.warnings.push_back(fmt::format(

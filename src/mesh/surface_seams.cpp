@@ -189,7 +189,7 @@ ClosedSeams close_seams(TriMesh& surface, double reach) {
             closed.triangles.push_back(corners);
     }
     const std::size_t after = border_edges(closed).size();
-    if (after >= before.size()) return {};
+    if (after >= before.size() || closed.triangles.empty()) return {};
     surface = without_unused_points(surface, closed.triangles);
     const auto moved = std::count_if(points.begin(), points.end(), [&](int p) { return place(p) != p; });
     return {before.size() - after, static_cast<std::size_t>(moved)};

@@ -30,7 +30,7 @@ struct ClosedSeams {
 /// Joins points of the border that are no farther apart than `reach` and drops triangles that have become edges, and
 /// points that no triangle uses any more: programs reckon a point once for each triangle and arrive at different last
 /// digits. No point moves by more than `reach`, however many lie in a row. The surface stays as it was if its border
-/// does not get shorter.
+/// does not get shorter, or nothing would be left of it.
 ClosedSeams close_seams(TriMesh& surface, double reach);
 
 /// The same for what rounding to 32 bits may do to points, a millionth of the surface's size.

@@ -145,6 +145,7 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
             add_resin(drawing, name, material.resin);
             drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
         }
+        drawing.warnings.insert(drawing.warnings.end(), body.notes.begin(), body.notes.end());
         drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
         if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);
     }

@@ -25,7 +25,7 @@ std::vector<std::string> part_names(const threemf::ThreeMf& file) {
     return names;
 }
 
-Result<mesh::TriMesh> triangles_of_3mf(const SurfaceFile& file, double unit_m) {
+Result<BodyTriangles> triangles_of_3mf(const SurfaceFile& file, double unit_m) {
     const Result<threemf::ThreeMf> read = threemf::read_3mf(file.path);
     if (!read) return tl::unexpected(read.error());
     std::vector<std::string> materials;
@@ -43,18 +43,18 @@ Result<mesh::TriMesh> triangles_of_3mf(const SurfaceFile& file, double unit_m) {
     if (surface.triangles.empty())
         return input_error("{}: has no part \"{}\"; it has {}", file.path.string(), file.part,
                            join_names(part_names(*read)));
-    return mesh::scaled(std::move(surface), 1e-3 / unit_m);
+    return BodyTriangles{mesh::scaled(std::move(surface), 1e-3 / unit_m), read->warnings};
 }
 
 }  // namespace
 
-Result<mesh::TriMesh> read_triangles(const SurfaceFile& file, double unit_m) {
+Result<BodyTriangles> read_triangles(const SurfaceFile& file, double unit_m) {
     const Result<std::string> bytes = read_file(file.path);
     if (!bytes) return tl::unexpected(bytes.error());
     if (threemf::looks_like_zip(*bytes)) return triangles_of_3mf(file, unit_m);
     Result<mesh::SurfaceFile> surface = mesh::parse_surface(*bytes, file.path.string());
     if (!surface) return tl::unexpected(surface.error());
-    return std::move(surface->mesh);
+    return BodyTriangles{std::move(surface->mesh), std::move(surface->warnings)};
 }
 
 }  // namespace pliant::robot

@@ -1,14 +1,22 @@
 // The triangles of a body that comes from a file.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/error.hpp"
 #include "mesh/tri_mesh.hpp"
 #include "robot/robot.hpp"
 
 namespace pliant::robot {
 
-/// STL, OBJ, PLY (in length units) or 3MF (which says its own unit), by content; `unit_m`: metres per length unit.
+struct BodyTriangles {
+    mesh::TriMesh mesh;              ///< in length units
+    std::vector<std::string> notes;  ///< what was odd or mended; each begins with the file's name
+};
+
+/// STL, OBJ, PLY, OFF (in length units) or 3MF (which says its own unit), by content; `unit_m`: metres per length unit.
 /// Errors name the file, and for a part that is not there those that are. A 3MF file of several materials needs a part.
-[[nodiscard]] Result<mesh::TriMesh> read_triangles(const SurfaceFile& file, double unit_m);
+[[nodiscard]] Result<BodyTriangles> read_triangles(const SurfaceFile& file, double unit_m);
 
 }  // namespace pliant::robot

@@ -6,6 +6,7 @@
 #include "core/text.hpp"
 #include "mesh/flat_faces.hpp"
 #include "mesh/mesher.hpp"
+#include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
 #include "robot/body_surface.hpp"
 #include "robot/crossed_notches.hpp"
@@ -24,10 +25,26 @@ Error at(const std::string& place, const Error& error) {
     return {error.cause, place + error.message};
 }
 
-Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file) {
-    Result<mesh::TriMesh> surface = read_triangles(file, robot.unit_m);
+/// Adds to `notes` what was odd or mended.
+Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file,
+                                        std::vector<std::string>& notes) {
+    Result<BodyTriangles> surface = read_triangles(file, robot.unit_m);
     if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
-    return surface;
+    for (const std::string& note : surface->notes) notes.push_back(fmt::format("body \"{}\": {}", body.name, note));
+    return std::move(surface->mesh);
+}
+
+/// What was odd or mended in the surfaces of chambers, which are read again when the model is built.
+std::vector<std::string> notes_on_chambers(const Robot& robot) {
+    std::vector<std::string> notes;
+    for (const ChamberSpec& chamber : robot.chambers) {
+        const auto* file = std::get_if<SurfaceFile>(&chamber.air);
+        const auto surface = file == nullptr ? Result<mesh::SurfaceFile>() : mesh::read_surface(file->path);
+        if (!surface) continue;
+        for (const std::string& note : surface->warnings)
+            notes.push_back(fmt::format("chamber \"{}\": {}", chamber.name, note));
+    }
+    return notes;
 }
 
 double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
@@ -79,9 +96,10 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
 using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
 
 /// A body without the air that is cut out of it; triangles where nothing is, or where they are too many to be cut.
-Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::vector<mesh::Solid>& air) {
+Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::vector<mesh::Solid>& air,
+                         std::vector<std::string>& notes) {
     if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) return without_air(*solid, air);
-    Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry));
+    Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry), notes);
     if (!surface) return tl::unexpected(surface.error());
     const Box3 box = mesh::bounds(*surface);
     const auto cuts = [&](const mesh::Solid& one) { return boxes_overlap(box, mesh::bounds(one)); };
@@ -124,8 +142,9 @@ Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyG
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<mesh::BodyGeometry> bodies;
+    std::vector<std::string> notes;
     for (const BodySpec& body : robot.bodies) {
-        Result<Shape> shape = body_shape(robot, body, air);
+        Result<Shape> shape = body_shape(robot, body, air, notes);
         if (!shape) return tl::unexpected(shape.error());
         bodies.push_back({body.name, std::move(*shape), false, body.size});
     }
@@ -146,6 +165,7 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
         }
         return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
     }
+    mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
     return mesh;
 }
 
@@ -205,6 +225,8 @@ Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
 Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
     Result<mesh::TetMesh> mesh = robot.mesh.file ? read_mesh_file(robot) : mesh_drawn_bodies(robot, progress);
     if (!mesh) return mesh;
+    const std::vector<std::string> notes = notes_on_chambers(robot);
+    mesh->notes.insert(mesh->notes.end(), notes.begin(), notes.end());
     return mesh::scaled(std::move(*mesh), robot.unit_m);
 }
 
@@ -222,10 +244,11 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         progress.advance("surfaces", static_cast<double>(b) / static_cast<double>(robot.bodies.size()));
         const BodySpec& body = robot.bodies[b];
         Result<mesh::TriMesh> surface;
+        std::vector<std::string> notes;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
             surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
         } else if (std::holds_alternative<SurfaceFile>(body.geometry)) {
-            const Result<Shape> shape = body_shape(robot, body, air);
+            const Result<Shape> shape = body_shape(robot, body, air, notes);
             if (!shape) return tl::unexpected(shape.error());
             const auto* cut = std::get_if<mesh::Solid>(&*shape);
             surface =
@@ -234,7 +257,8 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
             surface = mesh::region_surface(*regions, static_cast<int>(b));
         }
         if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
-        surfaces.push_back({body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m)});
+        surfaces.push_back(
+            {body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes)});
     }
     return surfaces;
 }

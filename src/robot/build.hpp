@@ -23,6 +23,7 @@ struct BodySurface {
     std::string body;
     int material = 0;  ///< index into Robot::materials
     mesh::TriMesh surface_m;
+    std::vector<std::string> notes{};  ///< what was odd or mended in its file
 };
 /// One for every body, in their order, without the air of chambers and gaps. Errors name the body and its line.
 [[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);

@@ -230,3 +230,56 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
     check_problem(head + body("root", "geometry = \"" + folder.file("root.step") + "\"\npart = \"lid\""),
                   "has no solid \"lid\"");
 }
+
+namespace {
+
+/// A box from `low` to `high`, every triangle with points of its own.
+void add_box(mesh::TriMesh& soup, const Vec3& low, const Vec3& high, bool outwards) {
+    const int corners[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (const auto& t : corners) {
+        const int n = static_cast<int>(soup.points.size());
+        for (const int i : t)
+            soup.points.push_back(
+                {(i & 1) != 0 ? high.x : low.x, (i >> 1 & 1) != 0 ? high.y : low.y, (i >> 2) != 0 ? high.z : low.z});
+        soup.triangles.push_back(outwards ? std::array{n, n + 1, n + 2} : std::array{n, n + 2, n + 1});
+    }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a surface with jittered corners and a cavity that looks outwards makes a body; its chamber may be inverted") {
+    const Folder folder;
+    mesh::TriMesh bar;
+    add_box(bar, {0, 0, 0}, {40, 10, 10}, true);
+    add_box(bar, {10, 3, 3}, {30, 7, 7}, true);
+    for (std::size_t i = 0; i < bar.points.size(); i += 5)
+        bar.points[i].x = static_cast<double>(std::nextafter(static_cast<float>(bar.points[i].x), 100.0F));
+    REQUIRE(mesh::write_stl(folder.file("bar.stl"), bar));
+    mesh::TriMesh air;
+    add_box(air, {10, 3, 3}, {30, 7, 7}, false);
+    REQUIRE(mesh::write_stl(folder.file("air.stl"), air));
+    const std::string text = head + body("bar", fmt::format("geometry = \"{}\"", folder.file("bar.stl"))) +
+                             fmt::format(
+                                 "[[chamber]]\nname = \"air\"\nsurface = \"{}\"\n"
+                                 "target = {{ volume_ratio = 1.1 }}\n",
+                                 folder.file("air.stl"));
+    const Result<Robot> robot = parse_robot(text, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(volume_mm3(*mesh, 0) == doctest::Approx(4000 - 320).epsilon(1e-5));
+    REQUIRE(mesh->notes.size() >= 3);
+    CHECK(mesh->notes[0].find("body \"bar\": ") == 0);
+    CHECK(mesh->notes[0].find("were joined to it") != std::string::npos);
+    CHECK(mesh->notes[1].find("turned into cavities") != std::string::npos);
+    CHECK(mesh->notes.back().find("chamber \"air\": ") == 0);
+    CHECK(mesh->notes.back().find("1 shell(s) inside out were turned outwards") != std::string::npos);
+    CHECK(build_model(*robot, *mesh));
+    const auto printed = body_surfaces(*robot, silent);
+    REQUIRE(printed);
+    CHECK((*printed)[0].notes.size() == 2);
+    CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == doctest::Approx(3680).epsilon(1e-5));
+}

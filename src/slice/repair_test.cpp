@@ -78,6 +78,26 @@ TEST_CASE("a T-junction is closed without a word") {
     CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-12));
 }
 
+TEST_CASE("points at open edges that no pixel tells apart are joined, with a note, and thin walls stay") {
+    TriMesh torn = box({0, 0, 0}, {1000, 1000, 20});
+    for (std::size_t i = 0; i < torn.points.size(); i += 3) torn.points[i] += Vec3{3, -2, 1};
+    const auto apart = repair(torn, "body 'b' (soft)", 50);
+    CHECK((!apart || !apart->warnings.empty()));
+    const auto result = repair(torn, "body 'b' (soft)", 50, 5);
+    REQUIRE_MESSAGE(result.has_value(), (result ? "" : result.error().message));
+    CHECK(is_closed(result->surface));
+    CHECK(result->surface.points.size() == 8);
+    CHECK(volume_um3(result->surface) == doctest::Approx(2e7).epsilon(0.06));
+    REQUIRE(result->warnings.size() == 1);
+    CHECK(result->warnings[0].find("point(s) at open edges lay within 5 um of another and were joined") !=
+          std::string::npos);
+    // What is closed is not touched, however thin it is.
+    const auto thin = repair(box({0, 0, 0}, {1000, 1000, 2}), "body 'b' (soft)", 50, 5);
+    REQUIRE(thin);
+    CHECK(volume_um3(thin->surface) == doctest::Approx(2e6));
+    CHECK(thin->warnings.empty());
+}
+
 TEST_CASE("inside out: the whole, one triangle, one of two shells") {
     const Repaired whole = repaired(turned_inside_out(cube));
     CHECK(volume_um3(whole.surface) == doctest::Approx(1e9).epsilon(1e-12));
