@@ -30,8 +30,11 @@ std::vector<int> ends_of(const std::vector<BorderEdge>& edges) {
 /// Points in boxes of twice the reach, so that whatever is within reach of a place lies in one of eight boxes.
 class NearPoints {
 public:
-    NearPoints(const TriMesh& surface, double reach)
-        : surface_(surface), low_(bounds(surface).low), reach_(reach), next_(surface.points.size(), -1) {}
+    /// For `count` points of the surface, to be added.
+    NearPoints(const TriMesh& surface, double reach, std::size_t count)
+        : surface_(surface), low_(bounds(surface).low), reach_(reach), next_(surface.points.size(), -1) {
+        first_.reserve(count);
+    }
 
     void add(int point) {
         const auto [entry, fresh] = first_.try_emplace(key(boxes_of(at(point), 0)), point);
@@ -87,7 +90,7 @@ private:
 std::vector<int> joined(const TriMesh& surface, const std::vector<int>& points, double reach) {
     std::vector<int> becomes(surface.points.size());
     std::iota(becomes.begin(), becomes.end(), 0);
-    NearPoints near(surface, reach);
+    NearPoints near(surface, reach, points.size());
     for (const int point : points) near.add(point);
     std::vector<bool> taken(surface.points.size(), false);
     for (const int point : points) {

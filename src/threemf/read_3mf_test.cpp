@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "core/test_folder.hpp"
+#include "zip/zip_file.hpp"
+
 using namespace pliant;
 using namespace pliant::threemf;
 
@@ -159,6 +162,33 @@ TEST_CASE("what the specification forbids but harms no body is a warning with it
     std::string crowd;
     for (int i = 0; i < 1000; ++i) crowd += fmt::format("<metadata name=\"own {}\"/>", i);
     CHECK(warnings(crowd, plain, item).size() == 50);
+}
+
+TEST_CASE("a relationship to a missing part is a warning where no body needs it") {
+    const pliant::test::Folder folder("3mf");
+    const auto relationship = [](const std::string& id, const std::string& target, const std::string& type) {
+        return fmt::format("<Relationship Id=\"{}\" Target=\"{}\" Type=\"http://schemas.{}\"/>", id, target, type);
+    };
+    const std::string thumbnail = "openxmlformats.org/package/2006/relationships/metadata/thumbnail";
+    Result<ZipWriter> zip = ZipWriter::create(folder / "a.3mf");
+    REQUIRE(zip);
+    const auto add = [&](const std::string& name, const std::string& bytes) {
+        REQUIRE(zip->add(name, bytes, ZipWriter::Method::deflate));
+    };
+    add("_rels/.rels", "<Relationships>" +
+                           relationship("a", "/3D/a.model", "microsoft.com/3dmanufacturing/2013/01/3dmodel") +
+                           relationship("b", "Metadata/none.png", thumbnail) +
+                           relationship("c", "/Metadata/there.png", thumbnail) + "</Relationships>");
+    add("3D/_rels/a.model.rels", "<Relationships>" + relationship("d", "../Metadata/there.png", thumbnail) +
+                                     relationship("e", "none.png", thumbnail) + "</Relationships>");
+    add("Metadata/there.png", "x");
+    add("3D/a.model", model(object(7, ""), "<item objectid=\"7\"/>"));
+    REQUIRE(zip->close());
+    const auto file = read_3mf(folder / "a.3mf");
+    REQUIRE_MESSAGE(file.has_value(), (file ? "" : file.error().message));
+    REQUIRE(file->warnings.size() == 2);
+    CHECK(file->warnings[0].find("names the part none.png, which is not in the file") != std::string::npos);
+    CHECK(file->warnings[1].find("names the part Metadata/none.png") != std::string::npos);
 }
 
 TEST_CASE("errors name the line, what is wrong and what would be right") {
