@@ -152,8 +152,9 @@ Result<std::string> describe_mesh_file(const std::filesystem::path& path) {
         if (!surface) return tl::unexpected(surface.error());
         return surface_text(*surface);
     }
-    return input_error("{}: is no mesh that Pliant reads (tet meshes: {}; surfaces: .stl, .obj, .ply or .off; by content)",
-                       path.string(), tet_format_list);
+    return input_error(
+        "{}: is no mesh that Pliant reads (tet meshes: {}; surfaces: .stl, .obj, .ply or .off; by content)",
+        path.string(), tet_format_list);
 }
 
 Result<MeshReport> report_on_file(const std::filesystem::path& path) {
