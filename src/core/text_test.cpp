@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "core/counted.hpp"
+
 using namespace pliant;
 
 TEST_CASE("edit distance counts single-character changes") {
@@ -17,6 +19,12 @@ TEST_CASE("the nearest name is offered only when it is near") {
     CHECK(nearest_name("geometri", names) == "geometry");
     CHECK(nearest_name("matrial", names) == "material");
     CHECK(nearest_name("xyzzyplugh", names).empty());
+}
+
+TEST_CASE("one thing has no plural") {
+    CHECK(counted(0, "swap") == "0 swaps");
+    CHECK(counted(1, "swap") == "1 swap");
+    CHECK(counted(2, "swap") == "2 swaps");
 }
 
 TEST_CASE("names are joined as a person would") {

@@ -17,6 +17,7 @@ struct Compensation {
 
     /// Outwards in a layer; 0 where nothing moves.
     [[nodiscard]] double offset_um(int layer) const;
+    bool operator==(const Compensation&) const = default;
 };
 
 /// Refuses what is not finite, beyond 10 mm, or a foot that grows. The message starts with `where`.

@@ -1,0 +1,15 @@
+// "1 layer", "2 layers".
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace pliant {
+
+/// A number of things, whose plural is the word with an s.
+[[nodiscard]] inline std::string counted(std::size_t count, std::string_view word) {
+    return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
+}
+
+}  // namespace pliant
