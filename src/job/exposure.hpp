@@ -12,6 +12,8 @@ namespace pliant::job {
 struct ExposureSpan {
     int first = 0, last = 0;
     double seconds = 0;
+
+    bool operator==(const ExposureSpan&) const = default;
 };
 
 /// From a material's exposures to those of its layers. `bottom_layers` from the platform get the bottom exposure, the
@@ -24,6 +26,8 @@ struct ExposureRule {
     double penetration_um = 0;  ///< 0: the same light for all thicknesses
     int layer_um = 50;
     std::vector<ExposureSpan> spans{};
+
+    bool operator==(const ExposureRule&) const = default;
 };
 
 /// Refuses transition layers that are not 0 to 10000, spans that are not layers in order, or not above 0 and at most

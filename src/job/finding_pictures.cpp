@@ -1,6 +1,8 @@
 #include "job/finding_pictures.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace pliant::job {
 namespace {
@@ -9,12 +11,58 @@ constexpr int side_px = 240;
 constexpr std::uint8_t below_grey = 70, layer_grey = 150, mark_grey = 255;
 constexpr int solid_value = 128;
 
-std::vector<Finding> largest(std::vector<Finding> findings) {
-    std::stable_sort(findings.begin(), findings.end(), [](const Finding& l, const Finding& r) {
-        return l.area_mm2 + l.volume_mm3 > r.area_mm2 + r.volume_mm3;
+/// The worst, and of those the largest.
+std::vector<Finding> worst(std::vector<Finding> findings) {
+    const auto rank = [](const Finding& f) { return f.severity == "high" ? 2 : f.severity == "medium" ? 1 : 0; };
+    std::stable_sort(findings.begin(), findings.end(), [&](const Finding& l, const Finding& r) {
+        return std::pair(rank(l), l.area_mm2 + l.volume_mm3) > std::pair(rank(r), r.area_mm2 + r.volume_mm3);
     });
     if (findings.size() > most_findings) findings.resize(most_findings);
     return findings;
+}
+
+/// Of islands each group is a finding, but those of low severity are one, with a picture of the largest.
+std::vector<Finding> island_findings(std::span<const slice::IslandGroup> groups, double pixel_mm2) {
+    std::vector<Finding> findings;
+    std::optional<Finding> grain;
+    for (const slice::IslandGroup& g : groups) {
+        const Finding finding{"island",
+                              g.largest.layer,
+                              std::max(g.last_layer, g.largest.layer),
+                              g.largest.row,
+                              g.largest.column,
+                              static_cast<double>(g.most_pixels) * pixel_mm2,
+                              0,
+                              {},
+                              slice::severity_name(g.severity),
+                              g.islands};
+        if (g.severity != slice::Severity::low) {
+            findings.push_back(finding);
+            continue;
+        }
+        const int count = g.islands + (grain ? grain->count : 0);
+        if (!grain || finding.area_mm2 > grain->area_mm2) grain = finding;
+        grain->count = count;
+    }
+    findings = worst(std::move(findings));
+    if (grain) findings.push_back(*grain);
+    return findings;
+}
+
+/// A large cavity tears the part off, or keeps resin that never cures.
+Finding cavity_finding(const slice::Cavity& c, double pixel_mm2) {
+    constexpr double large_mm3 = 1;
+    const double volume_mm3 = static_cast<double>(c.volume) / 1000 * pixel_mm2;
+    return {c.end == slice::Cavity::End::closed ? "trap" : "cup",
+            c.first_layer,
+            c.last_layer,
+            c.row,
+            c.column,
+            0,
+            volume_mm3,
+            {},
+            slice::severity_name(volume_mm3 >= large_mm3 ? slice::Severity::high : slice::Severity::medium),
+            1};
 }
 
 /// A part of a layer image as pixels.
@@ -70,24 +118,21 @@ private:
 std::vector<Finding> listed(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                             const slice::Raster& raster) {
     const double pixel_mm2 = raster.pixel_um * raster.pixel_um / 1e6;
-    std::vector<Finding> islands, cavities, spots;
-    for (const slice::Island& i : findings.islands)
-        islands.push_back(
-            {"island", i.layer, i.layer, i.row, i.column, static_cast<double>(i.pixels) * pixel_mm2, 0, {}});
-    for (const slice::Cavity& c : findings.cavities)
-        cavities.push_back({c.end == slice::Cavity::End::closed ? "trap" : "cup",
-                            c.first_layer,
-                            c.last_layer,
-                            c.row,
-                            c.column,
-                            0,
-                            static_cast<double>(c.volume) / 1000 * pixel_mm2,
-                            {}});
+    std::vector<Finding> all = island_findings(findings.groups, pixel_mm2), cavities, spots;
+    for (const slice::Cavity& c : findings.cavities) cavities.push_back(cavity_finding(c, pixel_mm2));
     for (const slice::ThinSpot& t : thin)
-        spots.push_back({"thin", t.layer, t.layer, t.row, t.column, static_cast<double>(t.pixels) * pixel_mm2, 0, {}});
-    std::vector<Finding> all = largest(std::move(islands));
+        spots.push_back({"thin",
+                         t.layer,
+                         t.layer,
+                         t.row,
+                         t.column,
+                         static_cast<double>(t.pixels) * pixel_mm2,
+                         0,
+                         {},
+                         slice::severity_name(slice::Severity::medium),
+                         1});
     for (auto* kind : {&cavities, &spots}) {
-        const std::vector<Finding> most = largest(std::move(*kind));
+        const std::vector<Finding> most = worst(std::move(*kind));
         all.insert(all.end(), most.begin(), most.end());
     }
     return all;

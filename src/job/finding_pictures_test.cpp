@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "job/manifest.hpp"
 #include "job/png.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
@@ -45,4 +46,43 @@ TEST_CASE("an island is listed, and white in its picture") {
     CHECK(image->at(120, 126) == 0);
     CHECK(image->at(120, 120 - 35) == 150);
     CHECK(std::count(image->pixels.begin(), image->pixels.end(), 255) == 24);
+}
+
+TEST_CASE("the grain of the raster is one finding, after those that matter") {
+    slice::Findings found;
+    const auto group = [](slice::Severity severity, int islands, std::int64_t pixels, int layer) {
+        slice::IslandGroup g;
+        g.islands = islands;
+        g.first_layer = layer;
+        g.last_layer = layer + 1;
+        g.held_layer = layer + 2;
+        g.largest = {layer, 10, 20, pixels};
+        g.most_pixels = g.voxels = pixels;
+        g.severity = severity;
+        return g;
+    };
+    for (int i = 0; i < 1453; ++i) found.groups.push_back(group(slice::Severity::low, 1, 1 + i % 3, i));
+    found.groups.push_back(group(slice::Severity::medium, 2, 900, 40));
+    for (int i = 0; i < 30; ++i) found.groups.push_back(group(slice::Severity::high, 3, 20 + i, 50));
+    const std::vector<Finding> findings = listed(found, {}, raster);
+    REQUIRE(findings.size() == most_findings + 1);
+    CHECK(findings[0].severity == "high");
+    CHECK(findings[0].count == 3);
+    CHECK(findings[0].area_mm2 == doctest::Approx(0.49));
+    CHECK(findings[0].last_layer == 51);
+    CHECK(findings[most_findings - 1].severity == "high");
+    const Finding& grain = findings.back();
+    CHECK(grain.severity == "low");
+    CHECK(grain.count == 1453);
+    CHECK(grain.area_mm2 == doctest::Approx(0.03));
+
+    Manifest m;
+    m.width_px = m.height_px = 100;
+    m.pixel_um = 100;
+    for (int k = 0; k < 2000; ++k) m.layers.push_back({50 * (k + 1), 50, {}});
+    m.findings = findings;
+    const auto read = manifest_from_json(to_json(m), "manifest");
+    REQUIRE_MESSAGE(read.has_value(), (read ? "" : read.error().message));
+    CHECK(read->findings.back().count == 1453);
+    CHECK(read->findings[0].severity == "high");
 }

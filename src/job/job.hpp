@@ -24,14 +24,21 @@ inline constexpr const char* mask_entry = "mask.png";
 
 using Image = slice::Image;
 
+/// A material as drawn that is printed with others as one.
+struct MaterialPart {
+    std::string name;
+    double model_volume_mm3 = 0, model_area_mm2 = 0;
+};
+
 struct Material {
     std::string name;   ///< as in the robot file; unique
     std::string resin;  ///< what a printer's vat is filled with
     double model_volume_mm3 =
         0;  ///< of the bodies as drawn, less overlaps that others keep, for the comparison after the print
-    double model_area_mm2 = 0;     ///< of their surface: one pixel layer around it is the error a raster may make
-    double exposure_s = 0;         ///< of a normal layer
-    double bottom_exposure_s = 0;  ///< of the first `bottom_layers`
+    double model_area_mm2 = 0;          ///< of their surface: one pixel layer around it is the error a raster may make
+    double exposure_s = 0;              ///< of a normal layer
+    double bottom_exposure_s = 0;       ///< of the first `bottom_layers`
+    std::vector<MaterialPart> parts{};  ///< two or more as drawn, of one resin and lit alike; empty: it is one
 };
 
 /// One image that is not blank.
@@ -57,6 +64,8 @@ struct Finding {
     double area_mm2 = 0;      ///< of an island or a thin feature in `first_layer`
     double volume_mm3 = 0;    ///< of a trap or a cup
     std::string picture;      ///< PNG inside the archive; "": none
+    std::string severity;     ///< "high", "medium" or "low"; "": not said
+    int count = 1;            ///< islands that it stands for: those that grow together, or all of low severity
 };
 
 struct Manifest {

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "job/finding_pictures.hpp"
+#include "job/printed_together.hpp"
 #include "job/thumbnail.hpp"
 #include "slice/inspect.hpp"
 #include "slice/thin.hpp"
@@ -21,13 +22,15 @@ struct Prepared {
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
     slice::LayerShape shape;
     std::vector<slice::ThinSpot> thin;
-    std::vector<Thumbnail::Spot> seen;  ///< in the thumbnail
+    std::vector<Thumbnail::Spot> seen;       ///< in the thumbnail
+    std::map<int, std::int64_t> drawn_sums;  ///< of pixel values, by drawn material
 };
 
-/// Where layers come from. `layer` is called from any thread; layers in [0, count).
+/// Where layers come from, with an image per drawn material. `layer` is called from any thread; layers in [0, count).
 struct LayerSource {
     int count = 0;
     std::function<Result<slice::SlicedLayer>(int)> layer;
+    std::vector<int> printed_as;  ///< (drawn materials), index into the job's
     bool parallel = true;
 };
 
@@ -35,7 +38,9 @@ Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& set
                                int k) {
     auto sliced = source.layer(k);
     if (!sliced) return tl::unexpected(sliced.error());
-    Prepared prepared{std::move(*sliced), {}, {}, {}, {}};
+    Prepared prepared{std::move(*sliced), {}, {}, {}, {}, {}};
+    for (const slice::MaterialImage& m : prepared.sliced.images) prepared.drawn_sums[m.material] = m.value_sum;
+    put_together(prepared.sliced, source.printed_as);
     prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
     prepared.thin = thin_spots(prepared.sliced, k, settings.least_feature_um, settings.slicing.raster);
     prepared.seen = thumbnail.row(prepared.sliced);
@@ -57,22 +62,29 @@ Result<std::vector<Material>> used_materials(const slice::Slicer& slicer, const 
     return used;
 }
 
+/// Adds to a material, and to the part of it that was drawn under this name.
+void add_drawn(const std::string& name, double volume_mm3, double area_mm2, std::vector<Material>& materials) {
+    for (Material& m : materials) {
+        const auto part =
+            std::find_if(m.parts.begin(), m.parts.end(), [&](const MaterialPart& p) { return p.name == name; });
+        if (m.parts.empty() ? m.name != name : part == m.parts.end()) continue;
+        m.model_volume_mm3 += volume_mm3;
+        m.model_area_mm2 += area_mm2;
+        if (part == m.parts.end()) continue;
+        part->model_volume_mm3 += volume_mm3;
+        part->model_area_mm2 += area_mm2;
+    }
+}
+
 /// What was drawn of each material: volumes less what other bodies keep, those of a blend as it was dealt out.
 void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, const slice::Summary& summary,
              std::vector<Material>& materials) {
-    const auto add = [&](const std::string& name, double volume_mm3, double area_mm2) {
-        for (Material& m : materials) {
-            if (m.name != name) continue;
-            m.model_volume_mm3 += volume_mm3;
-            m.model_area_mm2 += area_mm2;
-        }
-    };
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const slice::Measures& drawn = slicer.measures()[b];
         const double volume_mm3 = std::max(0.0, drawn.volume_mm3 - summary.lost_mm3[b] - summary.doubled_mm3[b]);
         const double second = summary.second_share[b];
-        add(bodies[b].material, volume_mm3 * (1 - second), drawn.area_mm2);
-        if (bodies[b].blend) add(bodies[b].blend->second, volume_mm3 * second, drawn.area_mm2);
+        add_drawn(bodies[b].material, volume_mm3 * (1 - second), drawn.area_mm2, materials);
+        if (bodies[b].blend) add_drawn(bodies[b].blend->second, volume_mm3 * second, drawn.area_mm2, materials);
     }
 }
 
@@ -91,7 +103,7 @@ std::vector<std::string> file_words(const std::vector<Material>& materials) {
 
 /// What an image is lit for, where that is not what its material says of all layers; else 0.
 double own_exposure_s(const JobSettings& settings, const Material& material, int k, int thickness_um) {
-    const auto rule = settings.exposures.find(material.name);
+    const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
     if (rule == settings.exposures.end()) return 0;
     const double seconds = exposure_s(material, rule->second, k, thickness_um);
     const double usual = k < settings.bottom_layers ? material.bottom_exposure_s : material.exposure_s;
@@ -305,14 +317,16 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
                              Progress& progress) {
     const auto slicer = slice::Slicer::prepare(bodies, settings.slicing);
     if (!slicer) return tl::unexpected(slicer.error());
-    auto materials = used_materials(*slicer, settings.materials);
+    const auto materials = used_materials(*slicer, settings.materials);
     if (!materials) return tl::unexpected(materials.error());
-    MadeJob job{empty_manifest(settings, std::move(*materials)), {}};
+    PrintedTogether printed = printed_together(*materials, settings);
+    MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
     slice::Tally tally(*slicer);
     slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
     const LayerSource source{slicer->layer_count(),
-                             [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); }};
+                             [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); },
+                             std::move(printed.printed_as)};
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
         tally.add(k, prepared.sliced);
         inspector.add(std::move(prepared.shape));
@@ -330,7 +344,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
 Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSettings& settings, Writer& writer,
                               Progress& progress) {
     std::vector<Material> materials;
-    LayerSource source{0, {}, false};
+    LayerSource source{0, {}, {}, false};
     for (const MaterialStack& s : stacks) {
         const auto known = std::find_if(settings.materials.begin(), settings.materials.end(),
                                         [&](const Material& m) { return m.name == s.material; });
@@ -344,7 +358,9 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
         source.count = std::max(source.count, s.stack.layer_count());
     }
     source.layer = [&](int k) { return stacked_layer(stacks, k); };
-    MadeJob job{empty_manifest(settings, std::move(materials)), {}};
+    PrintedTogether printed = printed_together(materials, settings);
+    source.printed_as = std::move(printed.printed_as);
+    MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
     slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
     std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
@@ -352,13 +368,13 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
         inspector.add(std::move(prepared.shape));
         thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
         for (std::size_t i = 0; i < lost_px.size(); ++i) lost_px[i] += prepared.sliced.lost_px[i];
-        for (const auto& m : prepared.sliced.images) lit[m.material] += static_cast<double>(m.value_sum) / 255;
+        for (const auto& [drawn, sum] : prepared.drawn_sums) lit[drawn] += static_cast<double>(sum) / 255;
     });
     if (!made) return tl::unexpected(made.error());
     const double pixel_um = settings.slicing.raster.pixel_um;
     const double voxel_mm3 = pixel_um * pixel_um * settings.slicing.layer_um / 1e9;
     for (std::size_t i = 0; i < stacks.size(); ++i) {
-        job.manifest.materials[i].model_volume_mm3 = lit[i] * voxel_mm3;
+        add_drawn(stacks[i].material, lit[i] * voxel_mm3, 0, job.manifest.materials);
         if (lost_px[i] * voxel_mm3 > voxel_mm3)
             job.manifest.warnings.push_back(
                 fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, "

@@ -25,6 +25,12 @@ Status check_material(const Material& m, std::size_t i, std::string_view where) 
     for (const auto& [key, value] : amounts) {
         if (!is_amount(value)) return input_error("{}: materials[{}].{}: {} must be 0 or more", where, i, key, value);
     }
+    for (std::size_t p = 0; p < m.parts.size(); ++p) {
+        const MaterialPart& part = m.parts[p];
+        if (part.name.empty() || !is_amount(part.model_volume_mm3) || !is_amount(part.model_area_mm2))
+            return input_error("{}: materials[{}].parts[{}]: needs a name, a volume and an area of 0 or more", where, i,
+                               p);
+    }
     return {};
 }
 
@@ -96,6 +102,7 @@ Status check_findings(const Manifest& m, std::string_view where) {
             return input_error("{}: findings[{}]: row {}, column {} lies outside the image", where, i, f.row, f.column);
         if (!is_amount(f.area_mm2) || !is_amount(f.volume_mm3))
             return input_error("{}: findings[{}]: its area and volume must be 0 or more", where, i);
+        if (f.count < 1) return input_error("{}: findings[{}].count: {} must be 1 or more", where, i, f.count);
         if (!f.picture.empty() && !is_safe_entry_name(f.picture))
             return input_error("{}: findings[{}].picture: '{}' must be a plain relative path inside the archive", where,
                                i, f.picture);

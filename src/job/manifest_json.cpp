@@ -93,12 +93,18 @@ private:
 
 Material read_material(const json& object, const std::string& path, std::string& problem) {
     Fields f(object, path + ".", problem);
-    return {f.text("name"),
-            f.text("resin"),
-            f.number("model_volume_mm3"),
-            f.number("model_area_mm2"),
-            f.number("exposure_s"),
-            f.number("bottom_exposure_s")};
+    Material material{f.text("name"),
+                      f.text("resin"),
+                      f.number("model_volume_mm3"),
+                      f.number("model_area_mm2"),
+                      f.number("exposure_s"),
+                      f.number("bottom_exposure_s")};
+    if (!f.has("parts")) return material;
+    f.each("parts", [&](const json& entry, const std::string& entry_path) {
+        Fields part(entry, entry_path + ".", problem);
+        material.parts.push_back({part.text("name"), part.number("model_volume_mm3"), part.number("model_area_mm2")});
+    });
+    return material;
 }
 
 Layer read_layer(const json& object, const std::string& path, std::string& problem) {
@@ -114,9 +120,19 @@ Layer read_layer(const json& object, const std::string& path, std::string& probl
 
 Finding read_finding(const json& object, const std::string& path, std::string& problem) {
     Fields f(object, path + ".", problem);
-    Finding finding{f.text("kind"),      f.integer("first_layer"),     f.integer("last_layer"),        f.integer("row"),
-                    f.integer("column"), f.number_or_zero("area_mm2"), f.number_or_zero("volume_mm3"), {}};
+    Finding finding{f.text("kind"),
+                    f.integer("first_layer"),
+                    f.integer("last_layer"),
+                    f.integer("row"),
+                    f.integer("column"),
+                    f.number_or_zero("area_mm2"),
+                    f.number_or_zero("volume_mm3"),
+                    {},
+                    {},
+                    1};
     if (f.has("picture")) finding.picture = f.text("picture");
+    if (f.has("severity")) finding.severity = f.text("severity");
+    if (f.has("count")) finding.count = f.integer("count");
     return finding;
 }
 
@@ -171,6 +187,20 @@ Result<json> parse(std::string_view text, std::string_view where) {
     }
 }
 
+Ordered material_json(const Material& material) {
+    Ordered entry{{"name", material.name},
+                  {"resin", material.resin},
+                  {"model_volume_mm3", material.model_volume_mm3},
+                  {"model_area_mm2", material.model_area_mm2},
+                  {"exposure_s", material.exposure_s},
+                  {"bottom_exposure_s", material.bottom_exposure_s}};
+    for (const MaterialPart& part : material.parts)
+        entry["parts"].push_back({{"name", part.name},
+                                  {"model_volume_mm3", part.model_volume_mm3},
+                                  {"model_area_mm2", part.model_area_mm2}});
+    return entry;
+}
+
 Ordered layer_json(const Layer& layer) {
     Ordered images = Ordered::array();
     for (const LayerImage& i : layer.images) {
@@ -191,6 +221,8 @@ Ordered finding_json(const Finding& f) {
     if (f.area_mm2 > 0) entry["area_mm2"] = f.area_mm2;
     if (f.volume_mm3 > 0) entry["volume_mm3"] = f.volume_mm3;
     if (!f.picture.empty()) entry["picture"] = f.picture;
+    if (!f.severity.empty()) entry["severity"] = f.severity;
+    if (f.count != 1) entry["count"] = f.count;
     return entry;
 }
 
@@ -205,13 +237,7 @@ std::string to_json(const Manifest& m) {
                  {"pixel_um", m.pixel_um},
                  {"bottom_layers", m.bottom_layers}};
     Ordered& materials = root["materials"] = Ordered::array();
-    for (const Material& material : m.materials)
-        materials.push_back({{"name", material.name},
-                             {"resin", material.resin},
-                             {"model_volume_mm3", material.model_volume_mm3},
-                             {"model_area_mm2", material.model_area_mm2},
-                             {"exposure_s", material.exposure_s},
-                             {"bottom_exposure_s", material.bottom_exposure_s}});
+    for (const Material& material : m.materials) materials.push_back(material_json(material));
     root["warnings"] = m.warnings;
     if (m.compensated) root["compensated"] = true;
     if (m.any_vat) root["any_vat"] = true;
