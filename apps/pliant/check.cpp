@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "command.hpp"
 #include "core/config.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "job/job.hpp"
 #include "machine/board_report.hpp"
 #include "machine/printer.hpp"
@@ -36,7 +38,7 @@ struct Options {
 
 /// A robot is checked as far as a mesh of it: overlaps, cables outside, supports that catch nothing show only then.
 Result<std::string> check_robot(const std::string& file, Progress& progress) {
-    const Result<robot::Robot> robot = robot::load_robot(file);
+    const Result<robot::Robot> robot = read_robot(file, {});
     if (!robot) return tl::unexpected(robot.error());
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, progress);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -51,7 +53,7 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
 }
 
 Result<std::string> check_printer(const std::string& file) {
-    const Result<machine::Printer> printer = machine::load_printer(file);
+    const Result<machine::Printer> printer = read_printer(file);
     if (!printer) return tl::unexpected(printer.error());
     return fmt::format("printer \"{}\": {} places, {} vats, {} x {} px", printer->name, printer->slot_count(),
                        printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
@@ -67,15 +69,21 @@ Result<std::string> check_toml(const std::string& file, Progress& progress) {
     return check_robot(file, progress);
 }
 
-Result<std::string> check_job(const std::string& file) {
-    const Result<operate::ProvedJob> job = operate::prove_job(file, operate::Pixels::areas);
+Result<std::string> check_job(const std::string& file, const Options& options) {
+    std::optional<machine::Printer> other;
+    if (!options.printer.empty()) {
+        Result<machine::Printer> printer = read_printer(options.printer);
+        if (!printer) return tl::unexpected(printer.error());
+        other = std::move(*printer);
+    }
+    const Result<operate::ProvedJob> job = prove_job(file, operate::Pixels::areas, other ? &*other : nullptr);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
     std::size_t images = 0;
     for (const job::Layer& layer : manifest.layers) images += layer.images.size();
-    std::string text =
-        fmt::format("job \"{}\": {} layers, {} images, {} materials; its G-code prints what the manifest says",
-                    manifest.name, manifest.layers.size(), images, manifest.materials.size());
+    std::string text = fmt::format(
+        "job \"{}\": {} layers, {} images, {} materials; its G-code prints what the manifest says{}", manifest.name,
+        manifest.layers.size(), images, manifest.materials.size(), other ? " on the " + other->name : "");
     for (const std::string& warning : job->warnings) text += "\n  warning: " + warning;
     return text;
 }
@@ -97,7 +105,7 @@ Result<std::string> check_3mf(const std::string& file) {
 /// G-code from anywhere, against the machine that is to run it.
 Result<std::string> check_program(const std::string& file, const Options& options) {
     if (options.printer.empty()) return input_error("{}: give --printer, the machine that is to run it", file);
-    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     const Result<std::string> text = read_file(file, std::uintmax_t{1} << 30);
     if (!text) return tl::unexpected(text.error());
@@ -126,7 +134,7 @@ Result<std::string> check_firmware(const std::string& where, const Result<std::s
 Result<std::string> check_boards(const std::string& file, const Options& options) {
     if (options.printer.empty())
         return input_error("--firmware: give --printer, the machine that the board is to drive");
-    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     if (file == options.port) return check_firmware(file, ask_board(file, printer->controller.baud_rate), *printer);
     return check_firmware(file, read_file(file, 1 << 20), *printer);
@@ -136,7 +144,7 @@ Result<std::string> check(const std::string& file, const Options& options, Progr
     if (options.firmware) return check_boards(file, options);
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
-    if (extension == ".zip") return check_job(file);
+    if (extension == ".zip") return check_job(file, options);
     if (extension == ".3mf") return check_3mf(file);
     if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
     return mesh::describe_mesh_file(file);
@@ -151,17 +159,19 @@ void add_check(CLI::App& app, int& status) {
     command->add_flag("--firmware", options->firmware,
                       "ask the board at --port what it was built with; files: answers to M115, M503, M119, M113");
     command->add_option("--port", options->port, "serial port of the board, such as /dev/ttyACM0");
-    command->add_option("--printer", options->printer, "machine that G-code files are checked against");
+    command->add_option("--printer", options->printer,
+                        "machine that G-code files, and jobs instead of against their own, are checked against");
     command->add_option("--cancel-after", options->cancel_after,
                         "line of a G-code program after which to end it: prints what would do so safely");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {
-        const auto progress = terminal_progress(options->output);
         if (!options->port.empty() && options->firmware) options->files.push_back(options->port);
         if (options->files.empty()) status = report({Cause::input, "give files to check, or --firmware with --port"});
         for (const std::string& file : options->files) {
+            auto progress = terminal_progress(options->output);
             const Result<std::string> text = check(file, *options, *progress);
+            progress.reset();
             if (!text)
                 status = report(text.error());
             else if (!options->output.quiet)

@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "machine/printer.hpp"
 #include "report/printers_page.hpp"
 
@@ -21,7 +22,7 @@ struct Options {
 Status compare(const Options& options) {
     std::vector<machine::Printer> printers;
     for (const std::string& file : options.files) {
-        Result<machine::Printer> printer = machine::load_printer(file);
+        Result<machine::Printer> printer = read_printer(file);
         if (!printer) return tl::unexpected(printer.error());
         printers.push_back(std::move(*printer));
     }

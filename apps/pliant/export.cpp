@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "command.hpp"
+#include "inputs.hpp"
 
 namespace pliant::app {
 namespace {
@@ -16,7 +17,7 @@ struct Options {
 Status run(const Options& options) {
     const Result<job::Format> format = job::format_from(options.format);
     if (!format) return input_error("--as: {}", format.error().message);
-    const Result<job::Archive> archive = job::Archive::open(options.job);
+    const Result<job::Archive> archive = read_archive(options.job);
     if (!archive) return tl::unexpected(archive.error());
     const auto written = job::export_job(*archive, *format, options.folder);
     if (!written) return tl::unexpected(written.error());

@@ -9,6 +9,7 @@
 #include "core/files.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
+#include "inputs.hpp"
 
 namespace pliant::app {
 namespace {
@@ -18,7 +19,7 @@ struct Options {
 };
 
 Status run_firmware(const Options& options) {
-    Result<machine::Printer> printer = machine::load_printer(options.printer);
+    Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     if (!options.release.empty()) {
         const auto release = machine::marlin_release(options.release);

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,43 @@ int refuse(const CLI::App& app, const std::string& word) {
     fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", word.starts_with('-') ? "option" : "command", word,
                nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
     return pliant::app::exit_bad_input;
+}
+
+/// The command that was given, or the one below it, as in `calibrate tensile`.
+const CLI::App* given_command(const CLI::App& app) {
+    const CLI::App* command = &app;
+    for (auto below = app.get_subcommands(); !below.empty(); below = command->get_subcommands())
+        command = below.front();
+    return command;
+}
+
+/// An option that the command does not have: says which was meant. "": there is none such.
+std::string unknown_option(const CLI::App& command) {
+    const std::vector<std::string> left = command.remaining();
+    const auto found = std::find_if(left.begin(), left.end(),
+                                    [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    if (found == left.end()) return "";
+    const std::string word = found->substr(0, found->find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::string nearest = pliant::nearest_name(word, names);
+    return fmt::format("pliant {}: there is no option \"{}\"; {}", command.get_name(), word,
+                       nearest.empty() ? fmt::format("pliant {} --help lists them", command.get_name())
+                                       : "did you mean \"" + nearest + "\"?");
+}
+
+/// `pliant help` and `pliant version` are what people type; `pliant help slice` is `pliant slice --help`.
+std::vector<std::string> arguments(int argc, char** argv) {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (!words.empty() && words[0] == "version") words[0] = "--version";
+    if (!words.empty() && words[0] == "help") {
+        words.erase(words.begin());
+        words.emplace_back("--help");
+    }
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    return words;
 }
 
 }  // namespace
@@ -44,8 +82,14 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
           add_compare_printers, add_check, add_materials, add_calibrate, add_studio})
         add(app, status);
     try {
-        app.parse(argc, argv);
+        app.parse(arguments(argc, argv));
     } catch (const CLI::ParseError& error) {
+        const CLI::App& command = *given_command(app);
+        if (const std::string text = &command == &app ? "" : unknown_option(command);
+            error.get_exit_code() != 0 && !text.empty()) {
+            fmt::print(stderr, "{}\n", text);
+            return exit_bad_input;
+        }
         if (app.get_subcommands().empty() && !app.remaining().empty()) return refuse(app, app.remaining().front());
         return app.exit(error) == 0 ? exit_done : exit_bad_input;
     }

@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "core/units.hpp"
+#include "inputs.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_writer.hpp"
@@ -40,7 +41,7 @@ bool is_robot_file(const std::string& file) {
 Result<robot::Robot> load(const Options& options) {
     if (!options.from_unit.empty() || !options.to_unit.empty())
         return input_error("--from and --to are for mesh files; a robot's mesh is written in its length_unit");
-    return robot::load_robot(options.files.front(), options.assignments);
+    return read_robot(options.files.front(), options.assignments);
 }
 
 /// A robot is more than its mesh: as .inp it becomes a deck that CalculiX can run.
@@ -97,12 +98,13 @@ Status tell(const Options& options, const mesh::TetMesh& mesh) {
 }
 
 Status build(const Options& options) {
-    const auto progress = terminal_progress(options.output);
+    auto progress = terminal_progress(options.output);
     const Result<robot::Robot> robot = load(options);
     if (!robot) return tl::unexpected(robot.error());
     const Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
     if (!mesh) return tl::unexpected(mesh.error());
     if (Status status = write_robot(options, *robot, *mesh); !status) return status;
+    progress.reset();
     return tell(options, mesh::scaled(*mesh, 1 / robot->unit_m));
 }
 

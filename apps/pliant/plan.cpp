@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "operate/job_file.hpp"
 #include "overcure.hpp"
 #include "plan/timeline.hpp"
@@ -22,10 +23,11 @@ struct Options {
 };
 
 Status make_plan(const Options& options) {
-    Result<operate::OpenJob> job = operate::open_job(options.job);
+    if (Status named = check_ending("-o", options.picture_file, "a picture", ".png"); !named) return named;
+    Result<operate::OpenJob> job = read_job(options.job);
     if (!job) return tl::unexpected(job.error());
     if (!options.printer.empty()) {
-        Result<machine::Printer> other = machine::load_printer(options.printer);
+        Result<machine::Printer> other = read_printer(options.printer);
         if (!other) return tl::unexpected(other.error());
         job->printer = std::move(*other);
     }

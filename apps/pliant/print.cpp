@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "host/serial.hpp"
+#include "inputs.hpp"
 #include "operate/job_file.hpp"
 #include "operate/programs.hpp"
 #include "operate/proved_job.hpp"
@@ -69,8 +70,8 @@ Result<int> report_on_journal(const LiveOptions& live) {
 }
 
 Result<int> print_on_twin(const Options& options) {
-    const auto progress = terminal_progress(options.live.output);
-    const Result<operate::ProvedJob> job = operate::prove_job(options.live.job);
+    auto progress = terminal_progress(options.live.output);
+    const Result<operate::ProvedJob> job = prove_job(options.live.job);
     if (!job) return tl::unexpected(job.error());
     const job::Manifest& manifest = job->archive.manifest();
     show_vats(job->plan, job->warnings, options.live.output);
@@ -113,6 +114,7 @@ Result<int> print_on_twin(const Options& options) {
         if (!page) return tl::unexpected(page.error());
         if (Status written = write_file(options.live.report, *page); !written) return tl::unexpected(written.error());
     }
+    progress.reset();
     if (options.live.output.json)
         fmt::print("{}\n", json);
     else if (!options.live.output.quiet)

@@ -12,6 +12,7 @@
 #include "core/files.hpp"
 #include "host/projector.hpp"
 #include "host/test_patterns.hpp"
+#include "inputs.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
 
@@ -38,7 +39,7 @@ struct Setting {
 Result<Setting> read_setting(const Options& options) {
     Setting setting;
     if (!options.printer.empty()) {
-        Result<machine::Printer> printer = machine::load_printer(options.printer);
+        Result<machine::Printer> printer = read_printer(options.printer);
         if (!printer) return tl::unexpected(printer.error());
         setting.printer = std::move(*printer);
         const machine::Projector& p = setting.printer->projector;

@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "compare_solvers.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "report/results.hpp"
 #include "report/summary.hpp"
 #include "robot/build.hpp"
@@ -128,8 +129,8 @@ Result<int> simulate(const Options& options) {
     std::vector<std::string> assignments = options.assignments;
     if (solvers->size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers->front())));
     if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
-    const auto progress = terminal_progress(options.output);
-    Result<robot::Robot> robot = robot::load_robot(options.robot, assignments);
+    auto progress = terminal_progress(options.output);
+    Result<robot::Robot> robot = read_robot(options.robot, assignments);
     if (!robot) return tl::unexpected(robot.error());
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -144,6 +145,7 @@ Result<int> simulate(const Options& options) {
         });
         if (!written) return tl::unexpected(written.error());
     }
+    progress.reset();
     if (options.output.json)
         fmt::print("{}\n", report::summary_json(simulation));
     else if (!options.output.quiet)

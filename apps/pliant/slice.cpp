@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "command.hpp"
+#include "core/counted.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "job/png.hpp"
 #include "operate/job_file.hpp"
 #include "overcure.hpp"
@@ -32,18 +34,29 @@ std::string heights_text(const job::Manifest& manifest) {
     return least == most ? fmt::format("{} um", least) : fmt::format("{} to {} um", least, most);
 }
 
+/// What was drawn of each material that is printed with others, as in ", exposed together: a 12.0, b 3.0 mm^3".
+std::string parts_text(const job::Material& material) {
+    std::string text;
+    for (const job::MaterialPart& part : material.parts)
+        text +=
+            fmt::format("{} {} {:.1f}", text.empty() ? ", exposed together:" : ",", part.name, part.model_volume_mm3);
+    return text.empty() ? text : text + " mm^3";
+}
+
 void print_summary(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
                    const std::vector<std::string>& notes) {
     if (options.output.quiet) return;
     fmt::print("{}: {} layers of {}, {} x {} px of {:.6g} um\n", options.job, manifest.layers.size(),
                heights_text(manifest), manifest.width_px, manifest.height_px, manifest.pixel_um);
     for (const job::Material& material : manifest.materials) {
-        fmt::print("material {}: resin {}, {:.1f} mm^3\n", material.name, material.resin, material.model_volume_mm3);
+        fmt::print("material {}: resin {}, {:.1f} mm^3{}\n", material.name, material.resin, material.model_volume_mm3,
+                   parts_text(material));
     }
     for (const std::string& note : notes) fmt::print("{}\n", note);
     for (const std::string& warning : plan.warnings) fmt::print("warning: {}\n", warning);
     for (const std::string& warning : manifest.warnings) fmt::print("warning: {}\n", warning);
-    fmt::print("{} swaps, {} in all\n", plan.swaps, plan::clock_text(plan.seconds.total));
+    fmt::print("{}, {} in all\n", counted(static_cast<std::size_t>(plan.swaps), "swap"),
+               plan::clock_text(plan.seconds.total));
 }
 
 Status draw_picture(const SliceOptions& options) {
@@ -64,21 +77,26 @@ Status add_overcure(const std::string& file, const machine::Printer& printer, pl
     return {};
 }
 
-Result<prepare::PrinterFile> read_printer(const std::string& file) {
-    Result<machine::Printer> printer = machine::load_printer(file);
-    if (!printer) return tl::unexpected(printer.error());
-    Result<std::string> text = read_file(file);
-    if (!text) return tl::unexpected(text.error());
-    Result<std::optional<job::Image>> mask = operate::load_mask(printer->projector, file);
+Result<prepare::PrinterFile> with_mask(const std::string& file) {
+    Result<PrinterText> read = app::read_printer_file(file);
+    if (!read) return tl::unexpected(read.error());
+    Result<std::optional<job::Image>> mask = operate::load_mask(read->printer.projector, file);
     if (!mask) return tl::unexpected(mask.error());
-    return prepare::PrinterFile{std::move(*printer), std::move(*text), std::move(*mask)};
+    return prepare::PrinterFile{std::move(read->printer), std::move(read->text), std::move(*mask)};
 }
 
 Status slice(const SliceOptions& options) {
-    const auto progress = terminal_progress(options.output);
-    const Result<prepare::PrinterFile> printer = read_printer(options.printer);
+    Status named = check_ending("-o", options.job, "a job", ".zip");
+    if (named) named = check_ending("--picture", options.picture, "a picture", ".png");
+    if (!named) return named;
+    auto progress = terminal_progress(options.output);
+    const Result<prepare::PrinterFile> printer = with_mask(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     const prepare::Order& order = options.order;
+    for (const std::string& input : order.inputs) {
+        if (!input.ends_with(".toml")) continue;
+        if (Status status = expect(FileKind::robot, input); !status) return status;
+    }
     Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
     auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
@@ -87,6 +105,7 @@ Status slice(const SliceOptions& options) {
     if (!options.output.quiet) status = add_overcure(options.job, printer->printer, made->plan);
     if (!status) return status;
     if (!options.picture.empty()) status = draw_picture(options);
+    progress.reset();
     if (status) print_summary(options, made->manifest, made->plan, made->notes);
     return status;
 }

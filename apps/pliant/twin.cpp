@@ -11,6 +11,7 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
+#include "inputs.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
 #include "operate/clock_file.hpp"
@@ -104,7 +105,7 @@ void print_end(twin::Twin& twin) {
 Status run_twin(const Options& options) {
     if (!(options.speed > 0 && options.speed <= 1e6))
         return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
-    const Result<machine::Printer> printer = machine::load_printer(options.printer);
+    const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     Result<twin::Options> wanted = twin_options(options);
     if (!wanted) return tl::unexpected(wanted.error());

@@ -305,7 +305,8 @@ Projector read_projector(Reader r) {
     Projector p;
     p.width_px = whole(r, "width", 1, 32768);
     p.height_px = whole(r, "height", 1, 32768);
-    p.pixel_um = positive(r, "pixel", Dimension::length, 1e6);
+    constexpr double parts = 1e6;  // of a micrometre; what is left beyond is the rounding of "100 um" to metres
+    p.pixel_um = std::round(parts * positive(r, "pixel", Dimension::length, 1e6)) / parts;
     p.mirror_x = r.boolean("mirror_x", false);
     p.mirror_y = r.boolean("mirror_y", false);
     read_alignment(r, p);

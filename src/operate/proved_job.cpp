@@ -25,7 +25,7 @@ Status check_pixels(const OpenJob& job, const std::string& path) {
 
 }  // namespace
 
-Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels) {
+Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels, const machine::Printer* other) {
     const std::string where = path.string();
     Result<OpenJob> open = open_job(path);
     if (!open) return tl::unexpected(open.error());
@@ -33,6 +33,7 @@ Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels) {
     const bool sealed = !manifest.sha256.empty();
     if (Status status = check_fingerprints(open->archive); !status) return tl::unexpected(status.error());
     if (const auto mask = mask_of(open->archive, open->printer.projector); !mask) return tl::unexpected(mask.error());
+    if (other != nullptr) open->printer = *other;
     Result<std::string> gcode = open->archive.file("job.gcode");
     if (!gcode) return tl::unexpected(gcode.error());
     Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
@@ -46,8 +47,7 @@ Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels) {
     if (!sealed)
         proved.warnings.push_back(
             "the job has no fingerprints (format 1, of an older Pliant): that nobody has changed it since it was "
-            "sliced "
-            "cannot be proved; slice it again");
+            "sliced cannot be proved; slice it again");
     return proved;
 }
 

@@ -14,7 +14,7 @@ namespace pliant::operate {
 
 struct ProvedJob {
     job::Archive archive;
-    machine::Printer printer;  ///< from the job's own printer.toml
+    machine::Printer printer;  ///< from the job's own printer.toml, or the other one
     plan::Plan plan;
     std::string gcode;
     std::vector<std::string> warnings;  ///< what could not be proved
@@ -28,7 +28,9 @@ enum class Pixels {
 
 /// Opens a job and proves it: every entry against its fingerprint, the images as `pixels` says, the program against
 /// manifest and printer (plan::prove_program). Nothing is printed that has not come through here. Errors: one line that
-/// names file, entry or G-code line, and layer. A job of format 1 has no fingerprints: that is a warning.
-[[nodiscard]] Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels = Pixels::fingerprints);
+/// names file, entry or G-code line, and layer. A job of format 1 has no fingerprints: that is a warning. With an
+/// `other` printer the program must print the job on that one.
+[[nodiscard]] Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels = Pixels::fingerprints,
+                                          const machine::Printer* other = nullptr);
 
 }  // namespace pliant::operate

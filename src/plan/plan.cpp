@@ -20,9 +20,10 @@ Status check_projector(const job::Manifest& job, const machine::Projector& proje
     const bool same = job.width_px == projector.width_px && job.height_px == projector.height_px &&
                       std::abs(job.pixel_um - projector.pixel_um) <= 1e-6 * projector.pixel_um;
     if (same) return {};
-    return input_error("{} was sliced for {} x {} pixels of {} um, the projector has {} x {} of {} um; slice it again",
-                       job.name, job.width_px, job.height_px, job.pixel_um, projector.width_px, projector.height_px,
-                       projector.pixel_um);
+    return input_error(
+        "{} was sliced for {} x {} pixels of {:.6g} um, the projector has {} x {} of {:.6g} um; slice it again",
+        job.name, job.width_px, job.height_px, job.pixel_um, projector.width_px, projector.height_px,
+        projector.pixel_um);
 }
 
 Status check_materials(const job::Manifest& job) {

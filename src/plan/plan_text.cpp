@@ -80,8 +80,8 @@ std::string orders_text(const Plan& plan) {
     std::string text;
     for (const OrderCost& c : plan.compared) {
         const bool chosen = c.rule == plan.rule;
-        text += fmt::format("  {:<14}{:>6} swaps{:>12} of changing vats{}\n", rule_name(c.rule), c.swaps,
-                            clock_text(c.change_s), chosen ? "   (planned)" : "");
+        text += fmt::format("  {:<14}{:>6} {:<5}{:>12} of changing vats{}\n", rule_name(c.rule), c.swaps,
+                            c.swaps == 1 ? "swap" : "swaps", clock_text(c.change_s), chosen ? "   (planned)" : "");
     }
     return text;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/text.hpp"
 #include "core/units.hpp"
 #include "machine/working_curve.hpp"
 #include "plan/assign.hpp"
@@ -122,8 +123,25 @@ Result<double> seconds_of(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
+/// An exposure that is far from what the printer file gives the resin is more often a slip than a wish.
+void note_far_exposure(const std::string& option, double seconds, double usual_s, const machine::Printer& printer,
+                       const machine::Resin& resin, double layer_um, std::vector<std::string>& warnings) {
+    constexpr double far = 2;
+    if (usual_s <= 0 || (seconds * far >= usual_s && seconds <= usual_s * far)) return;
+    std::string text = fmt::format(
+        "--exposure {}: {:.4g} s is {:.3g} times the {:.4g} s that the printer file gives resin "
+        "\"{}\"",
+        option, seconds, seconds / usual_s, usual_s, resin.name);
+    if (resin.penetration_um > 0 || (resin.cure_depth_um > 0 && resin.critical_share > 0))
+        text += fmt::format(
+            "; it cures {:.3g} um deep, layers are {:.4g} um",
+            machine::working_curve(printer, resin).depth_um(machine::irradiance_W_m2(printer) * seconds), layer_um);
+    warnings.push_back(text);
+}
+
 /// MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME.
-Status set_exposure(const std::string& text, job::JobSettings& settings) {
+Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
+                    std::vector<std::string>& warnings) {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos || equals == 0)
         return input_error("--exposure {}: write MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME",
@@ -147,6 +165,12 @@ Status set_exposure(const std::string& text, job::JobSettings& settings) {
         return input_error("--exposure {}: there is no material \"{}\"", text, name);
     const Result<double> seconds = seconds_of(text, times.substr(0, comma));
     if (!seconds) return tl::unexpected(seconds.error());
+    const machine::Resin* resin = printer.find_resin(material->resin);
+    const auto note = [&](double given_s, double machine::Resin::*usual) {
+        if (resin == nullptr) return;
+        note_far_exposure(text, given_s, resin->*usual, printer, *resin, settings.slicing.layer_um, warnings);
+    };
+    note(*seconds, &machine::Resin::exposure_s);
     if (span) {
         span->seconds = *seconds;
         auto [rule, added] = settings.exposures.try_emplace(name);
@@ -159,6 +183,7 @@ Status set_exposure(const std::string& text, job::JobSettings& settings) {
     if (comma == times.size()) return {};
     const Result<double> bottom = seconds_of(text, times.substr(comma + 1));
     if (!bottom) return tl::unexpected(bottom.error());
+    note(*bottom, &machine::Resin::bottom_exposure_s);
     material->bottom_exposure_s = *bottom;
     return {};
 }
@@ -189,12 +214,28 @@ slice::Raster raster_of(const machine::Projector& p) {
     return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
 }
 
-/// The material of supports, in the resin of its name where no body has it.
-void add_support_material(const Order& order, Drawing& drawing) {
-    if (order.support.empty()) return;
+/// The material of supports, in the resin of its name, or of --resin, where no body has it.
+Status add_support_material(const Order& order, const machine::Printer& printer, Drawing& drawing) {
+    if (order.support.empty()) return {};
     const auto known = [&](const auto& pair) { return pair.first == order.support; };
     if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
         drawing.resin_of_material.emplace_back(order.support, order.support);
+    else
+        return {};
+    const auto given = [&](const std::string& choice) { return choice.starts_with(order.support + "="); };
+    if (printer.find_resin(order.support) != nullptr || std::any_of(order.resins.begin(), order.resins.end(), given))
+        return {};
+    std::vector<std::string> names;
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        if (material != order.support) names.push_back(material);
+    }
+    for (const machine::Resin& resin : printer.resins) {
+        if (std::find(names.begin(), names.end(), resin.name) == names.end()) names.push_back(resin.name);
+    }
+    return input_error(
+        "--support {0}: is neither a material of the part nor a resin of the printer ({1}); or say "
+        "--resin {0}=RESIN",
+        order.support, join_names(names));
 }
 
 /// What layer images cannot be asked for.
@@ -263,7 +304,7 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
 Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
                                       std::optional<job::Image> mask, Drawing& drawing) {
     if (Status status = check_stacks(order, drawing); !status) return tl::unexpected(status.error());
-    add_support_material(order, drawing);
+    if (Status status = add_support_material(order, printer, drawing); !status) return tl::unexpected(status.error());
     if (Status status = set_resins(order.resins, drawing); !status) return tl::unexpected(status.error());
     job::JobSettings settings;
     settings.name = drawing.name;
@@ -284,7 +325,8 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     }
     settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
     for (const std::string& text : order.exposures) {
-        if (Status status = set_exposure(text, settings); !status) return tl::unexpected(status.error());
+        if (Status status = set_exposure(text, printer, settings, drawing.warnings); !status)
+            return tl::unexpected(status.error());
     }
     settings.slicing.compensation = compensations(drawing, printer);
     if (!drawing.stacks.empty() && !settings.slicing.compensation.empty()) {

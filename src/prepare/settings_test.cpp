@@ -177,6 +177,30 @@ TEST_CASE("--exposure: of a material, of its first layers, of some layers") {
     CHECK(refused([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
 }
 
+TEST_CASE("an exposure far from the printer file's is told, with how deep it cures") {
+    machine::Printer p = printer();
+    p.resins[0].cure_depth_um = 150;
+    p.resins[0].critical_share = 0.2;
+    const auto warnings = [&](const char* exposure) {
+        Drawing drawing = two_blocks();
+        Order order;
+        order.exposures = {exposure};
+        REQUIRE(job_settings(order, p, {}, drawing).has_value());
+        return drawing.warnings;
+    };
+    CHECK(warnings("soft=1 s").empty());
+    CHECK(warnings("soft=4 s").empty());
+    REQUIRE(warnings("soft=0.3 s").size() == 1);
+    CHECK(warnings("soft=0.3 s")[0].starts_with(
+        "--exposure soft=0.3 s: 0.3 s is 0.15 times the 2 s that the printer file "
+        "gives resin \"soft\"; it cures 32.1 um deep, layers are 50 um"));
+    CHECK(warnings("soft=20 s").size() == 1);
+    CHECK(warnings("soft=2 s,100 s").size() == 1);
+    CHECK(warnings("soft:2-4=20 s").size() == 1);
+    CHECK(warnings("firm=20 s") == std::vector<std::string>{"--exposure firm=20 s: 20 s is 5 times the 4 s that the "
+                                                            "printer file gives resin \"firm\""});
+}
+
 TEST_CASE("--resin: another resin with its exposures; one that no vat holds is an error unless any vat will do") {
     Drawing drawing = two_blocks();
     Order order;
@@ -228,10 +252,18 @@ TEST_CASE("--support with a material that no body has takes the resin of its nam
     CHECK(drawing.resin_of_material.size() == 2);
     order.support = "brittle";
     order.raft = "1 mm";
+    drawing = two_blocks();
+    const auto unknown = job_settings(order, printer(), {}, drawing);
+    REQUIRE(!unknown.has_value());
+    CHECK(unknown.error().message ==
+          "--support brittle: is neither a material of the part nor a resin of the printer (soft and firm); or say "
+          "--resin brittle=RESIN");
+    drawing = two_blocks();
+    order.resins = {"brittle=firm"};
     const auto s = job_settings(order, printer(), {}, drawing);
     REQUIRE(s.has_value());
     CHECK(s->materials.size() == 3);
-    CHECK(s->materials[2].resin == "brittle");
+    CHECK(s->materials[2].resin == "firm");
     const job::Request request = request_of(order, *s);
     REQUIRE(request.supports.size() == 2);
     CHECK(request.supports[0] == std::pair<std::string, std::string>{"support", "brittle"});

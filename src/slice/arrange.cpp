@@ -59,7 +59,7 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
 Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster) {
     if (count < 1 || count > most_copies) return input_error("{} copies: must be 1 to {}", count, most_copies);
     if (!(spacing_um >= 0 && std::isfinite(spacing_um)))
-        return input_error("copies {} um apart: must be a length from 0 on", spacing_um);
+        return input_error("copies {:.6g} um apart: must be a length from 0 on", spacing_um);
     if (count == 1) return {};
     const auto box = bounds_of_all(bodies);
     if (!box) return tl::unexpected(box.error());

@@ -12,12 +12,12 @@ Status check(const Raster& raster) {
     if (static_cast<long long>(raster.width_px) * raster.height_px > (1LL << 28))
         return input_error("raster of {} x {} pixels: more than 2^28 in all", raster.width_px, raster.height_px);
     if (!(raster.pixel_um > 0 && raster.pixel_um <= 10000))
-        return input_error("pixel of {} um: must be above 0 and at most 10000 um", raster.pixel_um);
+        return input_error("pixel of {:.6g} um: must be above 0 and at most 10000 um", raster.pixel_um);
     if (!(std::fabs(raster.rotation_deg) <= 360))
         return input_error("image turned by {} degrees: must be -360 to 360", raster.rotation_deg);
     if (!(std::fabs(raster.offset_x_um) <= raster.width_um() && std::fabs(raster.offset_y_um) <= raster.height_um()))
-        return input_error("image moved by {} and {} um: must be at most its size, {} x {} um", raster.offset_x_um,
-                           raster.offset_y_um, raster.width_um(), raster.height_um());
+        return input_error("image moved by {:.6g} and {:.6g} um: must be at most its size, {:.6g} x {:.6g} um",
+                           raster.offset_x_um, raster.offset_y_um, raster.width_um(), raster.height_um());
     return {};
 }
 

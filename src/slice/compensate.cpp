@@ -138,11 +138,11 @@ double Compensation::offset_um(int layer) const {
 Status check(const Compensation& c, const std::string& where) {
     constexpr double most_um = 10000;
     if (!(std::fabs(c.grow_um) <= most_um))
-        return input_error("{}: XY compensation of {} um: must be -10000 to 10000 um", where, c.grow_um);
+        return input_error("{}: XY compensation of {:.6g} um: must be -10000 to 10000 um", where, c.grow_um);
     if (!(c.foot_um >= 0 && c.foot_um <= most_um))
-        return input_error("{}: elephant foot of {} um: must be 0 to 10000 um", where, c.foot_um);
+        return input_error("{}: elephant foot of {:.6g} um: must be 0 to 10000 um", where, c.foot_um);
     if (!(c.bleed_um >= 0 && c.bleed_um <= most_um))
-        return input_error("{}: bleed compensation of {} um: must be 0 to 10000 um", where, c.bleed_um);
+        return input_error("{}: bleed compensation of {:.6g} um: must be 0 to 10000 um", where, c.bleed_um);
     if (c.foot_layers < 0 || c.foot_layers > 10000)
         return input_error("{}: elephant foot in {} layers: must be 0 to 10000", where, c.foot_layers);
     return {};

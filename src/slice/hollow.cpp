@@ -299,9 +299,9 @@ private:
 Status check(const HollowSettings& hollow) {
     constexpr double most_um = 100000;
     if (!(hollow.wall_um > 0 && hollow.wall_um <= most_um))
-        return input_error("hollow: wall of {} um: must be above 0 and at most 100 mm", hollow.wall_um);
+        return input_error("hollow: wall of {:.6g} um: must be above 0 and at most 100 mm", hollow.wall_um);
     if (!(hollow.drain_um >= 0 && hollow.drain_um <= most_um))
-        return input_error("hollow: drain of {} um: must be 0 to 100 mm", hollow.drain_um);
+        return input_error("hollow: drain of {:.6g} um: must be 0 to 100 mm", hollow.drain_um);
     return {};
 }
 

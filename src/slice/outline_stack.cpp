@@ -37,8 +37,9 @@ Result<OutlineStack> OutlineStack::from(std::vector<OutlineSlice> slices, const 
     double below = -max_coordinate_um;
     for (const OutlineSlice& slice : slices) {
         if (!(slice.bottom_um >= below - 1e-6 && slice.top_um > slice.bottom_um && slice.top_um <= max_coordinate_um))
-            return input_error("{}: a slice from {} to {} um does not lie above the one before, or not within 2 m",
-                               label, slice.bottom_um, slice.top_um);
+            return input_error(
+                "{}: a slice from {:.6g} to {:.6g} um does not lie above the one before, or not within 2 m", label,
+                slice.bottom_um, slice.top_um);
         below = slice.top_um;
         if (slice.outlines_um.empty()) continue;
         // The layers whose middle lies below the slice's top.

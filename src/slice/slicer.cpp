@@ -31,7 +31,7 @@ Status check(const Settings& settings) {
     if (!(settings.rules.threshold > 0 && settings.rules.threshold <= 1))
         return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
     if (!(settings.rules.close_gap_um >= 0))
-        return input_error("gap of {} um to close: must not be negative", settings.rules.close_gap_um);
+        return input_error("gap of {:.6g} um to close: must not be negative", settings.rules.close_gap_um);
     for (const auto& [material, compensation] : settings.compensation) {
         if (auto status = check(compensation, "material '" + material + "'"); !status) return status;
     }
@@ -136,8 +136,8 @@ void Slicer::add_shape(const Body& body, const Vec3& size_um) {
         warnings_.push_back(fmt::format("{}: {} lies between the middles of two layers of {} um and is not printed",
                                         labels_.back(), size_text(size_um), settings_.layer_um));
     } else if (std::fmin(size_um.x, size_um.y) < settings_.raster.pixel_um) {
-        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {} um", labels_.back(), size_text(size_um),
-                                        settings_.raster.pixel_um));
+        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {:.6g} um", labels_.back(),
+                                        size_text(size_um), settings_.raster.pixel_um));
     }
 }
 
@@ -379,7 +379,7 @@ Summary Tally::summary() const {
                         slicer_.body_labels()[b], lost_mm3));
     }
     if (closed_gap_pixels_ > 0)
-        summary.warnings.push_back(fmt::format("gaps of at most {} um between materials closed in {} pixels",
+        summary.warnings.push_back(fmt::format("gaps of at most {:.6g} um between materials closed in {} pixels",
                                                settings.rules.close_gap_um, closed_gap_pixels_));
     if (first_filled_ > 0)
         summary.warnings.push_back(

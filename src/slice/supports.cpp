@@ -375,12 +375,12 @@ Status check(const SupportSettings& s) {
         {"spacing", s.spacing_um}, {"tip", s.tip_um}, {"pillar", s.pillar_um}};
     for (const auto& [what, um] : lengths) {
         if (!(um > 0 && um <= most_um))
-            return input_error("supports: {} of {} um: must be above 0 and at most 50 mm", what, um);
+            return input_error("supports: {} of {:.6g} um: must be above 0 and at most 50 mm", what, um);
     }
     if (s.tip_um > s.pillar_um)
-        return input_error("supports: a tip of {} um is wider than its pillar of {} um", s.tip_um, s.pillar_um);
+        return input_error("supports: a tip of {:.6g} um is wider than its pillar of {:.6g} um", s.tip_um, s.pillar_um);
     if (!(s.raft_um >= 0 && s.raft_um <= thickest_raft_um))
-        return input_error("supports: raft of {} um: must be 0 to 20 mm", s.raft_um);
+        return input_error("supports: raft of {:.6g} um: must be 0 to 20 mm", s.raft_um);
     if (!(s.angle_deg >= 0 && s.angle_deg <= 89))
         return input_error("supports: angle of {} degrees: must be 0 to 89", s.angle_deg);
     if (s.material.empty()) return input_error("supports: a material is needed");

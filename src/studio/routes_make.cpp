@@ -55,7 +55,9 @@ Json issues_json(const job::Manifest& manifest) {
         const auto name = names.find(f.kind);
         const std::string size =
             f.volume_mm3 > 0 ? fmt::format("{:.3g} mm³", f.volume_mm3) : fmt::format("{:.3g} mm²", f.area_mm2);
-        issues.push_back({{"text", fmt::format("{}: {}", name == names.end() ? f.kind : name->second, size)},
+        const std::string many = f.count > 1 ? fmt::format("{} times ", f.count) : "";
+        issues.push_back({{"text", fmt::format("{}{}: {}", many, name == names.end() ? f.kind : name->second, size)},
+                          {"severity", f.severity},
                           {"layer", f.first_layer},
                           {"row", f.row},
                           {"column", f.column}});

@@ -1,22 +1,29 @@
 #include "studio/slice_robot.hpp"
 
+#include "report/colour.hpp"
 #include "robot/robot.hpp"
 #include "studio/scene.hpp"
 
 namespace pliant::studio {
 namespace {
 
-/// Of the job's materials; one that was made for a body's own light has the colour of a body.
+/// One that was made for a body's own light has the colour of its material. "": the robot has no such material.
+std::string colour_of_material(const std::string& name, const robot::Robot& robot) {
+    for (std::size_t m = 0; m < robot.materials.size(); ++m) {
+        const std::string& known = robot.materials[m].name;
+        if (name == known || name.starts_with(known + " of ")) return colour_of(robot, m);
+    }
+    return "";
+}
+
+/// Of the job's materials; those that are printed together have the colour of the first.
 std::vector<std::string> colours_of(const job::Manifest& manifest, const robot::Robot& robot) {
     std::vector<std::string> colours;
-    for (const job::Material& material : manifest.materials) {
-        for (std::size_t m = 0; m < robot.materials.size(); ++m) {
-            const std::string& name = robot.materials[m].name;
-            if (material.name == name || material.name.starts_with(name + " of ")) {
-                colours.push_back(colour_of(robot, m));
-                break;
-            }
-        }
+    for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
+        const job::Material& material = manifest.materials[m];
+        const std::string own =
+            colour_of_material(material.parts.empty() ? material.name : material.parts.front().name, robot);
+        colours.push_back(own.empty() ? report::hex(report::palette(static_cast<int>(m))) : own);
     }
     return colours;
 }

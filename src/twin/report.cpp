@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.hpp"
 #include "twin/inspect.hpp"
 
 namespace pliant::twin {
@@ -134,9 +135,9 @@ std::string report_json(const Report& r) {
 }
 
 std::string report_text(const Report& r) {
-    std::string text =
-        fmt::format("virtual print {}: {} layers, {} exposures, {} swaps, {:.0f} s on the machine's clock\n",
-                    r.passed ? "passed" : "FAILED", r.layers, r.log.exposures, r.log.swaps, r.clock_s);
+    std::string text = fmt::format("virtual print {}: {}, {}, {}, {:.0f} s on the machine's clock\n",
+                                   r.passed ? "passed" : "FAILED", counted(r.layers, "layer"),
+                                   counted(r.log.exposures, "exposure"), counted(r.log.swaps, "swap"), r.clock_s);
     for (const MaterialReport& m : r.materials) {
         text += fmt::format("  {:<16}{:>12.3f} mm^3 cured {:>12.3f} drawn {:>10.3f} tolerance\n", m.name, m.cured_mm3,
                             m.model_mm3, m.tolerance_mm3);

@@ -96,7 +96,7 @@ export interface Job {
   saved: boolean;
   printer: string;
   colours: string[];
-  issues: { text: string; layer: number; row?: number; column?: number }[];
+  issues: { text: string; severity?: string; layer: number; row?: number; column?: number }[];
   platform: { width_mm: number; depth_mm: number };
   manifest: {
     name: string;

@@ -16,7 +16,7 @@ function Issues() {
       <h3>{j.issues.length ? `${j.issues.length} ${j.issues.length === 1 ? 'remark' : 'remarks'}` : 'Nothing to remark'}</h3>
       {j.issues.map((issue) => (
         <button
-          class="issue"
+          class={`issue ${issue.severity ?? ''}`}
           disabled={issue.layer < 0}
           onClick={() => {
             tab.value = 'layers';
@@ -26,7 +26,11 @@ function Issues() {
         >
           <Icon name="warn" />
           <span>{issue.text}</span>
-          {issue.layer >= 0 && <span class="quiet">layer {issue.layer}</span>}
+          {issue.layer >= 0 && (
+            <span class="quiet">
+              {issue.severity && `${issue.severity} severity, `}layer {issue.layer}
+            </span>
+          )}
         </button>
       ))}
       {j.issues.length === 0 && (

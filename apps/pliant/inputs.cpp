@@ -1,0 +1,162 @@
+#include "inputs.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/config.hpp"
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "studio/examples.hpp"
+
+namespace pliant::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <std::size_t N>
+bool one_of(std::string_view word, const std::array<std::string_view, N>& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// `parameters`, `name` and `material` tell nothing: both kinds may have the first two, a slip the last.
+FileKind kind_of_toml(const fs::path& file) {
+    constexpr std::array<std::string_view, 10> of_printers{"axis",  "projector", "vat",      "tower",    "vat_shape",
+                                                           "resin", "cleaning",  "carriage", "platform", "table"};
+    constexpr std::array<std::string_view, 9> of_robots{"body",   "mesh",    "fixed", "cable",   "chamber",
+                                                        "marker", "program", "load",  "material"};
+    const Result<config::Document> document = config::load(file);
+    if (!document) return FileKind::unknown;
+    int printers = 0, robots = 0;
+    for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
+        printers += one_of(key, of_printers) ? 1 : 0;
+        robots += one_of(key, of_robots) ? 1 : 0;
+    }
+    if (printers == robots) return FileKind::unknown;
+    return printers > robots ? FileKind::printer : FileKind::robot;
+}
+
+/// What it is, and how it becomes what is needed.
+std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
+    const std::string stem = fs::path(file).stem().string();
+    if (needed == FileKind::printer) {
+        const char* what = kind == FileKind::robot ? "a robot file" : kind == FileKind::job ? "a job" : "geometry";
+        return fmt::format("{}: is {}; a printer file is needed here, such as examples/printers/tower.toml", file,
+                           what);
+    }
+    if (needed == FileKind::robot) {
+        if (kind == FileKind::printer) return fmt::format("{}: is a printer file; a robot file is needed here", file);
+        if (kind == FileKind::job)
+            return fmt::format("{}: is a job; a robot file is needed here, such as the one that it was sliced from",
+                               file);
+        return fmt::format("{}: is geometry; a robot file is needed here, in which a body names it", file);
+    }
+    if (kind == FileKind::printer)
+        return fmt::format("{}: is a printer file; a job is needed here, which pliant slice makes with --printer {}",
+                           file, file);
+    if (kind == FileKind::robot)
+        return fmt::format(
+            "{}: is a robot file; a job is needed here: pliant slice {} --printer PRINTER.toml -o {}.zip", file, file,
+            stem);
+    return fmt::format(
+        "{}: is geometry; a job is needed here: pliant slice MATERIAL={} --printer PRINTER.toml -o {}.zip", file, file,
+        stem);
+}
+
+std::vector<std::string> built_in_names() {
+    std::vector<std::string> names;
+    for (const studio::BuiltInFile& file : studio::example_printers()) names.emplace_back(file.name);
+    return names;
+}
+
+/// A word that could be the name of a printer, not of a file.
+bool is_name(const std::string& word) {
+    return word.find_first_of("./\\") == std::string::npos;
+}
+
+tl::unexpected<Error> no_such_printer(const std::string& name) {
+    const std::vector<std::string> names = built_in_names();
+    const std::string nearest = nearest_name(name, names);
+    if (!nearest.empty())
+        return input_error("{}: there is no such file or built-in printer; did you mean \"{}\"?", name, nearest);
+    return input_error("{}: there is no such file or built-in printer; built in are {}", name, join_names(names));
+}
+
+}  // namespace
+
+FileKind kind_of(const fs::path& file) {
+    constexpr std::array<std::string_view, 12> geometry{".stl", ".obj", ".ply", ".3mf",  ".step", ".stp",
+                                                        ".vtk", ".vtu", ".msh", ".mesh", ".off",  ".inp"};
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return FileKind::unknown;
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    if (extension == ".toml") return kind_of_toml(file);
+    if (one_of(extension, geometry)) return FileKind::geometry;
+    return job::Archive::open(file) ? FileKind::job : FileKind::unknown;
+}
+
+Status expect(FileKind needed, const std::string& file) {
+    const FileKind kind = kind_of(file);
+    if (kind == FileKind::unknown || kind == needed) return {};
+    return input_error("{}", text_of(kind, file, needed));
+}
+
+Result<PrinterText> read_printer_file(const std::string& name) {
+    std::error_code ignored;
+    std::string text;
+    if (is_name(name) && !std::filesystem::exists(name, ignored)) {
+        const studio::BuiltInFile* file = studio::find_file(studio::example_printers(), name);
+        if (file == nullptr) return no_such_printer(name);
+        text = std::string(file->text);
+    } else {
+        if (Status status = expect(FileKind::printer, name); !status) return tl::unexpected(status.error());
+        Result<std::string> read = read_file(name);
+        if (!read) return tl::unexpected(read.error());
+        text = std::move(*read);
+    }
+    Result<machine::Printer> printer = machine::parse_printer(text, name);
+    if (!printer) return tl::unexpected(printer.error());
+    return PrinterText{std::move(*printer), std::move(text)};
+}
+
+Result<machine::Printer> read_printer(const std::string& name) {
+    Result<PrinterText> read = read_printer_file(name);
+    if (!read) return tl::unexpected(read.error());
+    return std::move(read->printer);
+}
+
+Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::string>& assignments) {
+    if (Status status = expect(FileKind::robot, file); !status) return tl::unexpected(status.error());
+    return robot::load_robot(file, assignments);
+}
+
+Result<operate::OpenJob> read_job(const std::string& file) {
+    Result<operate::OpenJob> job = operate::open_job(file);
+    if (job) return job;
+    if (Status status = expect(FileKind::job, file); !status) return tl::unexpected(status.error());
+    return job;
+}
+
+Result<operate::ProvedJob> prove_job(const std::string& file, operate::Pixels pixels, const machine::Printer* other) {
+    Result<operate::ProvedJob> job = operate::prove_job(file, pixels, other);
+    if (job) return job;
+    if (Status status = expect(FileKind::job, file); !status) return tl::unexpected(status.error());
+    return job;
+}
+
+Result<job::Archive> read_archive(const std::string& file) {
+    Result<job::Archive> archive = job::Archive::open(file);
+    if (archive) return archive;
+    if (Status status = expect(FileKind::job, file); !status) return tl::unexpected(status.error());
+    return archive;
+}
+
+Status check_ending(std::string_view option, const std::string& file, std::string_view what, std::string_view ending) {
+    const fs::path path(file);
+    if (file.empty() || path.extension() == ending) return {};
+    return input_error("{} {}: {} ends in {}, as in {}", option, file, what, ending,
+                       fs::path(path).replace_extension(ending).string());
+}
+
+}  // namespace pliant::app
