@@ -123,6 +123,35 @@ mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::Bod
     return settings;
 }
 
+/// Where the file asks for no size, thin walls and many fingers must not make a mesh on which every step takes minutes:
+/// one of more nodes is meshed again with fewer elements through walls and then longer edges, and a note says so.
+Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
+                                         Progress& progress) {
+    constexpr std::size_t most_automatic_nodes = 20000;
+    constexpr int tries = 3;
+    constexpr double most_coarser = 1.6;  // at once: what remains of a notch or wall should still be meshed well
+    mesh::MeshSettings settings = mesh_settings(robot, bodies);
+    Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
+    const bool asked = robot.mesh.size > 0 || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
+    if (!mesh || asked || mesh->points.size() <= most_automatic_nodes) return mesh;
+    const std::size_t usual = mesh->points.size();
+    for (int i = 0; i < tries && mesh && mesh->points.size() > most_automatic_nodes; ++i) {
+        const double excess = static_cast<double>(mesh->points.size()) / static_cast<double>(most_automatic_nodes);
+        if (settings.through_wall > 1)
+            --settings.through_wall;
+        else
+            settings.size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
+        mesh = mesh::mesh_bodies(bodies, settings, progress);
+    }
+    if (mesh)
+        mesh->notes.push_back(
+            fmt::format("no mesh.size is given: {} nodes in place of {} with 3 elements through every "
+                        "wall, so that a step takes seconds; for a finer mesh set mesh.size (here {:.3g}) "
+                        "or mesh.elements_through_wall (here {})",
+                        mesh->points.size(), usual, settings.size, settings.through_wall));
+    return mesh;
+}
+
 Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
                                const std::vector<mesh::Solid>& air) {
     std::vector<mesh::Solid> walls;
@@ -155,8 +184,7 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
         if (!space) return tl::unexpected(space.error());
         bodies.push_back({std::string(region.name), std::move(*space), true});
     }
-    const mesh::MeshSettings settings = mesh_settings(robot, bodies);
-    Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
+    Result<mesh::TetMesh> mesh = mesh_within_budget(robot, bodies, progress);
     if (!mesh) {
         // The mesher names bodies, chambers and gaps; the line is that of the last one it names.
         int line = robot.bodies.front().line;
