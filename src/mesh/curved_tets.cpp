@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "mesh/curved_point.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -25,15 +27,7 @@ constexpr std::array<Barycentric, 15> samples = [] {
 }();
 
 double jacobian(const TetMesh& mesh, std::size_t t, const Barycentric& b) {
-    const auto n = mesh.tet(t);
-    std::array<Vec3, 4> column;  // dX / db_k
-    for (std::size_t k = 0; k < 4; ++k) column[k] = (4 * b[k] - 1) * mesh.points[n[k]];
-    for (std::size_t e = 0; e < 6; ++e) {
-        const auto p = static_cast<std::size_t>(edge_corners[e][0]);
-        const auto q = static_cast<std::size_t>(edge_corners[e][1]);
-        column[p] += 4 * b[q] * mesh.points[n[4 + e]];
-        column[q] += 4 * b[p] * mesh.points[n[4 + e]];
-    }
+    const auto column = curved_derivative(nodes_of(mesh, t), b);
     return dot(column[1] - column[0], cross(column[2] - column[0], column[3] - column[0]));
 }
 

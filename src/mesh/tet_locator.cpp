@@ -2,81 +2,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "mesh/curved_point.hpp"
+#include "mesh/nearest_in_simplex.hpp"
 
 namespace pliant::mesh {
+
 namespace {
 
-/// The point of segment, triangle or tet nearest to `p`, as weights of its corners: the nearest point of the interior's
-/// plane if its weights are positive, else the best of the faces. Small and exact enough; used near the surface only.
-template <std::size_t N>
-std::array<double, N> nearest_weights(const std::array<Vec3, N>& corner, const Vec3& p);
-
-template <>
-std::array<double, 2> nearest_weights(const std::array<Vec3, 2>& c, const Vec3& p) {
-    const Vec3 d = c[1] - c[0];
-    const double length2 = dot(d, d);
-    const double t = length2 > 0 ? std::clamp(dot(p - c[0], d) / length2, 0.0, 1.0) : 0;
-    return {1 - t, t};
-}
-
-template <std::size_t N>
-Vec3 weighted(const std::array<Vec3, N>& corner, const std::array<double, N>& weight) {
-    Vec3 sum;
-    for (std::size_t i = 0; i < N; ++i) sum += weight[i] * corner[i];
-    return sum;
-}
-
-/// Best of the N faces that leave out one corner each.
-template <std::size_t N>
-std::array<double, N> nearest_on_faces(const std::array<Vec3, N>& corner, const Vec3& p) {
-    std::array<double, N> best{};
-    double best_distance = std::numeric_limits<double>::infinity();
-    for (std::size_t left_out = 0; left_out < N; ++left_out) {
-        std::array<Vec3, N - 1> face;
-        for (std::size_t i = 0, k = 0; i < N; ++i) {
-            if (i != left_out) face[k++] = corner[i];
-        }
-        const auto weights = nearest_weights<N - 1>(face, p);
-        const double distance = norm(weighted(face, weights) - p);
-        if (distance >= best_distance) continue;
-        best_distance = distance;
-        for (std::size_t i = 0, k = 0; i < N; ++i) best[i] = i == left_out ? 0 : weights[k++];
+/// True if a mid-edge node lies off the middle of its edge by more than rounding.
+bool is_curved(const TetMesh& mesh, std::size_t t, double rounding) {
+    const auto n = mesh.tet(t);
+    for (std::size_t e = 0; e + 4 < n.size(); ++e) {
+        const Vec3 middle = 0.5 * (mesh.points[n[edge_corners[e][0]]] + mesh.points[n[edge_corners[e][1]]]);
+        if (norm(mesh.points[n[4 + e]] - middle) > rounding) return true;
     }
-    return best;
+    return false;
 }
 
-template <>
-std::array<double, 3> nearest_weights(const std::array<Vec3, 3>& c, const Vec3& p) {
-    const Vec3 n = cross(c[1] - c[0], c[2] - c[0]);
-    const double area2 = dot(n, n);
-    if (area2 > 0) {
-        const double w1 = dot(cross(p - c[0], c[2] - c[0]), n) / area2;
-        const double w2 = dot(cross(c[1] - c[0], p - c[0]), n) / area2;
-        if (w1 >= 0 && w2 >= 0 && w1 + w2 <= 1) return {1 - w1 - w2, w1, w2};
-    }
-    return nearest_on_faces(c, p);
-}
-
-template <>
-std::array<double, 4> nearest_weights(const std::array<Vec3, 4>& c, const Vec3& p) {
-    const double volume = signed_tet_volume(c[0], c[1], c[2], c[3]);
-    if (volume != 0) {
-        std::array<double, 4> w{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            auto moved = c;
-            moved[i] = p;
-            w[i] = signed_tet_volume(moved[0], moved[1], moved[2], moved[3]) / volume;
-        }
-        if (std::all_of(w.begin(), w.end(), [](double x) { return x >= 0; })) return w;
-    }
-    return nearest_on_faces(c, p);
+double distance_to(const Box3& box, const Vec3& p) {
+    Vec3 off;
+    for (std::size_t a = 0; a < 3; ++a) off[a] = std::max({box.low[a] - p[a], p[a] - box.high[a], 0.0});
+    return norm(off);
 }
 
 }  // namespace
 
-TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh) {
+TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh), curved_(mesh.tet_count()) {
     for (const Vec3& p : mesh.points) box_.add(p);
+    for (std::size_t t = 0; t < curved_.size(); ++t) curved_[t] = is_curved(mesh, t, 1e-12 * box_.diagonal());
     const Vec3 size = box_.size();
     // About two tets a cell keeps lists short and the grid no larger than the mesh.
     const double volume = std::max(size.x * size.y * size.z, 1e-300);
@@ -87,8 +41,7 @@ TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh) {
     cell_size_ = std::max({size.x / cells_[0], size.y / cells_[1], size.z / cells_[2], cell_size_});
 
     const auto visit = [&](std::size_t t, const auto& act) {
-        Box3 box;
-        for (std::size_t a = 0; a < 4; ++a) box.add(mesh.points[mesh.tet(t)[a]]);
+        const Box3 box = bounds_of(t);
         const auto low = cell_of(box.low);
         const auto high = cell_of(box.high);
         for (int i = low[0]; i <= high[0]; ++i) {
@@ -116,11 +69,29 @@ std::array<int, 3> TetLocator::cell_of(const Vec3& point) const {
     return cell;
 }
 
+Box3 TetLocator::bounds_of(std::size_t tet) const {
+    if (curved_[tet]) return curved_bounds(nodes_of(*mesh_, tet));
+    Box3 box;
+    for (std::size_t a = 0; a < 4; ++a) box.add(mesh_->points[mesh_->tet(tet)[a]]);
+    return box;
+}
+
 void TetLocator::try_tet(int tet, const Vec3& point, Location& best) const {
-    std::array<Vec3, 4> corner;
-    for (std::size_t a = 0; a < 4; ++a) corner[a] = mesh_->points[mesh_->tet(static_cast<std::size_t>(tet))[a]];
-    const auto weights = nearest_weights(corner, point);
-    const double distance = norm(weighted(corner, weights) - point);
+    const auto t = static_cast<std::size_t>(tet);
+    std::array<double, 4> weights{};
+    double distance = 0;
+    if (curved_[t]) {
+        const TetNodes nodes = nodes_of(*mesh_, t);
+        if (best.tet >= 0 && distance_to(curved_bounds(nodes), point) > best.distance) return;
+        const CurvedPoint found = nearest_in_curved_tet(nodes, point);
+        weights = found.barycentric;
+        distance = found.distance;
+    } else {
+        std::array<Vec3, 4> corner;
+        for (std::size_t a = 0; a < 4; ++a) corner[a] = mesh_->points[mesh_->tet(t)[a]];
+        weights = nearest_weights(corner, point);
+        distance = norm(weighted(corner, weights) - point);
+    }
     // Inside, rounding leaves a distance of some 1e-16: both then count as inside and the lower index wins.
     const double exact = 1e-12 * box_.diagonal();
     const double counted = distance <= exact ? 0 : distance;

@@ -8,15 +8,16 @@
 
 namespace pliant::mesh {
 
-/// A uniform grid of boxes over the corner tets (curved edges are taken as straight). The mesh must outlive it.
+/// A uniform grid of boxes over the tets, curved as they are. The mesh must outlive it.
 class TetLocator {
 public:
     explicit TetLocator(const TetMesh& mesh);
 
     struct Location {
         int tet = -1;
-        std::array<double, 4> barycentric{};  ///< of the nearest point of that tet; sum 1, none negative
-        double distance = 0;                  ///< from the query to that point; 0 inside
+        std::array<double, 4>
+            barycentric{};    ///< of the nearest point of that tet, for its shape functions; sum 1, none negative
+        double distance = 0;  ///< from the query to that point; 0 inside
     };
     /// The tet that holds the point or, outside, the nearest one; ties go to the lowest index. Precondition: the mesh
     /// has tets.
@@ -29,9 +30,11 @@ private:
                    static_cast<std::size_t>(cells_[2]) +
                static_cast<std::size_t>(k);
     }
+    [[nodiscard]] Box3 bounds_of(std::size_t tet) const;
     void try_tet(int tet, const Vec3& point, Location& best) const;
 
     const TetMesh* mesh_;
+    std::vector<bool> curved_;  ///< (tets)
     Box3 box_;
     std::array<int, 3> cells_ = {1, 1, 1};
     double cell_size_ = 1;
