@@ -15,6 +15,7 @@
 #include <numeric>
 
 #include "mesh/curved_tets.hpp"
+#include "mesh/drawn_improver.hpp"
 #include "mesh/flat_faces.hpp"
 #include "mesh/gmsh_library.hpp"
 #include "mesh/mesh_report.hpp"
@@ -359,6 +360,34 @@ void set_size(double size) {
     gmsh::option::set_number("Mesh.MeshSizeExtendFromBoundary", 1);
 }
 
+/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+constexpr double sliver_deg = 5;
+constexpr double wanted_deg = 1.4 * sliver_deg;
+
+/// Slivers come by chance: a slightly smaller size gives other points, and as a rule none. `attempt(factor)` meshes
+/// with sizes times `factor`; `best` is what it gave for 1.
+template <class Attempt>
+Result<TetMesh> without_slivers(Result<TetMesh> best, const Attempt& attempt) {
+    double angle = smallest_dihedral_deg(*best);
+    constexpr std::size_t many = 20;  // one tet in so many: not by chance, walls are thinner than edges are long
+    if (angle >= sliver_deg || many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
+    for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
+        Result<TetMesh> other = attempt(factor);
+        if (!other) continue;
+        const double its = smallest_dihedral_deg(*other);
+        if (its <= angle) continue;
+        angle = its;
+        best = std::move(other);
+    }
+    return best;
+}
+
+/// `size_at` times `factor`, if there is any.
+SizeAt times(const SizeAt& size_at, double factor) {
+    if (!size_at || factor == 1) return size_at;
+    return [&size_at, factor](std::size_t solid, const Vec3& p) { return factor * size_at(solid, p); };
+}
+
 /// Curved quadratic tets must keep this part of their straight Jacobian everywhere.
 constexpr double least_jacobian = 0.1;
 
@@ -535,6 +564,8 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
             follow_size(size_at, solids_of_entities(solid_of_volume), size);
         }
         Result<TetMesh> mesh = generate(solid_of_volume, order);
+        if (mesh) improve_drawn_tets(*mesh, wanted_deg);
+        if (mesh && order == 2) straighten_folded_tets(*mesh, least_jacobian);
         if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
         return mesh;
     });
@@ -562,15 +593,18 @@ Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int
                             double join_within) {
     Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, join_within, 1);
     // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
-    for (int refinement = 2; refinement <= 8 && !mesh && mesh.error().cause == Cause::failed; refinement *= 2)
+    int refinement = 1;
+    while (refinement < 8 && !mesh && mesh.error().cause == Cause::failed) {
+        refinement *= 2;
         mesh = try_mesh_solids(solids, size, order, size_at, join_within, refinement);
-    return mesh;
+    }
+    if (!mesh) return mesh;
+    return without_slivers(std::move(mesh), [&](double factor) {
+        return try_mesh_solids(solids, factor * size, order, times(size_at, factor), join_within, refinement);
+    });
 }
 
 namespace {
-
-/// Below, a tet is a sliver: it makes a simulation stiff and slow.
-constexpr double sliver_deg = 5;
 
 /// One attempt of mesh_surface().
 Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
@@ -596,7 +630,7 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
             mesh->notes.push_back(fmt::format(
                 "the surface keeps the triangles that it was drawn with, whatever the mesh size ({})", reason));
     }
-    if (mesh) improve_tets(*mesh, {.wanted_deg = 1.4 * sliver_deg, .feature_deg = angle_deg});
+    if (mesh) improve_tets(*mesh, {.wanted_deg = wanted_deg, .feature_deg = angle_deg});
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);
@@ -607,21 +641,11 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
 Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     Result<TetMesh> best = try_mesh_surface(surface, size, angle_deg, size_at);
     if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
-    double angle = smallest_dihedral_deg(*best);
-    constexpr std::size_t many = 20;  // one tet in so many: not by chance, walls are thinner than edges are long
-    if (angle >= sliver_deg || many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
-    // Slivers come by chance: a slightly smaller size gives other points, and as a rule none.
-    for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
-        SizeAt smaller;
-        if (size_at) smaller = [&](std::size_t solid, const Vec3& p) { return factor * size_at(solid, p); };
-        Result<TetMesh> other = try_mesh_surface(surface, factor * size, angle_deg, smaller);
-        if (!other || !other->notes.empty()) continue;
-        const double its = smallest_dihedral_deg(*other);
-        if (its <= angle) continue;
-        angle = its;
-        best = std::move(other);
-    }
-    return best;
+    return without_slivers(std::move(best), [&](double factor) -> Result<TetMesh> {
+        Result<TetMesh> other = try_mesh_surface(surface, factor * size, angle_deg, times(size_at, factor));
+        if (other && !other->notes.empty()) return failure("it keeps the triangles that were drawn");
+        return other;
+    });
 }
 
 Result<TriMesh> tessellate(const Solid& solid, double tolerance) {

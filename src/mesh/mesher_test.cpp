@@ -297,3 +297,19 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
     CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
 }
+
+TEST_CASE("drawn solids get no sliver") {
+    // As Gmsh gives them these have angles of 0.3 to 3 degrees.
+    struct Box {
+        Vec3 sides;
+        double size;
+    };
+    for (const auto& [sides, size] :
+         {Box{{20, 5, 2}, 3}, Box{{20, 10, 4}, 3}, Box{{20, 20, 2}, 2.3}, Box{{37, 5, 2}, 1.7}, Box{{37, 5, 2}, 3},
+          Box{{37, 5, 4}, 3}, Box{{37, 5, 7}, 4}, Box{{37, 5, 12}, 4}}) {
+        const TetMesh mesh = mesh_of({{"box", box({0, 0, 0}, sides)}}, size, 2);
+        CHECK(volume(mesh) == doctest::Approx(sides.x * sides.y * sides.z).epsilon(1e-9));
+        const double angle = smallest_dihedral_deg(mesh);
+        CHECK_MESSAGE(angle >= 5, angle << " degrees: " << sides.x << " x " << sides.y << " x " << sides.z);
+    }
+}
