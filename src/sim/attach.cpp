@@ -2,6 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/curved_point.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -19,6 +23,34 @@ void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Ve
     std::vector<int> kept;
     for (std::size_t k = 0; k < largest_patch; ++k) kept.push_back(nodes[k * (nodes.size() - 1) / (largest_patch - 1)]);
     nodes = std::move(kept);
+}
+
+/// How far beyond the nearest point of a tet `point` lies, in its barycentric coordinates there (sum 0); none where the
+/// tet is so flat that this would be more than once through it.
+std::array<double, 4> beyond(const mesh::TetMesh& mesh, const mesh::TetLocator::Location& at, const Vec3& point) {
+    const auto nodes = mesh::nodes_of(mesh, static_cast<std::size_t>(at.tet));
+    const auto column = mesh::curved_derivative(nodes, at.barycentric);
+    const auto vector = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+    Eigen::Matrix3d jacobian;
+    for (int k = 0; k < 3; ++k) jacobian.col(k) = vector(column[static_cast<std::size_t>(k) + 1] - column[0]);
+    const Eigen::Vector3d off = vector(point - mesh::curved_position(nodes, at.barycentric));
+    const Eigen::Vector3d d = jacobian.fullPivLu().solve(off);
+    if (!d.allFinite() || d.cwiseAbs().maxCoeff() > 1 || std::fabs(d.sum()) > 1 ||
+        (jacobian * d - off).norm() > 1e-9 * off.norm())
+        return {};
+    return {-d.sum(), d[0], d[1], d[2]};
+}
+
+/// The shape functions at `b`, gone on with along their slope by `step`.
+std::vector<double> weights_beyond(int order, const std::array<double, 4>& b, const std::array<double, 4>& step) {
+    std::vector<double> weights = mesh::shape_functions(order, b);
+    for (std::size_t k = 0; k < 4; ++k) weights[k] += order == 1 ? step[k] : (4 * b[k] - 1) * step[k];
+    for (std::size_t e = 0; e + 4 < weights.size(); ++e) {
+        const auto i = static_cast<std::size_t>(mesh::edge_corners[e][0]);
+        const auto j = static_cast<std::size_t>(mesh::edge_corners[e][1]);
+        weights[4 + e] += 4 * (b[i] * step[j] + b[j] * step[i]);
+    }
+    return weights;
 }
 
 }  // namespace
@@ -43,7 +75,9 @@ Result<Attachment> Attacher::carried_by_tet(const Vec3& point, double tolerance)
     const auto location = locate(point, tolerance);
     if (!location) return tl::unexpected(location.error());
     const auto nodes = mesh_->tet(static_cast<std::size_t>(location->tet));
-    const auto weights = mesh::shape_functions(mesh_->order, location->barycentric);
+    std::array<double, 4> step{};
+    if (location->distance > 0) step = beyond(*mesh_, *location, point);
+    const auto weights = weights_beyond(mesh_->order, location->barycentric, step);
     Attachment attachment;
     for (std::size_t a = 0; a < nodes.size(); ++a) {
         if (weights[a] == 0) continue;

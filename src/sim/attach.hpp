@@ -17,8 +17,13 @@ public:
     explicit Attacher(const mesh::TetMesh& mesh);
 
     /// The point moves with the tet that holds it. An error gives the distance of a point that lies outside by more
-    /// than `tolerance`; within it, the nearest tet carries the point.
+    /// than `tolerance`. Within it, the nearest tet carries the point as if it went on beyond its face: where the point
+    /// is at rest is kept, and its motion is that of the face and its slope. A tet that is too flat for that carries
+    /// its own nearest point instead.
     [[nodiscard]] Result<Attachment> carried_by_tet(const Vec3& point, double tolerance) const;
+
+    /// How far a point lies outside the mesh; 0 inside.
+    [[nodiscard]] double distance_outside(const Vec3& point) const { return locator_.locate(point).distance; }
 
     /// The point's motion is the mean motion of the material within `radius`, and a force on it spreads over that
     /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas

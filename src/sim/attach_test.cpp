@@ -2,6 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "sim/cable_path.hpp"
 #include "sim/reference_problems.hpp"
 
 using namespace pliant;
@@ -66,4 +70,56 @@ TEST_CASE("a point outside is refused, a hair outside is carried by the nearest 
     const Attacher attacher(mesh);
     CHECK_FALSE(attacher.carried_by_tet({1.5, 0.5, 0.5}, 1e-3));
     CHECK(attacher.carried_by_tet({1.0005, 0.5, 0.5}, 1e-3));
+}
+
+namespace {
+
+/// Half a ring of inner radius 8 and outer radius 10 in few quadratic tets, their nodes on circles.
+mesh::TetMesh half_ring() {
+    mesh::TetMesh mesh =
+        mesh::to_quadratic(reference::kuhn_box({std::numbers::pi, 2, 2}, 5, 1, 1, [](Vec3) { return 0; }));
+    for (Vec3& p : mesh.points) p = (8 + p.y) * Vec3{std::cos(p.x), std::sin(p.x), 0} + Vec3{0, 0, p.z};
+    return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("points in curved tets are where they were put, and a cable round a bollard loses what Euler says") {
+    const mesh::TetMesh mesh = half_ring();
+    std::vector<double> rest;
+    for (const Vec3& p : mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+    const Attacher attacher(mesh);
+    // Just under the outer surface, where chords would cut off 0.38 of the bulge.
+    constexpr int guides = 41;
+    constexpr double radius = 9.95, turn = 0.98 * std::numbers::pi, friction = 0.3;
+    Cable cable{"belt", {}, {CableTarget::Kind::tension_N, 1}, friction};
+    double farthest = 0;
+    for (int k = 0; k < guides; ++k) {
+        const double angle = 0.01 * std::numbers::pi + turn * k / (guides - 1);
+        const Vec3 p{radius * std::cos(angle), radius * std::sin(angle), 1};
+        const auto point = attacher.carried_by_tet(p, 1e-2);
+        REQUIRE(point);
+        farthest = std::max(farthest, norm(position(*point, rest) - p));
+        cable.points.push_back(*point);
+    }
+    CHECK(farthest < 1e-9);
+    // The first and the last segment differ in direction by one turn less than the guides.
+    const CablePath path(cable, rest);
+    const double left = path.tension_shares(rest, friction, true).back();
+    CHECK(left == doctest::Approx(std::exp(-friction * turn * (guides - 2) / (guides - 1))).scale(0).epsilon(1e-6));
+}
+
+TEST_CASE("a point a little outside keeps its place, and moves with the face as a rigid arm would") {
+    for (const int order : {1, 2}) {
+        mesh::TetMesh mesh = reference::kuhn_box({10, 4, 4}, 10, 4, 4, [](Vec3) { return 0; });
+        if (order == 2) mesh = mesh::to_quadratic(mesh);
+        const Attacher attacher(mesh);
+        for (const Vec3& p : {Vec3{10.3, 2.2, 2.1}, Vec3{5.1, -0.4, 1.2}, Vec3{-0.2, -0.2, 4.3}}) {
+            CHECK_FALSE(attacher.carried_by_tet(p, 0.1));
+            const auto point = attacher.carried_by_tet(p, 0.5);
+            REQUIRE(point);
+            CHECK(norm(mapped(*point, mesh) - expected(p)) < 1e-9);
+        }
+        CHECK(attacher.distance_outside({10.3, 2.2, 2.1}) == doctest::Approx(0.3));
+    }
 }
