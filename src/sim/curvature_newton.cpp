@@ -159,6 +159,7 @@ private:
     /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
     [[nodiscard]] bool take_tangent(bool cautious) {
         make_room_for_contact();
+        cautious_ = cautious;
         memory_.clear();
         learnt_ = {};
         turn_.begin(at_.state->x);
@@ -187,7 +188,10 @@ private:
         return false;
     }
 
-    /// (H + skew)^-1 b: with H^-1 as preconditioner from the right the product is v + skew H^-1 v.
+    /// (tangent + skew)^-1 b, with H^-1 as preconditioner from the right. Where H is the tangent the product is
+    /// v + skew H^-1 v. Where H had to be made positive definite it is not: the tangent's symmetric part may be
+    /// indefinite though the body is stable, as pressure on a patch with a free rim is not one of a potential, and the
+    /// steps of H would lead on by a share of the way each. Only the cautious are content with H.
     [[nodiscard]] Eigen::VectorXd solve_with_skew(const Eigen::VectorXd& b) {
         const auto precondition = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
             Eigen::MatrixXd column = v;
@@ -195,7 +199,12 @@ private:
             return column;
         };
         const auto multiply = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
-            return v + system_->apply_skew(state_, precondition(v));
+            const Eigen::VectorXd w = precondition(v);
+            if (share_ == 0 || cautious_) return v + system_->apply_skew(state_, w);
+            Eigen::VectorXd product = system_->apply_skew(state_, w);
+            linalg::add_product(layout_->pattern, values_.span(), {w.data(), static_cast<std::size_t>(w.size())}, 1,
+                                {product.data(), static_cast<std::size_t>(product.size())});
+            return product;
         };
         return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
     }
@@ -255,6 +264,7 @@ private:
     AlignedArray<double> projected_;  ///< its positive projection, where it was needed
     AlignedArray<double> blended_;
     double share_ = 0;                                    ///< of the projection in H
+    bool cautious_ = false;                               ///< all of it was asked for
     double share_wanted_ = smallest_share_of_projection;  ///< when it was needed last
     struct {
         const State* state;

@@ -15,6 +15,7 @@ namespace {
 /// The excess length may be no larger than this share of the tolerance: the tension follows it closely.
 constexpr double excess_share = 0.01;
 constexpr std::size_t error_memory = 10;
+constexpr double close = 0.05;  // an error
 
 struct Direction {
     Eigen::VectorXd dx;          ///< (3 free)
@@ -239,7 +240,10 @@ private:
     /// Without an energy only the error can guide. It is a ratio of forces and rises where a cable begins to pull, so
     /// it may rise for a while: not above the largest of the last steps, nor at first above what any loaded body has
     /// (the non-monotone search of Grippo, Lampariello and Lucidi 1986).
+    /// Close to equilibrium, and with tangents that know the skew part, a rise means that the step leads off to another
+    /// equilibrium: none is allowed.
     [[nodiscard]] double allowed_error() const {
+        if (system_.has_skew() && evaluation_.error() < close) return evaluation_.error();
         return errors_.size() < error_memory ? 2 : *std::max_element(errors_.begin(), errors_.end());
     }
 
