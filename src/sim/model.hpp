@@ -168,6 +168,7 @@ struct Description {
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;
     std::vector<int> material_of_tet{};  ///< (tets) where bodies are graded, in place of their region's; else empty
+    std::vector<std::string> notes{};    ///< what people should know of it; a line each
 };
 
 class Model {

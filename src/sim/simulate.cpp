@@ -16,6 +16,7 @@
 #include "sim/elements.hpp"
 #include "sim/pressure_limit.hpp"
 #include "sim/solver_chain.hpp"
+#include "sim/stability.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -31,6 +32,9 @@ constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
 constexpr double friction_slack = 10;         // of the tolerance, where sliding contact goes back and forth
 constexpr double cable_friction_share = 0.1;  // of the tolerance, for the length of a cable with friction
+constexpr double sudden = 5;                  // times as far as in the step before
+constexpr double noticeable = 0.01;           // of the robot's size, as a mean of all nodes
+constexpr int most_pushes = 5;
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
 
@@ -46,11 +50,16 @@ public:
           program_(program),
           system_(model),
           laplacian_(system_),
+          stability_(system_, laplacian_),
           solvers_(make_chain(program.solver, system_, laplacian_)),
           state_(system_.rest()),
           controls_(system_.controls(0)) {
         const Eigen::VectorXd still = Eigen::VectorXd::Zero(state_.x.size());
         history_ = {state_.x, still, state_.x, still, 0};
+        reported_ = {0, state_};
+        Box3 box;
+        for (const Vec3& p : model.mesh().points) box.add(p);
+        size_ = box.diagonal();
         if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
 
@@ -132,14 +141,74 @@ public:
         }
     }
 
+    /// Of a robot at rest at every instant, after each step: whether it jumped on the way, and whether where it is now
+    /// is stable. If not it goes on to where it is, if the program says by how much to push it.
+    void judge(Step& step, std::vector<std::string>& warnings, const Progress& progress) {
+        if (program_.dynamics) return;
+        if (jumped(progress))
+            warnings.push_back(
+                fmt::format("at step {} the robot jumps: between two states near each other there is no "
+                            "equilibrium that leads from one to the other; what it does in between takes "
+                            "time, and the state after it may be another one in reality",
+                            step.index));
+        const bool was_unstable = std::exchange(unstable_, false);
+        const auto motion = stability_.falling_motion(state_, controls_);
+        if (motion && program_.imperfection_m > 0 && leave(*motion, step, progress))
+            warnings.push_back(
+                fmt::format("at step {} the equilibrium is unstable; a push of {:.3g} mm along its softest "
+                            "motion led to a stable one",
+                            step.index, 1e3 * program_.imperfection_m));
+        else if ((unstable_ = motion.has_value()) && !was_unstable)
+            warnings.push_back(
+                fmt::format("from step {} on the equilibrium is unstable: a real robot buckles to one side where this "
+                            "one stays in balance; program.imperfection follows the stable way",
+                            step.index));
+        else if (was_unstable && !unstable_)
+            warnings.push_back(fmt::format("from step {} on the equilibrium is stable again", step.index));
+        reported_ = {time_, state_};
+    }
+
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
-    /// A converged state.
-    struct Known {
-        double time;
-        State state;
-    };
+    /// A step that is much quicker than the one before it is looked at closely.
+    [[nodiscard]] bool jumped(const Progress& progress) {
+        const double way = (state_.x - reported_.state.x).norm();
+        const double before = std::exchange(last_way_, way);
+        if (!stability_.can_judge() || system_.has_cable_friction() || system_.has_friction()) return false;
+        const double reach = std::sqrt(static_cast<double>(state_.x.size() / 3)) * size_;
+        if (!(before > 0) || way < sudden * before || way < noticeable * reach) return false;
+        return is_jump(reported_, {time_, state_}, [&](double time, State& state) {
+            Controls controls = system_.controls(time);
+            state = follow_supports(state, controls);
+            if (!system_.evaluate(state, controls).possible()) return false;
+            solvers_.restart();
+            return solvers_.solve(system_, controls, {program_.tolerance, program_.iteration_limit}, state, progress)
+                .converged;
+        });
+    }
+
+    /// Pushes the state along `motion`, harder until it does not come back; false if no push leads to a stable one.
+    [[nodiscard]] bool leave(const Eigen::VectorXd& motion, Step& step, const Progress& progress) {
+        double push = program_.imperfection_m;
+        for (int k = 0; k < most_pushes && !progress.cancelled(); ++k, push *= 4) {
+            State next = state_;
+            system_.add_free(motion, push, next.x);
+            Controls controls = controls_;
+            if (!system_.evaluate(next, controls).possible() || !passes(next, controls)) return false;
+            solvers_.restart();
+            const StepOutcome outcome = settle_friction(controls, next, progress);
+            step.iterations += outcome.iterations;
+            note(outcome.history, step.index, time_);
+            if (!outcome.converged || stability_.falling_motion(next, controls)) continue;
+            state_ = std::move(next);
+            controls_ = solved_controls_;
+            evaluation_ = outcome.evaluation;
+            past_.clear();  // they lead along the way that was left
+            return true;
+        }
+        return false;
+    }
 
     void note(const std::vector<IterationRecord>& history, int step, double time) {
         for (IterationRecord record : history) {
@@ -353,9 +422,10 @@ private:
     const Program& program_;
     Equilibrium system_;
     FactoredLaplacian laplacian_;
+    Stability stability_;
     SolverChain solvers_;
     State state_;
-    std::deque<Known> past_;    ///< the states before it
+    std::deque<Moment> past_;   ///< the states before it
     Controls controls_;         ///< of the last converged state
     Controls solved_controls_;  ///< of the state that was solved last
     double time_ = 0;
@@ -364,6 +434,10 @@ private:
     std::optional<TangentLayout> body_layout_;  ///< made when damping by stiffness first needs it
     std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
     std::set<std::size_t> warned_;  ///< cables
+    Moment reported_;               ///< after the last step of the program
+    double last_way_ = 0;           ///< that this step took
+    double size_ = 0;               ///< of the robot at rest
+    bool unstable_ = false;         ///< after the last step
     std::vector<IterationRecord> iterations_;
 };
 
@@ -374,6 +448,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     Run walk(model, program);
     result.solver = walk.solver_name();
+    result.warnings = model.description().notes;
     Step rest;
     walk.evaluate_rest();
     walk.describe(rest);
@@ -392,6 +467,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
                                          walk.advice(step.time, progress));
             break;
         }
+        walk.judge(step, result.warnings, progress);
         walk.describe(step);
         walk.warn(k, result.warnings);
         step.wall_s = seconds_since(begin);

@@ -24,11 +24,15 @@ struct Program {
     Solver solver = Solver::automatic;
     std::optional<Dynamics> dynamics = std::nullopt;
     int iteration_limit = 0;  ///< per solved step; 0: the solver's own
+    /// Where an equilibrium turns out to be unstable: it is left by this largest motion of a node, for the stable one
+    /// that the energy then falls to. 0: only a warning.
+    double imperfection_m = 0;
 };
 
 /// With dynamics, time is in seconds: the robot starts at rest and undeformed, and its mass and damping take part.
 /// A step that does not converge is halved, and halved again, down to 1/64 of a step. A program that cannot finish
-/// keeps the steps that converged and says in Trajectory::message at which step it stopped and why.
+/// keeps the steps that converged and says in Trajectory::message at which step it stopped and why. Warnings tell from
+/// which step on the equilibrium is unstable (see Stability), and where the robot jumped.
 [[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress);
 
 /// Positions of the points of every cable for node positions (n, 3): [cable][point].
