@@ -70,6 +70,17 @@ void read_close_gaps(Reader& reader, Context& context) {
     context.robot.mesh.close_gaps = width;
 }
 
+/// How far outside the mesh a guide point or a marker may lie.
+void read_point_reach(Reader& reader, Context& context) {
+    if (!reader.has("point_reach")) {
+        (void)reader.raw("point_reach");
+        return;
+    }
+    const double reach = reader.quantity("point_reach", Dimension::length, 0) / context.robot.unit_m;
+    if (!(reach >= 0)) reader.problem("point_reach", "must not be below zero; \"0 mm\" takes no point outside");
+    context.robot.mesh.point_reach = reach;
+}
+
 void read_mesh(Reader& root, Context& context) {
     Reader reader = root.table("mesh", false);
     MeshSpec& mesh = context.robot.mesh;
@@ -83,6 +94,7 @@ void read_mesh(Reader& root, Context& context) {
     mesh.size = read_size(reader, "size", context);
     mesh.size_near_cables = read_size(reader, "size_near_cables", context);
     read_close_gaps(reader, context);
+    read_point_reach(reader, context);
     if (reader.has("elements_through_wall")) {
         mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
         if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)

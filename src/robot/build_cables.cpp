@@ -91,15 +91,17 @@ void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec
             continue;
         }
         Result<sim::Attachment> attachment =
-            attacher.spread(points[k], draft.robot.unit_m * spec.eyelet_radius, draft.tolerance);
+            attacher.spread(points[k], draft.robot.unit_m * spec.eyelet_radius, draft.point_reach);
         if (!attachment) {
             const bool end = k == 0 || k + 1 == points.size();
             draft.problem(spec.line, "cable", spec.name,
-                          fmt::format("{} {} at {} lies outside every body{}",
+                          fmt::format("{} {} at {} lies outside every body, by {:.3g} mm{}",
                                       spec.guides_at_crossings ? "guide point" : "point", k + 1, draft.show(points[k]),
+                                      1e3 * attacher.distance_outside(points[k]),
                                       end ? "; anchor = \"first\" or \"last\" fixes an end in space" : ""));
             continue;
         }
+        draft.count_point("guide points", attacher.distance_outside(points[k]));
         cable.points.push_back(std::move(*attachment));
     }
     check_shortening(draft, spec, points);

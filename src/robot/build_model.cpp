@@ -7,6 +7,7 @@
 #include "robot/build_contact.hpp"
 #include "robot/build_grades.hpp"
 #include "robot/build_places.hpp"
+#include "sim/free_motion.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -27,6 +28,19 @@ void add_materials(ModelDraft& draft) {
         draft.description.materials.push_back({draft.description.mesh.region_names[static_cast<std::size_t>(notch)],
                                                material::ScaledTarget{softest_Pa(draft.robot)}, 0});
     }
+}
+
+/// At rest the supports alone hold a robot. Contact may do what they leave, so that then it is only said; and a robot
+/// that moves in time may be free.
+Status check_free_motion(const Robot& robot, sim::Description& description) {
+    if (robot.program.dynamics) return {};
+    const auto motion = sim::free_motion(description);
+    if (!motion) return {};
+    if (!description.contact)
+        return input_error("{}: {}; cables, chambers, loads and gravity do not count as supports", robot.file.string(),
+                           *motion);
+    description.notes.push_back(*motion + "; at rest only contact can hold it");
+    return {};
 }
 
 }  // namespace
@@ -52,6 +66,8 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
         if (!contact) return tl::unexpected(contact.error());
         description.contact = std::move(*contact);
     }
+    description.notes = draft.notes_on_points();
+    if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     Result<sim::Model> model = sim::Model::create(std::move(description));
     if (!model) return tl::unexpected(Error{model.error().cause, robot.file.string() + ": " + model.error().message});
     return model;

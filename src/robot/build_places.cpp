@@ -137,13 +137,16 @@ void add_load(ModelDraft& draft, const LoadSpec& load) {
 
 void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSpec& spec) {
     if (const auto* point = std::get_if<Vec3>(&spec.place)) {
-        Result<sim::Attachment> attachment = attacher.carried_by_tet(draft.robot.unit_m * *point, draft.tolerance);
+        const Vec3 place = draft.robot.unit_m * *point;
+        Result<sim::Attachment> attachment = attacher.carried_by_tet(place, draft.point_reach);
+        const double distance = attacher.distance_outside(place);
         if (!attachment) {
             draft.problem(spec.line, "marker", spec.name,
-                          fmt::format("the point {} lies outside every body; {}",
-                                      draft.show(draft.robot.unit_m * *point), draft.show_bounds()));
+                          fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
+                                      1e3 * distance, draft.show_bounds()));
             return;
         }
+        draft.count_point("markers", distance);
         draft.description.markers.push_back({spec.name, std::move(*attachment)});
         return;
     }

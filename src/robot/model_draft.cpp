@@ -14,6 +14,18 @@ namespace {
 /// Points this far outside, as a share of the robot's size, still count as on its surface.
 constexpr double surface_share = 1e-3;
 
+/// So far outside, as a share of the mean edge, the bulge lies that a chord cuts off which is as long as the radius.
+constexpr double reach_share = 1.0 / 8;
+
+double mean_edge(const mesh::TetMesh& mesh) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        for (const auto& [a, b] : mesh::edge_corners)
+            sum += norm(mesh.points[mesh.tet(t)[a]] - mesh.points[mesh.tet(t)[b]]);
+    }
+    return sum / std::max(6.0 * static_cast<double>(mesh.tet_count()), 1.0);
+}
+
 /// The tets that carry material, on the nodes of the mesh.
 mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
     mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};
@@ -63,6 +75,8 @@ ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_r
     bodies = tets_of_bodies(robot, description.mesh);
     for (const Vec3& p : description.mesh.points) box.add(p);
     tolerance = surface_share * box.diagonal();
+    point_reach = std::max(
+        tolerance, robot.mesh.point_reach ? robot.unit_m * *robot.mesh.point_reach : reach_share * mean_edge(bodies));
     // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
     box_margin = robot.mesh.file ? 0 : 1e-9 * box.diagonal();
 }
@@ -79,6 +93,26 @@ std::string ModelDraft::show(const Vec3& p_m) const {
 
 std::string ModelDraft::show_bounds() const {
     return fmt::format("the robot reaches from {} to {}", show(box.low), show(box.high));
+}
+
+void ModelDraft::count_point(std::string_view kind, double distance_m) {
+    Points& counted = points[std::string(kind)];
+    ++counted.all;
+    if (distance_m <= tolerance) return;
+    ++counted.outside;
+    counted.farthest_m = std::max(counted.farthest_m, distance_m);
+}
+
+std::vector<std::string> ModelDraft::notes_on_points() const {
+    std::vector<std::string> notes;
+    for (const auto& [kind, counted] : points) {
+        if (counted.outside == 0) continue;
+        notes.push_back(fmt::format(
+            "{} of {} {} lie outside the mesh, by up to {:.3g} mm; the nearest tetrahedra carry them (mesh.point_reach "
+            "is {:.3g} mm)",
+            counted.outside, counted.all, kind, 1e3 * counted.farthest_m, 1e3 * point_reach));
+    }
+    return notes;
 }
 
 Box3 ModelDraft::box_of(const BoxSelector& selector) const {

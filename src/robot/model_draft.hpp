@@ -1,6 +1,8 @@
 // A model in the making: the mesh, what has been tied to it so far, and what went wrong.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +27,11 @@ struct ModelDraft {
     /// "the robot reaches from ... to ...".
     [[nodiscard]] std::string show_bounds() const;
 
+    /// Counts a point that is tied to the bodies, `distance_m` outside them.
+    void count_point(std::string_view kind, double distance_m);
+    /// What people should know of the points that were counted.
+    [[nodiscard]] std::vector<std::string> notes_on_points() const;
+
     [[nodiscard]] Box3 box_of(const BoxSelector& selector) const;
     /// Index of a region of `whole`. Precondition: it is there.
     [[nodiscard]] std::size_t region_of(Region::Use use, std::string_view name) const;
@@ -45,7 +52,14 @@ struct ModelDraft {
     Box3 box;                        ///< of the description's mesh
     double tolerance = 0;            ///< for what should lie on the surface
     double box_margin = 0;           ///< for what should lie in a box
+    double point_reach = 0;          ///< so far outside the bodies a guide point or a marker may lie
     std::string problems;            ///< one a line
+
+    struct Points {
+        std::size_t all = 0, outside = 0;
+        double farthest_m = 0;
+    };
+    std::map<std::string, Points, std::less<>> points;  ///< by kind
 };
 
 }  // namespace pliant::robot

@@ -174,6 +174,8 @@ void read_program(config::Reader& root, Robot& robot) {
         static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
     if (program.iteration_limit < 0)
         reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
+    program.imperfection_m = reader.quantity("imperfection", Dimension::length, 0);
+    if (!(program.imperfection_m >= 0)) reader.problem("imperfection", "must not be below zero; 0 only warns");
     robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
     if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is absolute: above zero");
     read_dynamics(reader, robot);

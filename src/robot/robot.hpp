@@ -77,6 +77,7 @@ struct MeshSpec {
     std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
     std::optional<double> close_gaps;          ///< in length units, not below 0; else a thousandth of the size
     double size_near_cables = 0;               ///< in length units; 0: no wish
+    std::optional<double> point_reach;         ///< in length units, not below 0; else an eighth of the mean edge
     int line = 0;
 };
 

@@ -543,3 +543,29 @@ TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robo
     CHECK(message("part.stl", binary).find("is geometry, no robot file") != std::string::npos);
     CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
 }
+
+TEST_CASE("a guide point a little outside the mesh is carried and counted, one that is farther is refused") {
+    const std::string outside = with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40.4, 5, 8]]");
+    const Built built = build(outside);
+    const auto& notes = built.model.description().notes;
+    REQUIRE(notes.size() == 1);
+    // The cable's two ends, where it leaves the body, and the flanks of the notch.
+    CHECK_MESSAGE(notes[0].find("1 of 5 guide points lie outside the mesh, by up to 0.4 mm") == 0, notes[0]);
+    CHECK(problem(outside, {"mesh.point_reach=0 mm"}).find("lies outside every body, by 0.4 mm") != std::string::npos);
+    CHECK(problem(outside, {"mesh.point_reach=0.5 mm"}).empty());
+    CHECK(problem(outside, {"mesh.point_reach=-1 mm"}).find("must not be below zero") != std::string::npos);
+    CHECK(build(good).model.description().notes.empty());
+}
+
+TEST_CASE("a support on a line is refused at rest, a pendulum in time is not") {
+    const std::string hinge = with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[0, 0, 0], [0, 10, 0]]");
+    check_problem(hinge, "bar.toml: body \"left\" can turn freely about the line through (0, ");
+    CHECK(problem(hinge, {"program.time_step=0.01 s"}).find("turn freely") == std::string::npos);
+}
+
+TEST_CASE("an imperfection is a length") {
+    const Result<Robot> robot = parse_robot(good, "bar.toml", {"program.imperfection=0.1 mm"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.imperfection_m == doctest::Approx(1e-4));
+    CHECK(problem(good, {"program.imperfection=-1 mm"}).find("must not be below zero") != std::string::npos);
+}
