@@ -82,6 +82,8 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
         fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
                    1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
     }
+    for (const auto& s : last.springs)
+        fmt::print("spring {}: {:.2f} mm, force {:.4f} N\n", s.name, 1e3 * s.length_m, s.force_N);
     for (const auto& c : last.contacts) {
         fmt::print("obstacle {}: presses on the robot with ({:.4f}, {:.4f}, {:.4f}) N\n", c.name, c.force_N.x,
                    c.force_N.y, c.force_N.z);

@@ -31,6 +31,8 @@ constexpr Unit angular_speed_units[] = {{"deg/s", std::numbers::pi / 180}, {"rad
 constexpr Unit angular_acceleration_units[] = {{"deg/s^2", std::numbers::pi / 180}, {"rad/s^2", 1}};
 constexpr Unit dose_units[] = {{"mJ/cm^2", 10}, {"J/m^2", 1}};
 
+constexpr Unit stiffness_units[] = {{"N/mm", 1e3}, {"N/m", 1}, {"mN/mm", 1}};
+
 struct DimensionInfo {
     std::string_view text;
     std::span<const Unit> units;
@@ -66,6 +68,8 @@ DimensionInfo info(Dimension dimension) {
             return {"an angular acceleration such as \"90 deg/s^2\"", angular_acceleration_units};
         case Dimension::dose:
             return {"a dose of light such as \"8 mJ/cm^2\"", dose_units};
+        case Dimension::stiffness:
+            return {"a stiffness such as \"0.5 N/mm\"", stiffness_units};
     }
     return {"", {}};
 }

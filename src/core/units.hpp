@@ -21,7 +21,8 @@ enum class Dimension {
     irradiance,
     angular_speed,
     angular_acceleration,
-    dose
+    dose,
+    stiffness
 };
 
 /// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.

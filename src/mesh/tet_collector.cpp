@@ -55,11 +55,7 @@ void turn_inside_out_tets(TetMesh& mesh) {
         if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
             continue;
         ++turned;
-        std::swap(n[1], n[2]);
-        if (mesh.order == 2) {  // edges 01-02 and 13-23 change places with corners 1 and 2
-            std::swap(n[4], n[6]);
-            std::swap(n[8], n[9]);
-        }
+        reverse_tet({n, width});
     }
     if (turned > 0)
         mesh.notes.push_back(fmt::format("{} of {} tets were inside out and were turned", turned, mesh.tet_count()));

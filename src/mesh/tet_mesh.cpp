@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -109,6 +110,13 @@ double volume_where(const TetMesh& mesh, const Member& member) {
 }
 
 }  // namespace
+
+void reverse_tet(std::span<int> nodes) {
+    std::swap(nodes[1], nodes[2]);
+    if (nodes.size() < 10) return;
+    std::swap(nodes[4], nodes[6]);  // edges 01-02 and 13-23 change places with corners 1 and 2
+    std::swap(nodes[8], nodes[9]);
+}
 
 double signed_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return dot(b - a, cross(c - a, d - a)) / 6;

@@ -40,6 +40,9 @@ struct Face {
     int tet;                   ///< the tet it belongs to; its normal points out of that tet
 };
 
+/// Turns one tet of 4 or 10 nodes inside out, or back.
+void reverse_tet(std::span<int> nodes);
+
 [[nodiscard]] double signed_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// Sum of the corner tets' volumes, of all regions or of one.

@@ -28,6 +28,8 @@ Json actuators_json(const sim::Step& step) {
                                          {"volume_mm3", mm3_per_m3 * chamber.volume_m3},
                                          {"pressure_kPa", 1e-3 * chamber.pressure_Pa}};
     }
+    for (const auto& spring : step.springs)
+        out["springs"][spring.name] = {{"length_mm", mm_per_m * spring.length_m}, {"force_N", spring.force_N}};
     return out;
 }
 

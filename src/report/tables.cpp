@@ -36,11 +36,13 @@ std::string steps_header(const sim::Step& rest, bool contact) {
         "index", "time", "converged", "iterations", "substeps", "residual", "wall_ms", "min_J", "solver"};
     static constexpr std::array<std::string_view, 3> cable = {"length_ratio", "length_mm", "tension_N"};
     static constexpr std::array<std::string_view, 3> chamber = {"volume_ratio", "volume_mm3", "pressure_kPa"};
+    static constexpr std::array<std::string_view, 2> spring = {"length_mm", "force_N"};
     static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
     Row row;
     for (const std::string_view name : common) row.text(name);
     for (const auto& c : rest.cables) names(row, c.name, cable);
     for (const auto& c : rest.chambers) names(row, c.name, chamber);
+    for (const auto& s : rest.springs) names(row, s.name, spring);
     for (const auto& s : rest.supports) names(row, s.name, force);
     for (const auto& o : rest.contacts) names(row, o.name, force);
     if (contact) {
@@ -70,6 +72,10 @@ std::string steps_row(const sim::Step& step, bool contact) {
         row.number(c.volume_ratio);
         row.number(1e9 * c.volume_m3);
         row.number(1e-3 * c.pressure_Pa);
+    }
+    for (const auto& s : step.springs) {
+        row.number(1e3 * s.length_m);
+        row.number(s.force_N);
     }
     for (const auto& s : step.supports) row.vector(s.force_N, 1);
     for (const auto& o : step.contacts) row.vector(o.force_N, 1);

@@ -35,16 +35,26 @@ sim::CableTarget read_target(Reader& cable) {
     return target;
 }
 
-void read_cable(Reader& reader, Context& context, CableSpec& cable) {
-    cable.points = reader.vectors("points");
-    if (reader.has("points") && cable.points.size() < 2) reader.problem("points", "a cable needs at least two points");
-    for (std::size_t i = 1; i < cable.points.size(); ++i) {
-        if (cable.points[i] == cable.points[i - 1])
+/// `points`, of what `kind` is.
+std::vector<Vec3> read_path(Reader& reader, std::string_view kind) {
+    std::vector<Vec3> points = reader.vectors("points");
+    if (reader.has("points") && points.size() < 2)
+        reader.problem("points", fmt::format("a {} needs at least two points", kind));
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        if (points[i] == points[i - 1])
             reader.problem("points", fmt::format("points {} and {} are the same", i, i + 1));
     }
+    return points;
+}
+
+Anchor read_anchor(Reader& reader) {
     const std::string anchor = reader.choice("anchor", {"none", "first", "last"}, "none");
-    cable.anchor = anchor == "first" ? CableSpec::Anchor::first
-                                     : (anchor == "last" ? CableSpec::Anchor::last : CableSpec::Anchor::none);
+    return anchor == "first" ? Anchor::first : (anchor == "last" ? Anchor::last : Anchor::none);
+}
+
+void read_cable(Reader& reader, Context& context, CableSpec& cable) {
+    cable.points = read_path(reader, "cable");
+    cable.anchor = read_anchor(reader);
     cable.guides_at_crossings = reader.choice("guides", {"points", "crossings"}, "points") == "crossings";
     cable.gap_elements = reader.choice("model", {"length", "gap-elements"}, "length") == "gap-elements";
     cable.fill_notches = reader.boolean("fill_notches", false);
@@ -60,6 +70,21 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     cable.target = read_target(reader);
     if (cable.gap_elements && cable.target.kind == sim::CableTarget::Kind::tension_N)
         reader.problem("target", "model = \"gap-elements\" knows lengths only: length_ratio or shortening");
+}
+
+void read_spring(Reader& reader, Context& context, SpringSpec& spring) {
+    spring.points = read_path(reader, "spring");
+    spring.anchor = read_anchor(reader);
+    spring.eyelet_radius = reader.quantity("eyelet_radius", Dimension::length, 0) / context.robot.unit_m;
+    if (spring.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
+    spring.stiffness_N_m = reader.quantity("stiffness", Dimension::stiffness);
+    if (reader.has("stiffness") && !(spring.stiffness_N_m > 0)) reader.problem("stiffness", "must be above zero");
+    if (reader.has("free_length")) {
+        spring.free_length = reader.quantity("free_length", Dimension::length) / context.robot.unit_m;
+        if (*spring.free_length < 0) reader.problem("free_length", "must not be negative");
+    }
+    (void)reader.raw("free_length");
+    spring.only_pulls = reader.boolean("only_pulls", false);
 }
 
 sim::ChamberTarget read_chamber_target(Reader& chamber) {
@@ -86,7 +111,8 @@ sim::ChamberTarget read_chamber_target(Reader& chamber) {
 std::optional<Geometry> read_drawn_air(Reader& reader, Context& context) {
     std::optional<Geometry> air;
     if (reader.has("surface")) {
-        air = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context)};
+        air = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context), "",
+                          read_placement(reader, "place")};
     } else if (reader.has("region")) {
         air = MeshRegion{reader.text("region"), {}};
         if (!context.robot.mesh.file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
@@ -181,6 +207,7 @@ void add_notches(Reader& root, Robot& robot) {
 
 void read_actuators(Reader& root, Context& context) {
     read_each(root, context, "cable", "cables", context.robot.cables, read_cable);
+    read_each(root, context, "spring", "springs", context.robot.springs, read_spring);
     read_each(root, context, "chamber", "chambers", context.robot.chambers, read_chamber);
     read_each(root, context, "gap", "gaps", context.robot.gaps, read_gap);
     add_notches(root, context.robot);

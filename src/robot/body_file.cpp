@@ -90,6 +90,7 @@ void read_mesh(Reader& root, Context& context) {
         reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
     if (reader.has("file")) {
         mesh.file = need_file(reader, "file", reader.text("file"), context);
+        mesh.placement = read_placement(reader, "place");
     }
     mesh.size = read_size(reader, "size", context);
     mesh.size_near_cables = read_size(reader, "size_near_cables", context);
@@ -130,21 +131,38 @@ int find_material(Reader& reader, Context& context) {
     return 0;
 }
 
+/// A solid keeps its curved faces, so it cannot be scaled or mirrored.
+mesh::Solid placed_solid(Reader& reader, mesh::Solid solid, const mesh::Placement& placement) {
+    if (placement.scale != 1 || norm(placement.mirror_normal) > 0)
+        reader.problem("place", "a STEP file can be rotated, moved and repeated, not scaled or mirrored");
+    const auto make = [](auto shape) { return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{shape}); };
+    const auto move = [&](const mesh::Solid& of, const mesh::RigidMotion& motion) -> mesh::Solid {
+        return make(mesh::TranslatedSolid{
+            make(mesh::RotatedSolid{of, motion.center, motion.axis, motion.angle_rad}), motion.shift});
+    };
+    if (reader.has("place")) solid = move(solid, placement.motion);
+    mesh::CombinedSolid all{mesh::CombinedSolid::Operation::unite, {solid}};
+    while (static_cast<int>(all.parts.size()) < placement.count)
+        all.parts.push_back(move(all.parts.back(), placement.step));
+    return all.parts.size() == 1 ? solid : make(std::move(all));
+}
+
 /// A STEP file becomes a solid like those that are drawn here; the rest are triangles, which are read when they are
 /// needed.
 Geometry read_file_body(Reader& reader, const std::string& file, Context& context) {
     const std::filesystem::path path = need_file(reader, "geometry", file, context);
     const std::string part = reader.has("part") ? reader.text("part") : "";
     (void)reader.raw("part");
+    const mesh::Placement placement = read_placement(reader, "place");
     std::string head(64, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
     if (!mesh::looks_like_step(head)) {
         if (!part.empty() && !threemf::looks_like_zip(head)) reader.problem("part", "chooses from a STEP or 3MF file");
-        return SurfaceFile{path, part};
+        return SurfaceFile{path, part, placement};
     }
     Result<mesh::Solid> solid = mesh::read_step(path, part, 1e-3 / context.robot.unit_m);
-    if (solid) return std::move(*solid);
+    if (solid) return placed_solid(reader, std::move(*solid), placement);
     reader.problem("geometry", solid.error().message);
     return SurfaceFile{path, part};
 }
@@ -171,6 +189,8 @@ Geometry read_geometry(Reader& reader, Context& context) {
     }
     if (const auto* file = std::get_if<std::string>(&geometry->data)) return read_file_body(reader, *file, context);
     if (reader.raw("part") != nullptr) reader.problem("part", "chooses from a STEP or 3MF file");
+    if (reader.raw("place") != nullptr)
+        reader.problem("place", "is for files; a shape is placed by translate, rotate and repeat");
     return read_shape(reader, context);
 }
 

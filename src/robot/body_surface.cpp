@@ -51,10 +51,14 @@ Result<BodyTriangles> triangles_of_3mf(const SurfaceFile& file, double unit_m) {
 Result<BodyTriangles> read_triangles(const SurfaceFile& file, double unit_m) {
     const Result<std::string> bytes = read_file(file.path);
     if (!bytes) return tl::unexpected(bytes.error());
-    if (threemf::looks_like_zip(*bytes)) return triangles_of_3mf(file, unit_m);
+    if (threemf::looks_like_zip(*bytes)) {
+        Result<BodyTriangles> triangles = triangles_of_3mf(file, unit_m);
+        if (triangles) triangles->mesh = mesh::placed(std::move(triangles->mesh), file.placement);
+        return triangles;
+    }
     Result<mesh::SurfaceFile> surface = mesh::parse_surface(*bytes, file.path.string());
     if (!surface) return tl::unexpected(surface.error());
-    return BodyTriangles{std::move(surface->mesh), std::move(surface->warnings)};
+    return BodyTriangles{mesh::placed(std::move(surface->mesh), file.placement), std::move(surface->warnings)};
 }
 
 }  // namespace pliant::robot

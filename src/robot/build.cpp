@@ -230,6 +230,7 @@ Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vect
 Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
     Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
     if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
+    mesh = mesh::placed(std::move(*mesh), robot.mesh.placement);
     const std::vector<Region> users = regions_of(robot);
     std::vector<int> user_of_tet(mesh->tet_count(), -1);
     for (std::size_t u = 0; u < users.size(); ++u) {

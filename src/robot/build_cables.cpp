@@ -80,30 +80,50 @@ void check_shortening(ModelDraft& draft, const CableSpec& spec, const std::vecto
     }
 }
 
-void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec& spec) {
-    sim::Cable cable{spec.name, {}, spec.target, spec.friction, spec.anchor != CableSpec::Anchor::last};
-    const auto points = guide_points(draft, spec);
+/// What a path of points is tied to; `kind`, `point` and those of the spec are for messages.
+template <class Spec>
+std::vector<sim::Attachment> attach_path(ModelDraft& draft, const sim::Attacher& attacher, const Spec& spec,
+                                         const std::vector<Vec3>& points, std::string_view kind,
+                                         std::string_view point) {
+    std::vector<sim::Attachment> attached;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const bool anchored = (k == 0 && spec.anchor == CableSpec::Anchor::first) ||
-                              (k + 1 == points.size() && spec.anchor == CableSpec::Anchor::last);
+        const bool anchored =
+            (k == 0 && spec.anchor == Anchor::first) || (k + 1 == points.size() && spec.anchor == Anchor::last);
         if (anchored) {
-            cable.points.push_back({{}, {}, points[k]});
+            attached.push_back({{}, {}, points[k]});
             continue;
         }
         Result<sim::Attachment> attachment =
             attacher.spread(points[k], draft.robot.unit_m * spec.eyelet_radius, draft.point_reach);
         if (!attachment) {
             const bool end = k == 0 || k + 1 == points.size();
-            draft.problem(spec.line, "cable", spec.name,
-                          fmt::format("{} {} at {} lies outside every body, by {:.3g} mm{}",
-                                      spec.guides_at_crossings ? "guide point" : "point", k + 1, draft.show(points[k]),
-                                      1e3 * attacher.distance_outside(points[k]),
+            draft.problem(spec.line, kind, spec.name,
+                          fmt::format("{} {} at {} lies outside every body, by {:.3g} mm{}", point, k + 1,
+                                      draft.show(points[k]), 1e3 * attacher.distance_outside(points[k]),
                                       end ? "; anchor = \"first\" or \"last\" fixes an end in space" : ""));
             continue;
         }
         draft.count_point("guide points", attacher.distance_outside(points[k]));
-        cable.points.push_back(std::move(*attachment));
+        attached.push_back(std::move(*attachment));
     }
+    return attached;
+}
+
+void add_spring(ModelDraft& draft, const sim::Attacher& attacher, const SpringSpec& spec) {
+    std::vector<Vec3> points;
+    for (const Vec3& point : spec.points) points.push_back(draft.robot.unit_m * point);
+    sim::Spring spring{spec.name, attach_path(draft, attacher, spec, points, "spring", "point"), spec.stiffness_N_m};
+    if (spec.free_length) spring.free_length_m = draft.robot.unit_m * *spec.free_length;
+    spring.only_pulls = spec.only_pulls;
+    draft.description.springs.push_back(std::move(spring));
+}
+
+void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec& spec) {
+    const auto points = guide_points(draft, spec);
+    sim::Cable cable{spec.name,
+                     attach_path(draft, attacher, spec, points, "cable",
+                                 spec.guides_at_crossings ? "guide point" : "point"),
+                     spec.target, spec.friction, spec.anchor != Anchor::last};
     check_shortening(draft, spec, points);
     if (spec.gap_elements) drive_by_gaps(draft, spec, points);
     draft.description.cables.push_back(std::move(cable));
@@ -113,6 +133,10 @@ void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec
 
 void add_cables(ModelDraft& draft, const sim::Attacher& attacher) {
     for (const CableSpec& cable : draft.robot.cables) add_cable(draft, attacher, cable);
+}
+
+void add_springs(ModelDraft& draft, const sim::Attacher& attacher) {
+    for (const SpringSpec& spring : draft.robot.springs) add_spring(draft, attacher, spring);
 }
 
 }  // namespace pliant::robot

@@ -58,6 +58,7 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     add_plates(draft);
     add_loads(draft);
     add_cables(draft, attacher);
+    add_springs(draft, attacher);
     add_chambers(draft, attacher);
     add_markers(draft, attacher);
     if (!draft.problems.empty()) return tl::unexpected(Error{Cause::input, draft.problems});

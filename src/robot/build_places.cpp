@@ -101,7 +101,7 @@ void add_support(ModelDraft& draft, const FixedSpec& fixed) {
     constexpr double radians = std::numbers::pi / 180;
     const sim::Turn turn{radians * fixed.rotate_deg, fixed.rotation_axis, draft.robot.unit_m * fixed.rotation_center};
     draft.description.supports.push_back(
-        {fixed.name, std::move(nodes), draft.robot.unit_m * fixed.move, fixed.share, turn});
+        {fixed.name, std::move(nodes), draft.robot.unit_m * fixed.move, fixed.share, turn, fixed.directions});
 }
 
 void add_plate(ModelDraft& draft, const PlateSpec& plate) {
@@ -113,17 +113,22 @@ void add_plate(ModelDraft& draft, const PlateSpec& plate) {
 }
 
 void add_load(ModelDraft& draft, const LoadSpec& load) {
-    const Box3 box = draft.box_of(load.box);
+    const std::size_t before = draft.problems.size();
+    std::vector<bool> caught(draft.description.mesh.points.size(), false);
+    for (const int node : select(draft, load.selector, "load", load.name, load.line))
+        caught[static_cast<std::size_t>(node)] = true;
     std::vector<mesh::Face> faces;
     for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
-        const auto inside = [&](int i) {
-            return box.contains(draft.description.mesh.points[face.nodes[i]], draft.box_margin);
-        };
+        const auto inside = [&](std::size_t i) { return caught[static_cast<std::size_t>(face.nodes[i])]; };
         if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
     }
+    if (draft.problems.size() > before) return;
     if (faces.empty()) {
+        const bool box = std::holds_alternative<BoxSelector>(load.selector);
         draft.problem(load.line, "load", load.name,
-                      "no face of the outer surface lies inside the box; " + draft.show_bounds());
+                      fmt::format("no face of the outer surface lies {}; {}",
+                                  box ? "inside the box" : "where it acts: all three corners must",
+                                  draft.show_bounds()));
         return;
     }
     if (load.pressure_Pa) {

@@ -19,7 +19,8 @@ std::variant<mesh::Solid, SurfaceFile, PlaneSelector> read_obstacle_shape(Reader
     if (reader.has("plane")) {
         shape = read_plane(reader);
     } else if (reader.has("surface")) {
-        shape = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context)};
+        shape = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context), "",
+                            read_placement(reader, "place")};
     } else if (reader.has("geometry")) {
         shape = read_shape(reader, context);
     }

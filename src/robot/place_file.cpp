@@ -1,6 +1,7 @@
 #include "robot/place_file.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "core/text.hpp"
 
@@ -36,7 +37,7 @@ Selector read_selector(Reader& reader, const Context& context) {
     }
     if (given.size() != 1) {
         for (const std::string& kind : given) (void)reader.raw(kind);
-        reader.problem("", given.empty() ? std::string("says nothing to hold; add box, plane, sphere, surface or nodes")
+        reader.problem("", given.empty() ? std::string("names no place; add box, plane, sphere, surface or nodes")
                                          : "takes only one of " + join_names(given));
         return BoxSelector{};
     }
@@ -45,6 +46,23 @@ Selector read_selector(Reader& reader, const Context& context) {
     if (given[0] == "sphere") return read_sphere(reader);
     if (given[0] == "surface") return SurfaceSelector{need_file(reader, "surface", reader.text("surface"), context)};
     return read_nodes(reader);
+}
+
+constexpr std::string_view direction_help =
+    "is \"normal\" or a list such as [\"x\", \"z\"] or [[1, 1, 0]]: the directions in which the nodes are held";
+
+/// "x", "y", "z", or a vector that is not zero.
+std::optional<Vec3> direction_of(const config::Value& value) {
+    if (const auto* name = std::get_if<std::string>(&value.data)) {
+        if (*name == "x") return Vec3{1, 0, 0};
+        if (*name == "y") return Vec3{0, 1, 0};
+        if (*name == "z") return Vec3{0, 0, 1};
+        return std::nullopt;
+    }
+    config::Problems scratch("");
+    const config::Value wrapped{config::Table{{"direction", value}}, value.line};
+    const Vec3 direction = Reader(wrapped, scratch).vector("direction");
+    return scratch.empty() && norm(direction) > 0 ? std::optional(direction) : std::nullopt;
 }
 
 /// rotate = { angle = 90, axis = [x, y, z], center = [x, y, z] }; degrees, as in shapes.
@@ -58,9 +76,32 @@ void read_rotation(Reader& reader, FixedSpec& fixed) {
     rotate.finish();
 }
 
+/// directions = "normal" (of the plane), or a list of "x", "y", "z" and vectors.
+void read_directions(Reader& reader, FixedSpec& fixed) {
+    const config::Value* value = reader.raw("directions");
+    if (value == nullptr) return;
+    const auto* plane = std::get_if<PlaneSelector>(&fixed.selector);
+    const auto* word = std::get_if<std::string>(&value->data);
+    if (word != nullptr && *word == "normal") {
+        if (plane == nullptr) reader.problem("directions", "\"normal\" is that of a plane; give plane = { ... }");
+        if (plane != nullptr) fixed.directions = {plane->normal};
+        return;
+    }
+    const auto* list = std::get_if<config::Array>(&value->data);
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+        const std::optional<Vec3> direction = direction_of((*list)[i]);
+        if (!direction) return reader.problem("directions", direction_help);
+        fixed.directions.push_back(*direction);
+    }
+    if (fixed.directions.empty()) reader.problem("directions", direction_help);
+    if (reader.has("rotate"))
+        reader.problem("directions", "has no meaning beside rotate: a support that rotates holds all directions");
+}
+
 void read_support(Reader& reader, Context& context, FixedSpec& fixed) {
     fixed.selector = read_selector(reader, context);
     fixed.move = reader.vector("move", Vec3{});
+    read_directions(reader, fixed);
     read_rotation(reader, fixed);
 }
 
@@ -68,8 +109,8 @@ void read_plate(Reader& reader, Context& context, PlateSpec& plate) {
     plate.selector = read_selector(reader, context);
 }
 
-void read_load(Reader& reader, Context&, LoadSpec& load) {
-    load.box = read_box(reader);
+void read_load(Reader& reader, Context& context, LoadSpec& load) {
+    load.selector = read_selector(reader, context);
     if (reader.has("pressure")) {
         load.pressure_Pa = reader.quantity("pressure", Dimension::pressure);
         if (reader.has("force")) reader.problem("force", "give either force or pressure");

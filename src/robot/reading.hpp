@@ -34,6 +34,9 @@ struct Context {
 /// `plane`: a point and a normal that is not zero.
 [[nodiscard]] PlaneSelector read_plane(config::Reader& reader);
 
+/// The table `key`: where a mesh from a file is put. The file as it is, where the key is missing.
+[[nodiscard]] mesh::Placement read_placement(config::Reader& reader, std::string_view key);
+
 /// `geometry`, written as a shape. Precondition: the key is there.
 [[nodiscard]] mesh::Solid read_shape(config::Reader& reader, Context& context);
 

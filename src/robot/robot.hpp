@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/vec3.hpp"
 #include "material/law.hpp"
+#include "mesh/placement.hpp"
 #include "mesh/solid.hpp"
 #include "sim/simulate.hpp"
 
@@ -38,7 +39,8 @@ struct BoxSelector {
 /// region).
 struct SurfaceFile {
     std::filesystem::path path;
-    std::string part{};  ///< of a 3MF file: the object or the material; empty: all of it
+    std::string part{};          ///< of a 3MF file: the object or the material; empty: all of it
+    mesh::Placement placement{};  ///< lengths in length units
 };
 struct MeshRegion {
     std::string name;
@@ -73,6 +75,7 @@ struct BodySpec {
 struct MeshSpec {
     double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
     std::optional<std::filesystem::path> file;
+    mesh::Placement placement{};  ///< of the file's mesh; lengths in length units
     int order = 2;
     std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
     std::optional<double> close_gaps;          ///< in length units, not below 0; else a thousandth of the size
@@ -103,7 +106,8 @@ struct FixedSpec {
     Vec3 move;  ///< length units
     double rotate_deg = 0;
     Vec3 rotation_axis{1, 0, 0};
-    Vec3 rotation_center;  ///< length units
+    Vec3 rotation_center;          ///< length units
+    std::vector<Vec3> directions;  ///< in which the nodes are held; none: in all
     sim::Curve share = sim::ramp(0, 1);
     int line = 0;
 };
@@ -117,15 +121,17 @@ struct PlateSpec {
 
 struct LoadSpec {
     std::string name;
-    BoxSelector box;
+    Selector selector;
     Vec3 force_N;
     std::optional<double> pressure_Pa;  ///< instead of the force: follows the surface, presses on it where positive
     sim::Curve share = sim::ramp(0, 1);
     int line = 0;
 };
 
+/// Which end of a cable or spring is fixed in space.
+enum class Anchor { none, first, last };
+
 struct CableSpec {
-    enum class Anchor { none, first, last };
     std::string name;
     std::vector<Vec3> points;
     Anchor anchor = Anchor::none;
@@ -135,6 +141,17 @@ struct CableSpec {
     sim::CableTarget target;
     bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
     bool fill_notches = false;  ///< the notches that it crosses are gaps
+    int line = 0;
+};
+
+struct SpringSpec {
+    std::string name;
+    std::vector<Vec3> points;
+    Anchor anchor = Anchor::none;
+    double eyelet_radius = 0;  ///< length units
+    double stiffness_N_m = 0;
+    std::optional<double> free_length;  ///< length units; none: as drawn
+    bool only_pulls = false;
     int line = 0;
 };
 
@@ -193,6 +210,7 @@ struct Robot {
     std::vector<PlateSpec> plates;
     std::vector<LoadSpec> loads;
     std::vector<CableSpec> cables;
+    std::vector<SpringSpec> springs;
     std::vector<ChamberSpec> chambers;
     std::vector<GapSpec> gaps;
     std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle

@@ -6,10 +6,10 @@
 
 namespace pliant::sim {
 
-CablePath::CablePath(const Cable& cable, std::span<const double> rest) {
-    for (std::size_t k = 0; k + 1 < cable.points.size(); ++k) {
-        const Attachment& from = cable.points[k];
-        const Attachment& to = cable.points[k + 1];
+CablePath::CablePath(std::span<const Attachment> points, std::span<const double> rest) {
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        const Attachment& from = points[k];
+        const Attachment& to = points[k + 1];
         std::map<int, double> weight;
         for (std::size_t i = 0; i < to.nodes.size(); ++i) weight[to.nodes[i]] += to.weights[i];
         for (std::size_t i = 0; i < from.nodes.size(); ++i) weight[from.nodes[i]] -= from.weights[i];
@@ -88,6 +88,25 @@ void CablePath::add_gradient(std::span<const double> x, double factor, std::span
             target[2] += f.z;
         }
     }
+}
+
+std::vector<CablePath::NodeGradient> CablePath::gradient(std::span<const double> x) const {
+    std::map<int, Vec3> sums;
+    for (const Segment& segment : segments_) {
+        const Vec3 d = vector_of(segment, x);
+        const double l = std::max(norm(d), met_length_m_);
+        for (std::size_t i = 0; i < segment.nodes.size(); ++i)
+            sums[segment.nodes[i]] += (segment.weights[i] / l) * d;
+    }
+    return {sums.begin(), sums.end()};
+}
+
+std::vector<int> CablePath::nodes() const {
+    std::vector<int> all;
+    for (const Segment& segment : segments_) all.insert(all.end(), segment.nodes.begin(), segment.nodes.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
 }
 
 void CablePath::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,

@@ -1,7 +1,8 @@
-// The geometry of one cable: its length and how the length changes with the nodes.
+// The geometry of one cable or spring: its length and how the length changes with the nodes.
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/vec3.hpp"
@@ -18,8 +19,8 @@ namespace pliant::sim {
 /// the cable) it is replaced by the parabola that continues it smoothly (Huber), so that the points stay together.
 class CablePath {
 public:
-    /// `rest` (3n): node positions at rest.
-    CablePath(const Cable& cable, std::span<const double> rest);
+    /// `points`: at least two. `rest` (3n): node positions at rest.
+    CablePath(std::span<const Attachment> points, std::span<const double> rest);
 
     /// With `shares` (segments) all three are those of the weighted length sum of shares[k] |d_k|; else all shares
     /// are 1.
@@ -27,6 +28,11 @@ public:
     /// forces (3n) += factor * dL/dx.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
                       std::span<const double> shares = {}) const;
+    using NodeGradient = std::pair<int, Vec3>;  ///< a node and dL by its position
+    /// dL/dx of all nodes that the path depends on, ascending.
+    [[nodiscard]] std::vector<NodeGradient> gradient(std::span<const double> x) const;
+    /// Those nodes, ascending.
+    [[nodiscard]] std::vector<int> nodes() const;
     /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques().
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values,

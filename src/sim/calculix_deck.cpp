@@ -78,6 +78,20 @@ Status write_law(Out out, const material::Law& any) {
         any);
 }
 
+/// 0, 1 or 2 where a direction is that of an axis, else -1.
+int axis_of(const Vec3& direction) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (std::fabs(direction[axis]) == norm(direction)) return static_cast<int>(axis);
+    }
+    return -1;
+}
+
+bool holds(const Support& support, int axis) {
+    return support.directions.empty() ||
+           std::any_of(support.directions.begin(), support.directions.end(),
+                       [&](const Vec3& direction) { return axis_of(direction) == axis; });
+}
+
 class DeckWriter {
 public:
     DeckWriter(const Description& description, const Effort& effort) : d_(description), effort_(effort) {}
@@ -103,12 +117,17 @@ private:
         if (d_.contact) return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
+        if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs");
         if (!d_.material_of_tet.empty())
             return input_error(
                 "CalculiX: the deck has no bodies that change from one material to another; leave blend out");
         for (const Support& support : d_.supports) {
             if (std::fabs(support.turn.angle_rad * support.share.at(1)) > most_turn_rad)
                 return input_error("CalculiX: support \"{}\" turns by more than 60 degrees", support.name);
+            for (const Vec3& direction : support.directions) {
+                if (axis_of(direction) < 0)
+                    return input_error("CalculiX: support \"{}\" holds a direction that is not x, y or z", support.name);
+            }
         }
         for (const Cable& cable : d_.cables) {
             if (cable.target.kind != CableTarget::Kind::tension_N)
@@ -249,7 +268,9 @@ private:
             for (const int n : support.nodes) {
                 const Vec3& rest = d_.mesh.points[static_cast<std::size_t>(n)];
                 const Vec3 move = mm_per_m * (support.position(rest, support.share.at(1)) - rest);
-                line("{0},1,1,{1:.12g}\n{0},2,2,{2:.12g}\n{0},3,3,{3:.12g}", n + 1, move.x, move.y, move.z);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (holds(support, static_cast<int>(axis))) line("{0},{1},{1},{2:.12g}", n + 1, axis + 1, move[axis]);
+                }
             }
         }
         if (!d_.loads.empty()) line("*CLOAD");

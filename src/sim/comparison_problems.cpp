@@ -164,7 +164,7 @@ Description air_block(int order, const material::Law& law, const ChamberTarget& 
 }
 
 double cable_length(const Description& description, const std::vector<Vec3>& positions) {
-    return CablePath(description.cables.at(0), flat(description.mesh.points)).length(flat(positions));
+    return CablePath(description.cables.at(0).points, flat(description.mesh.points)).length(flat(positions));
 }
 
 double chamber_volume(const Description& description, const std::vector<Vec3>& positions) {

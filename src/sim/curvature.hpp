@@ -80,6 +80,7 @@ public:
     [[nodiscard]] double work() const;
 
 private:
+    [[nodiscard]] Eigen::VectorXd follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const;
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "linalg/cholesky.hpp"
 #include "sim/curvature.hpp"
 #include "sim/elements.hpp"
@@ -36,6 +38,11 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     scalar.block = 1;
     std::vector<double> values(scalar.entries(), 0.0);
     model.elements().add_laplacian(layout->element_sums, values);
+    // It knows no directions: a node that is held in some of them is held a little in all, so that the body is held.
+    for (const FreeRoller& roller : system.rollers()) {
+        double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
+        diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
+    }
     state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar)});
     // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
@@ -67,8 +74,43 @@ Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen
     state_->model->elements().apply_laplacian({support_motion.data(), static_cast<std::size_t>(support_motion.size())},
                                               {coupling.data(), static_cast<std::size_t>(coupling.size())});
     Eigen::VectorXd motion = -system.restrict_to_free(coupling);
+    if (!system.rollers().empty()) return follow_on_rollers(system, motion);
     solve(motion);
     return motion;
+}
+
+/// Conjugate gradients on the Laplacian of what may move, with the factor as preconditioner.
+Eigen::VectorXd FactoredLaplacian::follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const {
+    constexpr int most_rounds = 60;
+    constexpr double enough = 1e-3;
+    const auto multiply = [&](const Eigen::VectorXd& v) {
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * state_->model->node_count()), force = motion;
+        system.add_free(v, 1, motion);
+        state_->model->elements().apply_laplacian({motion.data(), static_cast<std::size_t>(motion.size())},
+                                                  {force.data(), static_cast<std::size_t>(force.size())});
+        return system.restrict_to_free(force);
+    };
+    const auto precondition = [&](const Eigen::VectorXd& force) {
+        Eigen::VectorXd motion = force;
+        solve(motion);
+        for (const FreeRoller& roller : system.rollers())
+            motion.segment<3>(3 * roller.free) = (roller.may_move * motion.segment<3>(3 * roller.free)).eval();
+        return motion;
+    };
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(forces.size()), left = forces;
+    Eigen::VectorXd better = precondition(left), direction = better;
+    double size = left.dot(better);
+    const double wanted = enough * enough * size;
+    for (int round = 0; round < most_rounds && size > wanted && size > 0; ++round) {
+        const Eigen::VectorXd force = multiply(direction);
+        const double share = size / direction.dot(force);
+        sum += share * direction;
+        left -= share * force;
+        better = precondition(left);
+        const double before = std::exchange(size, left.dot(better));
+        direction = better + (size / before) * direction;
+    }
+    return sum;
 }
 
 Eigen::VectorXd FactoredLaplacian::turn(const Equilibrium& system, const Turning& turning) const {

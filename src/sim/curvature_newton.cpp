@@ -164,7 +164,7 @@ private:
         learnt_ = {};
         turn_.begin(at_.state->x);
         if (system_->has_skew()) state_ = *at_.state;
-        positions_ = system_->restrict_to_free(at_.state->x);
+        positions_ = system_->free_positions(at_.state->x);
         assemble(false, values_);
         share_ = 0;
         if (!cautious && (usable_ = inverse_->set(values_.span(), positions_, Effort::usual))) {

@@ -30,16 +30,6 @@ void describe_contact(const Model& model, const Equilibrium& system, const State
     step.smallest_distance_m = forces.smallest_distance_m;
 }
 
-/// What holds the support where it is.
-Vec3 reaction(const Support& support, const Evaluation& evaluation) {
-    Vec3 sum;
-    for (const int node : support.nodes) {
-        const auto force = evaluation.out_of_balance.segment<3>(3 * node);
-        sum += Vec3{force[0], force[1], force[2]};
-    }
-    return sum;
-}
-
 }  // namespace
 
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
@@ -51,7 +41,12 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
     step.energy_J = system.potential_energy(state, controls);
     describe_actuators(model, system, state, x, step);
     if (model.contact() != nullptr) describe_contact(model, system, state, controls, step);
-    for (const Support& support : d.supports) step.supports.push_back({support.name, reaction(support, evaluation)});
+    for (std::size_t s = 0; s < d.springs.size(); ++s) {
+        const SpringPath& spring = system.springs()[s];
+        step.springs.push_back({d.springs[s].name, spring.length(x), spring.force(x)});
+    }
+    const std::vector<Vec3> reactions = model.held().reactions(d.supports, evaluation.out_of_balance);
+    for (std::size_t s = 0; s < reactions.size(); ++s) step.supports.push_back({d.supports[s].name, reactions[s]});
     for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
     for (std::size_t n = 0; n + 2 < x.size(); n += 3) step.positions.push_back({x[n], x[n + 1], x[n + 2]});
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "sim/elements.hpp"
 
 namespace pliant::sim {
@@ -59,6 +60,10 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
         gravity_.segment<3>(3 * i) =
             model.elements().node_mass_kg()[static_cast<std::size_t>(i)] * vector(d.gravity_m_s2);
     }
+    for (const HeldNodes::Roller& roller : model.held().rollers()) {
+        const int free = model.free_index()[static_cast<std::size_t>(roller.node)];
+        if (free >= 0) rollers_.push_back({roller.node, free, roller.may_move});
+    }
     add_actuators();
     for (std::size_t k = 0; k < d.pressures.size(); ++k) {
         if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
@@ -78,7 +83,8 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
 void Equilibrium::add_actuators() {
     const Description& d = model_->description();
     const auto rest = view(std::as_const(rest_));
-    for (const Cable& cable : d.cables) actuators_.emplace_back(CablePath(cable, rest), rest);
+    for (const Cable& cable : d.cables) actuators_.emplace_back(CablePath(cable.points, rest), rest);
+    for (const Spring& spring : d.springs) springs_.emplace_back(spring, rest);
     for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
     for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
     grows_.assign(actuators_.size(), false);
@@ -217,14 +223,7 @@ State Equilibrium::rest() const {
 }
 
 void Equilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
-    const auto& supports = model_->description().supports;
-    const auto& rest = model_->mesh().points;
-    for (std::size_t s = 0; s < supports.size(); ++s) {
-        for (const int node : supports[s].nodes) {
-            x.segment<3>(3 * node) =
-                vector(supports[s].position(rest[static_cast<std::size_t>(node)], controls.support_share[s]));
-        }
-    }
+    model_->held().place(model_->description().supports, model_->mesh().points, controls.support_share, x);
 }
 
 double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, double g) const {
@@ -259,6 +258,10 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     for (const Plate& plate : plates_) {
         e.energy_J += plate.energy(view(state.x));
         plate.add_gradient(view(state.x), view(internal));
+    }
+    for (const SpringPath& spring : springs_) {
+        e.energy_J += spring.energy(view(state.x));
+        spring.add_gradient(view(state.x), view(internal));
     }
     if (controls.inertia) {
         e.energy_J += controls.inertia->energy(state.x);
@@ -311,7 +314,9 @@ void Equilibrium::fill_residual(const State& state, const Controls& controls, co
 double Equilibrium::potential_energy(const State& state, const Controls& controls) const {
     Controls still = controls;
     still.friction = nullptr;
-    return model_->elements().evaluate(view(state.x), {}, controls.laws).energy_J -
+    double springs = 0;
+    for (const SpringPath& spring : springs_) springs += spring.energy(view(state.x));
+    return model_->elements().evaluate(view(state.x), {}, controls.laws).energy_J + springs -
            controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
 }
 
@@ -417,9 +422,10 @@ TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& 
     auto cliques = model_->elements().cliques(model_->free_index());
     for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
     for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
+    for (const SpringPath& spring : springs_) spring.append_clique(model_->free_index(), cliques);
     for (const std::vector<int>& clique : touching) cliques.push_back(clique);
     TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
-    const Eigen::VectorXd rest = restrict_to_free(rest_);
+    const Eigen::VectorXd rest = free_positions(rest_);
     for (Eigen::Index k = 0; k < rest.size(); k += 3)
         layout.pattern.points.push_back({rest[k], rest[k + 1], rest[k + 2]});
     layout.element_sums = model_->elements().block_sums(model_->free_index(), layout.pattern);
@@ -431,6 +437,8 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
     const linalg::SymmetricPattern& pattern = layout.pattern;
     model_->elements().add_tangent(view(state.x), layout.element_sums, values, project, controls.laws);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
+    for (const SpringPath& spring : springs_)
+        spring.add_hessian(view(state.x), model_->free_index(), pattern, values, project);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
     if (const contact::Contact* contact = model_->contact()) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
@@ -450,6 +458,28 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
             actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project,
                                       controls.shares[a]);
     }
+    decouple_rollers(pattern, values);
+}
+
+void Equilibrium::decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    if (rollers_.empty()) return;
+    std::vector<const Eigen::Matrix3d*> may_move(static_cast<std::size_t>(pattern.nodes), nullptr);
+    for (const FreeRoller& roller : rollers_) may_move[static_cast<std::size_t>(roller.free)] = &roller.may_move;
+    const auto decouple = [&](std::size_t i, std::size_t j, double* entries) {
+        if (may_move[i] == nullptr && may_move[j] == nullptr) return;
+        Eigen::Map<Eigen::Matrix3d> block(entries);
+        const double stiffness = std::fabs(block.trace()) / 3;
+        if (may_move[i] != nullptr) block = (*may_move[i] * block).eval();
+        if (may_move[j] != nullptr) block = (block * *may_move[j]).eval();
+        if (i == j) block += stiffness * (Eigen::Matrix3d::Identity() - *may_move[j]);
+    };
+    parallel_for(may_move.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
+            for (int k = pattern.node_start[j]; k < pattern.node_start[j + 1]; ++k)
+                decouple(static_cast<std::size_t>(pattern.node_row[static_cast<std::size_t>(k)]), j,
+                         values.data() + 9 * static_cast<std::size_t>(k));
+        }
+    });
 }
 
 Eigen::VectorXd Equilibrium::apply_skew(const State& state, const Eigen::VectorXd& v) const {
@@ -464,6 +494,13 @@ Eigen::VectorXd Equilibrium::apply_skew(const State& state, const Eigen::VectorX
 }
 
 Eigen::VectorXd Equilibrium::restrict_to_free(const Eigen::VectorXd& full) const {
+    Eigen::VectorXd free = free_positions(full);
+    for (const FreeRoller& roller : rollers_)
+        free.segment<3>(3 * roller.free) = (roller.may_move * free.segment<3>(3 * roller.free)).eval();
+    return free;
+}
+
+Eigen::VectorXd Equilibrium::free_positions(const Eigen::VectorXd& full) const {
     Eigen::VectorXd free(3 * model_->free_count());
     const auto& index = model_->free_index();
     for (std::size_t node = 0; node < index.size(); ++node) {
@@ -477,6 +514,10 @@ void Equilibrium::add_free(const Eigen::VectorXd& free, double factor, Eigen::Ve
     for (std::size_t node = 0; node < index.size(); ++node) {
         if (index[node] < 0) continue;
         full.segment<3>(3 * static_cast<Eigen::Index>(node)) += factor * free.segment<3>(3 * index[node]);
+    }
+    for (const FreeRoller& roller : rollers_) {
+        const Eigen::Vector3d motion = free.segment<3>(3 * roller.free);
+        full.segment<3>(3 * roller.node) -= factor * (motion - roller.may_move * motion);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "sim/inertia.hpp"
 #include "sim/model.hpp"
 #include "sim/plate.hpp"
+#include "sim/spring.hpp"
 
 namespace pliant::sim {
 
@@ -66,6 +67,12 @@ struct TangentLayout {
     BlockSums element_sums;            ///< of the tets
 };
 
+/// A node that a support holds in one or two directions.
+struct FreeRoller {
+    Eigen::Index node = 0, free = 0;  ///< index among all nodes, and among the free ones
+    Eigen::Matrix3d may_move;         ///< projector onto the directions in which it may move
+};
+
 /// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure
 /// loads, each in the order of the model.
 class Equilibrium {
@@ -87,7 +94,7 @@ public:
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Elastic and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
+    /// Elastic energy, with that of springs, and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
     /// Node lists that contact couples at one state, as free indices.
@@ -120,6 +127,8 @@ public:
 
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
+    [[nodiscard]] const std::vector<SpringPath>& springs() const { return springs_; }
+    [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
     [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
     /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
     [[nodiscard]] double gas_compliance(const Drive& drive, double multiplier) const;
@@ -129,12 +138,17 @@ public:
     /// Energies that differ by less than this are the same to rounding.
     [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
 
-    /// (3n) -> (3 free nodes) and back; the rest of `full` is left alone.
+    /// (3n) -> (3 free nodes) and back, of forces and motions: rollers have none along the directions in which they are
+    /// held. The rest of `full` is left alone.
     [[nodiscard]] Eigen::VectorXd restrict_to_free(const Eigen::VectorXd& full) const;
     void add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const;
+    /// (3n) -> (3 free nodes), of positions.
+    [[nodiscard]] Eigen::VectorXd free_positions(const Eigen::VectorXd& full) const;
 
 private:
     void add_actuators();
+    /// Where a node is held in a direction, the tangent couples that direction to nothing else.
+    void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void add_plates(double stiffness_Pa, double volume_m3);
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
     [[nodiscard]] std::vector<material::Law> laws_at(std::span<const double> stretch) const;
@@ -153,8 +167,10 @@ private:
                        Evaluation& e) const;
 
     const Model* model_;
+    std::vector<FreeRoller> rollers_;
     std::vector<Actuator> actuators_;
     std::vector<Plate> plates_;
+    std::vector<SpringPath> springs_;
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share
     std::vector<bool> grows_;        ///< (actuators) drives target shapes, and has no force of its own

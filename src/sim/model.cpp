@@ -66,6 +66,19 @@ Status check_cable(const Cable& cable, int nodes) {
     return {};
 }
 
+Status check_spring(const Spring& spring, int nodes) {
+    const std::string owner = "spring \"" + spring.name + "\"";
+    if (spring.points.size() < 2) return input_error("{}: at least two points are needed", owner);
+    for (const Attachment& point : spring.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    if (!(spring.stiffness_N_m > 0) || !std::isfinite(spring.stiffness_N_m))
+        return input_error("{}: its stiffness must be above zero", owner);
+    if (spring.free_length_m && !(*spring.free_length_m >= 0 && std::isfinite(*spring.free_length_m)))
+        return input_error("{}: its free length must not be negative", owner);
+    return {};
+}
+
 /// The faces name points that exist, and those of a chamber close.
 Status check_wall(const Wall& wall, bool closed, int nodes, const std::string& owner) {
     if (wall.faces.empty()) return input_error("{}: has no wall", owner);
@@ -147,45 +160,20 @@ Status check_loads(const Description& d, int nodes) {
     return is_finite(d.gravity_m_s2) ? Status{} : input_error("gravity is not finite");
 }
 
-Status check_support(const Support& support) {
-    const Turn& turn = support.turn;
-    if (!is_finite(support.move_m) || !std::isfinite(turn.angle_rad) || !is_finite(turn.center_m))
-        return input_error("fixed \"{}\": the prescribed motion is not finite", support.name);
-    if (!is_finite(turn.axis) || !(norm(turn.axis) > 0))
-        return input_error("fixed \"{}\": the axis of its rotation must not be zero", support.name);
-    return {};
-}
-
 /// Numbers the free nodes, neighbours in space one after the other; nodes that no tet uses are held too, they have no
 /// stiffness.
-Status number_free_nodes(const Description& d, std::vector<int>& free_index, int& count) {
+void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<int>& free_index, int& count) {
     const int nodes = static_cast<int>(d.mesh.points.size());
-    std::vector<int> owner(nodes, -1);
-    for (std::size_t s = 0; s < d.supports.size(); ++s) {
-        const Support& support = d.supports[s];
-        if (support.nodes.empty()) return input_error("fixed \"{}\": catches no node", support.name);
-        if (Status status = check_support(support); !status) return status;
-        for (const int node : support.nodes) {
-            if (node < 0 || node >= nodes)
-                return input_error("fixed \"{}\": node {} does not exist", support.name, node);
-            if (owner[node] >= 0 && owner[node] != static_cast<int>(s)) {
-                return input_error("fixed \"{}\" and fixed \"{}\" share nodes; let each node belong to one",
-                                   d.supports[owner[node]].name, support.name);
-            }
-            owner[node] = static_cast<int>(s);
-        }
-    }
     std::vector<bool> used(nodes, false);
     for (const int node : d.mesh.nodes) used[node] = true;
     std::vector<int> free;
     for (int node = 0; node < nodes; ++node) {
-        if (used[node] && owner[node] < 0) free.push_back(node);
+        if (used[node] && !held.is_fixed(node)) free.push_back(node);
     }
     mesh::order_in_space(free, d.mesh.points, mesh::layer_of(d.mesh));
     count = static_cast<int>(free.size());
     free_index.assign(nodes, -1);
     for (int k = 0; k < count; ++k) free_index[free[k]] = k;
-    return {};
 }
 
 /// Every connected piece of the mesh needs a support: a loose piece has no equilibrium.
@@ -233,9 +221,14 @@ Result<Model> Model::create(Description description) {
         status = check_cable(description.cables[c], nodes);
     for (std::size_t c = 0; status && c < description.chambers.size(); ++c)
         status = check_chamber(description.chambers[c], nodes);
-    if (status) status = number_free_nodes(description, model.free_index_, model.free_count_);
-    if (status) status = check_held(description);
+    for (std::size_t s = 0; status && s < description.springs.size(); ++s)
+        status = check_spring(description.springs[s], nodes);
     if (!status) return tl::unexpected(status.error());
+    Result<HeldNodes> held = HeldNodes::create(description.supports, nodes);
+    if (!held) return tl::unexpected(held.error());
+    if (status = check_held(description); !status) return tl::unexpected(status.error());
+    number_free_nodes(description, *held, model.free_index_, model.free_count_);
+    model.held_ = std::make_unique<HeldNodes>(std::move(*held));
     model.description_ = std::move(description);
     Result<Elements> elements = Elements::create(model.description_);
     if (!elements) return tl::unexpected(elements.error());

@@ -15,6 +15,7 @@
 #include "mesh/tet_mesh.hpp"
 #include "sim/contact/contact.hpp"
 #include "sim/curve.hpp"
+#include "sim/held_nodes.hpp"
 
 namespace pliant::sim {
 
@@ -41,13 +42,14 @@ struct Turn {
 };
 
 /// Nodes whose motion is prescribed: at each instant they are turned from rest by share * angle and then shifted by
-/// share * move.
+/// share * move. With directions they are held along those alone and slide across them: rollers, planes of symmetry.
 struct Support {
     std::string name;
     std::vector<int> nodes;
     Vec3 move_m;
     Curve share = ramp(0, 1);
     Turn turn{};
+    std::vector<Vec3> directions{};  ///< of any length but zero; none: held in all
     [[nodiscard]] bool moves() const { return turn.angle_rad != 0 || !(move_m == Vec3{}); }
     /// Where a node is that lay at `rest`, both in metres.
     [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
@@ -109,6 +111,16 @@ struct Cable {
     bool pulled_at_first = true;  ///< else at the last point
 };
 
+/// An elastic spring along a path of points: its force is stiffness * (length - free length), of either sign unless it
+/// only pulls, as a rubber band does.
+struct Spring {
+    std::string name;
+    std::vector<Attachment> points;  ///< at least two
+    double stiffness_N_m = 0;
+    std::optional<double> free_length_m = std::nullopt;  ///< without force; none: the length at rest
+    bool only_pulls = false;
+};
+
 /// Air inside a closed wall. Its pressure (above ambient, of either sign) is the multiplier of its volume.
 struct Chamber {
     std::string name;
@@ -160,6 +172,7 @@ struct Description {
     std::vector<PressureLoad> pressures;
     std::vector<Cable> cables;
     std::vector<Chamber> chambers;
+    std::vector<Spring> springs{};
     std::vector<Growth> growths;
     std::vector<RigidPlate> plates;
     std::optional<ContactRules> contact = std::nullopt;
@@ -173,7 +186,7 @@ struct Description {
 
 class Model {
 public:
-    /// Checks indices, weights, volumes, that something holds the robot, and that no node belongs to two supports.
+    /// Checks indices, weights, volumes, supports (HeldNodes), and that something holds the robot.
     [[nodiscard]] static Result<Model> create(Description description);
     Model(Model&&) noexcept;
     Model& operator=(Model&&) noexcept;
@@ -186,14 +199,16 @@ public:
     [[nodiscard]] const contact::Contact* contact() const { return contact_.get(); }
     [[nodiscard]] int node_count() const { return static_cast<int>(description_.mesh.points.size()); }
     [[nodiscard]] int free_count() const { return free_count_; }
-    /// (n), index among the free nodes, or -1 for nodes held by a support.
+    /// (n), index among the free nodes, or -1 for nodes that supports hold in all directions. Rollers count as free.
     [[nodiscard]] const std::vector<int>& free_index() const { return free_index_; }
+    [[nodiscard]] const HeldNodes& held() const { return *held_; }
 
 private:
     Model();
     Description description_;
     std::unique_ptr<Elements> elements_;
     std::unique_ptr<contact::Contact> contact_;
+    std::unique_ptr<HeldNodes> held_;
     std::vector<int> free_index_;
     int free_count_ = 0;
 };

@@ -308,7 +308,7 @@ TEST_CASE("a cable's gradient and second gradient agree with differences") {
     const auto model = Model::create(std::move(d));
     REQUIRE(model);
     const Equilibrium system(*model);
-    const CablePath path(cable, {system.rest().x.data(), static_cast<std::size_t>(3 * model->node_count())});
+    const CablePath path(cable.points, {system.rest().x.data(), static_cast<std::size_t>(3 * model->node_count())});
     std::srand(4);
     const Eigen::VectorXd x = system.rest().x + 1e-3 * Eigen::VectorXd::Random(system.rest().x.size());
     const Eigen::VectorXd u = Eigen::VectorXd::Random(x.size());
@@ -365,7 +365,7 @@ TEST_CASE("the tension of a cable with friction drops by exp(-mu theta), as roun
         cable.points.push_back({{k}, {1.0}, {}});
         x.insert(x.end(), {std::cos(angle), std::sin(angle), 0});
     }
-    const CablePath path(cable, x);
+    const CablePath path(cable.points, x);
     const double turned = 89 * std::numbers::pi / 180;
     const auto shares = path.tension_shares(x, 0.3, true);
     CHECK(shares.front() == 1);

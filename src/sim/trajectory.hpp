@@ -24,6 +24,12 @@ struct ChamberState {
     double pressure_Pa = 0;
 };
 
+struct SpringState {
+    std::string name;
+    double length_m = 0;
+    double force_N = 0;  ///< positive where it pulls
+};
+
 struct SupportState {
     std::string name;
     Vec3 force_N;  ///< sum of the forces that the support exerts on the robot
@@ -63,10 +69,11 @@ struct Step {
     Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
     double wall_s = 0;
     double min_J = 1;             ///< smallest det F over all integration points
-    double energy_J = 0;          ///< elastic and contact energy, minus the work of dead loads and gravity
+    double energy_J = 0;          ///< elastic energy, with that of springs, and contact energy, minus the work of dead loads and gravity
     double kinetic_energy_J = 0;  ///< of a motion in time
     std::vector<CableState> cables;
     std::vector<ChamberState> chambers;
+    std::vector<SpringState> springs;
     std::vector<SupportState> supports;
     std::vector<ContactState> contacts;  ///< (obstacles)
     double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
