@@ -21,11 +21,11 @@ struct RigidMotion {
 /// First the scale, about the origin, then the mirror, then the motion; then copies, each moved by `step` from the one
 /// before it.
 struct Placement {
-    double scale = 1;         ///< above zero
-    Vec3 mirror_normal;       ///< of the mirror's plane; zero: none
-    Vec3 mirror_point;        ///< of the mirror's plane
+    double scale = 1;    ///< above zero
+    Vec3 mirror_normal;  ///< of the mirror's plane; zero: none
+    Vec3 mirror_point;   ///< of the mirror's plane
     RigidMotion motion;
-    int count = 1;            ///< how many there are in the end
+    int count = 1;  ///< how many there are in the end
     RigidMotion step;
 };
 

@@ -137,8 +137,8 @@ mesh::Solid placed_solid(Reader& reader, mesh::Solid solid, const mesh::Placemen
         reader.problem("place", "a STEP file can be rotated, moved and repeated, not scaled or mirrored");
     const auto make = [](auto shape) { return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{shape}); };
     const auto move = [&](const mesh::Solid& of, const mesh::RigidMotion& motion) -> mesh::Solid {
-        return make(mesh::TranslatedSolid{
-            make(mesh::RotatedSolid{of, motion.center, motion.axis, motion.angle_rad}), motion.shift});
+        return make(mesh::TranslatedSolid{make(mesh::RotatedSolid{of, motion.center, motion.axis, motion.angle_rad}),
+                                          motion.shift});
     };
     if (reader.has("place")) solid = move(solid, placement.motion);
     mesh::CombinedSolid all{mesh::CombinedSolid::Operation::unite, {solid}};

@@ -120,10 +120,10 @@ void add_spring(ModelDraft& draft, const sim::Attacher& attacher, const SpringSp
 
 void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec& spec) {
     const auto points = guide_points(draft, spec);
-    sim::Cable cable{spec.name,
-                     attach_path(draft, attacher, spec, points, "cable",
-                                 spec.guides_at_crossings ? "guide point" : "point"),
-                     spec.target, spec.friction, spec.anchor != Anchor::last};
+    sim::Cable cable{
+        spec.name,
+        attach_path(draft, attacher, spec, points, "cable", spec.guides_at_crossings ? "guide point" : "point"),
+        spec.target, spec.friction, spec.anchor != Anchor::last};
     check_shortening(draft, spec, points);
     if (spec.gap_elements) drive_by_gaps(draft, spec, points);
     draft.description.cables.push_back(std::move(cable));

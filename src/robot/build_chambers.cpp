@@ -18,7 +18,8 @@ constexpr double wall_reach = 0.03;
 void check_mouth(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
     std::vector<bool> held(draft.description.mesh.points.size(), false);
     for (const sim::Support& support : draft.description.supports) {
-        for (const int node : support.nodes) held[static_cast<std::size_t>(node)] = !support.moves() && support.directions.empty();
+        for (const int node : support.nodes)
+            held[static_cast<std::size_t>(node)] = !support.moves() && support.directions.empty();
     }
     std::size_t loose = 0;
     for (const sim::WallFace& face : wall.faces) {

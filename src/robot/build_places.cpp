@@ -125,10 +125,10 @@ void add_load(ModelDraft& draft, const LoadSpec& load) {
     if (draft.problems.size() > before) return;
     if (faces.empty()) {
         const bool box = std::holds_alternative<BoxSelector>(load.selector);
-        draft.problem(load.line, "load", load.name,
-                      fmt::format("no face of the outer surface lies {}; {}",
-                                  box ? "inside the box" : "where it acts: all three corners must",
-                                  draft.show_bounds()));
+        draft.problem(
+            load.line, "load", load.name,
+            fmt::format("no face of the outer surface lies {}; {}",
+                        box ? "inside the box" : "where it acts: all three corners must", draft.show_bounds()));
         return;
     }
     if (load.pressure_Pa) {

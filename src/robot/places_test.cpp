@@ -67,8 +67,9 @@ TEST_CASE("directions are named where they are wrong") {
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = []"), "is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [[0, 0, 0]]"), "is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = \"normal\""), "\"normal\" is that of a plane");
-    check_problem(replaced(eighth, "directions = [\"x\"],", "directions = [\"x\"], rotate = { angle = 5, axis = [1,0,0] },"),
-                  "has no meaning beside rotate");
+    check_problem(
+        replaced(eighth, "directions = [\"x\"],", "directions = [\"x\"], rotate = { angle = 5, axis = [1,0,0] },"),
+        "has no meaning beside rotate");
 }
 
 TEST_CASE("a spring holds a block against a load") {
@@ -77,7 +78,8 @@ TEST_CASE("a spring holds a block against a load") {
     const std::string sprung =
         replaced(loose, "  { name = \"end\"", "  # { name = \"end\"") +
         "[[spring]]\nname = \"s\"\npoints = [[10, 5, 5], [30, 5, 5]]\nanchor = \"last\"\nstiffness = \"0.05 N/mm\"\n"
-        "[[load]]\nname = \"pull\"\nplane = { point = [0, 0, 0], normal = [1, 0, 0] }\nforce = [\"-0.1 N\", \"0 N\", \"0 N\"]\n";
+        "[[load]]\nname = \"pull\"\nplane = { point = [0, 0, 0], normal = [1, 0, 0] }\nforce = [\"-0.1 N\", \"0 N\", "
+        "\"0 N\"]\n";
     const sim::Step last = last_step(build(sprung));
     REQUIRE(last.springs.size() == 1);
     CHECK(last.springs[0].force_N == doctest::Approx(0.1).epsilon(1e-5));

@@ -39,7 +39,7 @@ struct BoxSelector {
 /// region).
 struct SurfaceFile {
     std::filesystem::path path;
-    std::string part{};          ///< of a 3MF file: the object or the material; empty: all of it
+    std::string part{};           ///< of a 3MF file: the object or the material; empty: all of it
     mesh::Placement placement{};  ///< lengths in length units
 };
 struct MeshRegion {

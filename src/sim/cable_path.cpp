@@ -95,8 +95,7 @@ std::vector<CablePath::NodeGradient> CablePath::gradient(std::span<const double>
     for (const Segment& segment : segments_) {
         const Vec3 d = vector_of(segment, x);
         const double l = std::max(norm(d), met_length_m_);
-        for (std::size_t i = 0; i < segment.nodes.size(); ++i)
-            sums[segment.nodes[i]] += (segment.weights[i] / l) * d;
+        for (std::size_t i = 0; i < segment.nodes.size(); ++i) sums[segment.nodes[i]] += (segment.weights[i] / l) * d;
     }
     return {sums.begin(), sums.end()};
 }

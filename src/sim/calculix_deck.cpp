@@ -87,9 +87,8 @@ int axis_of(const Vec3& direction) {
 }
 
 bool holds(const Support& support, int axis) {
-    return support.directions.empty() ||
-           std::any_of(support.directions.begin(), support.directions.end(),
-                       [&](const Vec3& direction) { return axis_of(direction) == axis; });
+    return support.directions.empty() || std::any_of(support.directions.begin(), support.directions.end(),
+                                                     [&](const Vec3& direction) { return axis_of(direction) == axis; });
 }
 
 class DeckWriter {
@@ -126,7 +125,8 @@ private:
                 return input_error("CalculiX: support \"{}\" turns by more than 60 degrees", support.name);
             for (const Vec3& direction : support.directions) {
                 if (axis_of(direction) < 0)
-                    return input_error("CalculiX: support \"{}\" holds a direction that is not x, y or z", support.name);
+                    return input_error("CalculiX: support \"{}\" holds a direction that is not x, y or z",
+                                       support.name);
             }
         }
         for (const Cable& cable : d_.cables) {
@@ -269,7 +269,8 @@ private:
                 const Vec3& rest = d_.mesh.points[static_cast<std::size_t>(n)];
                 const Vec3 move = mm_per_m * (support.position(rest, support.share.at(1)) - rest);
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    if (holds(support, static_cast<int>(axis))) line("{0},{1},{1},{2:.12g}", n + 1, axis + 1, move[axis]);
+                    if (holds(support, static_cast<int>(axis)))
+                        line("{0},{1},{1},{2:.12g}", n + 1, axis + 1, move[axis]);
                 }
             }
         }

@@ -94,7 +94,8 @@ public:
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Elastic energy, with that of springs, and contact energy minus the work of dead loads and gravity since rest; 0 where the laws have none.
+    /// Elastic energy, with that of springs, and contact energy minus the work of dead loads and gravity since rest; 0
+    /// where the laws have none.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
     /// Node lists that contact couples at one state, as free indices.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.hpp"
+#include "sim/cable_path.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -76,7 +77,7 @@ bool span_a_plane(const std::vector<int>& nodes, const std::vector<Vec3>& points
 
 class Mechanism {
 public:
-    explicit Mechanism(const Description& d) : mesh_(d.mesh) {
+    explicit Mechanism(const Description& d) : description_(d), mesh_(d.mesh) {
         add_ground(d);
         add_bodies();
         for (const RigidPlate& plate : d.plates) parts_.push_back({plate.nodes, {}, 0});
@@ -99,8 +100,10 @@ public:
 private:
     void add_ground(const Description& d) {
         Part ground;
-        for (const Support& support : d.supports)
+        for (const Support& support : d.supports) {
+            if (!support.directions.empty()) continue;  // a roller: add_rollers
             ground.nodes.insert(ground.nodes.end(), support.nodes.begin(), support.nodes.end());
+        }
         parts_.push_back(std::move(ground));
     }
 
@@ -155,6 +158,20 @@ private:
         }
         DisjointSets connected(parts_.size());
         for (const auto& [pair, nodes] : joints_) connected.join(pair.first, pair.second);
+        part_of_node_.assign(mesh_.points.size(), 0);
+        for (std::size_t p = parts_.size(); p-- > 0;) {
+            for (const int node : parts_[p].nodes) part_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(p);
+        }
+        for (const Support& support : description_.supports) {
+            for (const int node : support.nodes) connected.join(0, part_at(node));
+        }
+        for (const Spring& spring : description_.springs) {
+            for (const Attachment& point : spring.points) {
+                const Attachment& first = spring.points.front();
+                connected.join(point.nodes.empty() ? 0 : part_at(point.nodes.front()),
+                               first.nodes.empty() ? 0 : part_at(first.nodes.front()));
+            }
+        }
         for (std::size_t p = 1; p < parts_.size(); ++p) {
             if (connected.find(static_cast<int>(p)) == connected.find(0)) free_.push_back(static_cast<int>(p));
         }
@@ -198,11 +215,47 @@ private:
                 square += rows.transpose() * rows / static_cast<double>(nodes.size());
             }
         }
+        add_rollers(square);
+        add_springs(square);
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(square);
         const double none = straight * straight * eigen.eigenvalues().maxCoeff();
         Eigen::Index count = 0;
         while (count < size && eigen.eigenvalues()[count] <= none) ++count;
         return eigen.eigenvectors().leftCols(count);
+    }
+
+    /// The ground where the ground holds it.
+    [[nodiscard]] int part_at(int node) const { return part_of_node_[static_cast<std::size_t>(node)]; }
+
+    /// Adds `direction` times the speed of a node, for all twists, to a row.
+    void add_speed(int node, const Eigen::RowVector3d& direction, Eigen::RowVectorXd& row) const {
+        const int part = part_at(node);
+        if (part > 0 && std::binary_search(free_.begin(), free_.end(), part))
+            row.segment(6 * place(part), 6) += direction * speed(part, node);
+    }
+
+    void add_rollers(Eigen::MatrixXd& square) const {
+        for (const Support& support : description_.supports) {
+            for (const Vec3& direction : support.directions) {
+                for (const int node : support.nodes) {
+                    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(square.rows());
+                    add_speed(node, vector(unit(direction)).transpose(), row);
+                    square += row.transpose() * row / static_cast<double>(support.nodes.size());
+                }
+            }
+        }
+    }
+
+    /// A spring resists what changes its length.
+    void add_springs(Eigen::MatrixXd& square) const {
+        std::vector<double> rest;
+        for (const Vec3& p : mesh_.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+        for (const Spring& spring : description_.springs) {
+            Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(square.rows());
+            for (const auto& [node, g] : CablePath(spring.points, rest).gradient(rest))
+                add_speed(node, vector(g).transpose(), row);
+            square += row.transpose() * row;
+        }
     }
 
     [[nodiscard]] Eigen::Index place(int part) const {
@@ -262,10 +315,12 @@ private:
         return p.middle + p.size * vec3(at);
     }
 
+    const Description& description_;
     const mesh::TetMesh& mesh_;
     std::vector<Part> parts_;            ///< the ground first
     std::map<std::size_t, int> region_;  ///< of parts with tets
     std::map<std::pair<int, int>, std::vector<int>> joints_;
+    std::vector<int> part_of_node_;
     std::vector<int> free_;  ///< parts that are joined to the ground, but not rigidly; ascending
 };
 

@@ -93,3 +93,26 @@ TEST_CASE("a rigid plate over both bodies of a hinge holds it") {
 TEST_CASE("a body that is joined to nothing is not called a hinge") {
     CHECK_FALSE(free_motion(two_blocks([](Vec3) { return false; })));
 }
+
+TEST_CASE("rollers hold the directions that they name, and springs what would change their length") {
+    const auto plane = [](const Description& d, std::size_t axis) {
+        Support support{"plane", reference::nodes_where(d.mesh, [=](Vec3 p) { return p[axis] < 1e-9; }), {}};
+        Vec3 direction;
+        direction[axis] = 3;
+        support.directions = {direction};
+        return support;
+    };
+    Description d = bar([](Vec3) { return true; });
+    d.supports = {plane(d, 0), plane(d, 1), plane(d, 2)};
+    CHECK_FALSE(free_motion(d));
+    d.supports.erase(d.supports.begin());
+    const auto slide = free_motion(d);
+    REQUIRE(slide);
+    CHECK_MESSAGE(says(slide, "body \"bar\" can slide freely along"), *slide);
+    d.springs = {{"spring", {{{0}, {1.0}, {}}, {{}, {}, {-0.05, 0, 0}}}, 10}};
+    CHECK_FALSE(free_motion(d));
+    d.springs[0].points[1].fixed = {0, 0, -0.05};  // across the slide: it does not hold it
+    CHECK(free_motion(d));
+    d.supports = {plane(d, 2)};
+    CHECK_MESSAGE(says(free_motion(d), "can move freely in 3 ways"), *free_motion(d));
+}

@@ -64,8 +64,7 @@ Description turned(Description d, const Eigen::Matrix3d& R) {
 }
 
 void check_uniaxial(const Description& d, Solver solver, double stretch) {
-    const Trajectory result =
-        testing::solve(d, {.steps = 2, .tolerance = 1e-7, .solver = solver});
+    const Trajectory result = testing::solve(d, {.steps = 2, .tolerance = 1e-7, .solver = solver});
     REQUIRE_MESSAGE(result.converged, result.message);
     const reference::PrincipalForm form = reference::principal_form(d.materials[0].law);
     const double lateral = reference::free_stretch(form, [=](double l) { return std::array{stretch, l, l}; });
@@ -136,7 +135,8 @@ TEST_CASE("a body that slides in a slot is held by friction-free walls alone, an
     Description d = eighth(1, 1);
     d.supports = {{"slot", plane_nodes(d.mesh, 1, 0), {}}};
     d.supports[0].directions = {{0, 1, 0}, {0, 0, 1}, {0, 2, 2}};  // the third says nothing new
-    d.springs = {{"spring", {reference::mean_of(plane_nodes(d.mesh, 0, 0)), {{}, {}, {-side, side / 2, side / 2}}}, 10}};
+    d.springs = {
+        {"spring", {reference::mean_of(plane_nodes(d.mesh, 0, 0)), {{}, {}, {-side, side / 2, side / 2}}}, 10}};
     const std::vector<int> face = plane_nodes(d.mesh, 1, 0);
     d.loads = {{"push", face, std::vector<double>(face.size(), 1.0 / static_cast<double>(face.size())), {0.01, 0, 0}}};
     const Trajectory result = testing::solve(std::move(d), {.steps = 1, .tolerance = 1e-8});

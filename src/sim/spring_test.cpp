@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <numeric>
 

@@ -84,7 +84,7 @@ void Stability::assemble(const State& state, const Controls& controls, bool proj
 /// The tangent at hand where it is positive definite; else the one that is there or, as a beginning, its positive
 /// projection.
 bool Stability::take_metric(const State& state, const Controls& controls) {
-    const Eigen::VectorXd positions = system_->restrict_to_free(state.x);
+    const Eigen::VectorXd positions = system_->free_positions(state.x);
     auto inverse = two_levels_are_quicker(layout_->pattern, laplacian_->work())
                        ? make_two_level_inverse(layout_->pattern)
                        : make_direct_inverse(laplacian_->analysis(), false);

@@ -68,8 +68,9 @@ struct Step {
     double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
     Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
     double wall_s = 0;
-    double min_J = 1;             ///< smallest det F over all integration points
-    double energy_J = 0;          ///< elastic energy, with that of springs, and contact energy, minus the work of dead loads and gravity
+    double min_J = 1;  ///< smallest det F over all integration points
+    double energy_J =
+        0;  ///< elastic energy, with that of springs, and contact energy, minus the work of dead loads and gravity
     double kinetic_energy_J = 0;  ///< of a motion in time
     std::vector<CableState> cables;
     std::vector<ChamberState> chambers;
