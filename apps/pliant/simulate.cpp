@@ -58,7 +58,7 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));
     simulation.obstacles = report::obstacles_of(model, trajectory);
-    if (model.contact() != nullptr) {
+    if (report::has_contact(trajectory)) {
         simulation.contact_pressure_Pa = [&model](const sim::Step& step) {
             return sim::contact_pressure(model, step.positions, step.time);
         };

@@ -44,13 +44,25 @@ std::string table(std::string_view kind, const std::vector<std::string>& header,
     return out + "</tbody></table></div>\n";
 }
 
+/// The lamp beside the name: no green one where there is a warning.
+struct Verdict {
+    std::string_view kind, text;  ///< a class of report.css, and what it says
+};
+Verdict verdict_of(const sim::Trajectory& result) {
+    if (!result.converged) return {"bad", "stopped early"};
+    const auto loose = [](const sim::Step& step) { return !step.converged; };
+    if (std::any_of(result.steps.begin(), result.steps.end(), loose)) return {"warn", "converged on looser terms"};
+    if (!result.warnings.empty()) return {"warn", "converged, with a warning"};
+    return {"good", "converged"};
+}
+
 std::string heading(const Simulation& s) {
     const auto& result = s.result;
-    const bool good = result.converged;
+    const Verdict verdict = verdict_of(result);
     std::string out = fmt::format(
         "<div class=\"head\"><h1>{}</h1><span class=\"pill {}\">{}</span></div>\n"
         "<p class=\"faint\">{} steps by {}, {} nodes, {} {} tets, solved in {}</p>\n",
-        html_escaped(s.robot), good ? "good" : "bad", good ? "converged" : "stopped early", result.steps.size() - 1,
+        html_escaped(s.robot), verdict.kind, verdict.text, result.steps.size() - 1,
         html_escaped(result.solver.empty() ? "the solver" : result.solver), grouped(s.mesh.points.size()),
         grouped(s.mesh.tet_count()), s.mesh.order == 2 ? "quadratic" : "linear", seconds(result.solve_s));
     if (!result.message.empty()) out += "<p class=\"message\">" + html_escaped(result.message) + "</p>\n";

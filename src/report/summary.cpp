@@ -34,17 +34,12 @@ Json actuators_json(const sim::Step& step) {
 }
 
 Json step_json(const sim::Step& step, bool contact) {
-    Json out = {{"index", step.index},
-                {"time", step.time},
-                {"converged", step.converged},
-                {"iterations", step.iterations},
-                {"substeps", step.substeps},
-                {"residual", step.residual},
-                {"wall_ms", 1e3 * step.wall_s},
-                {"min_J", step.min_J},
-                {"solver", step.index == 0 ? "" : sim::name(step.solver)},
-                {"energy_J", step.energy_J},
-                {"kinetic_energy_J", step.kinetic_energy_J}};
+    Json out = {{"index", step.index},           {"time", step.time},
+                {"converged", step.converged},   {"reason", step.reason},
+                {"iterations", step.iterations}, {"substeps", step.substeps},
+                {"residual", step.residual},     {"wall_ms", 1e3 * step.wall_s},
+                {"min_J", step.min_J},           {"solver", step.index == 0 ? "" : sim::name(step.solver)},
+                {"energy_J", step.energy_J},     {"kinetic_energy_J", step.kinetic_energy_J}};
     out.update(actuators_json(step));
     out["supports"] = Json::object();
     for (const auto& support : step.supports) {
@@ -57,6 +52,7 @@ Json step_json(const sim::Step& step, bool contact) {
         out["self_contact_N"] = step.self_contact_N;
         out["smallest_distance_mm"] = mm_per_m * step.smallest_distance_m;
     }
+    if (step.crossing_m) out["crossing_mm"] = vector_json(*step.crossing_m, mm_per_m);
     out["markers"] = Json::object();
     for (const auto& marker : step.markers) out["markers"][marker.name] = vector_json(marker.position_m, mm_per_m);
     return out;

@@ -27,12 +27,14 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
 
 }  // namespace
 
-Result<sim::ContactRules> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
-    const ContactSpec& spec = *robot.contact;
+Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
+    const ContactSpec spec = robot.contact.value_or(ContactSpec{});
+    if (!spec.self && robot.obstacles.empty()) return std::nullopt;
     Box3 box;
     for (const Vec3& p : bodies.points) box.add(p);
     sim::ContactRules rules;
     rules.surface = sim::contact::robot_surface(bodies);
+    rules.by_default = !robot.contact;
     rules.settings.self = spec.self;
     rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : distance_share * box.diagonal();
     rules.settings.slip_m = spec.slip > 0 ? spec.slip * robot.unit_m : slip_share * rules.settings.distance_m;
@@ -51,7 +53,7 @@ Result<sim::ContactRules> build_contact(const Robot& robot, const mesh::TetMesh&
         }
         rules.obstacles.push_back({std::move(body), robot.unit_m * obstacle.move, obstacle.share});
     }
-    return rules;
+    return std::optional(std::move(rules));
 }
 
 }  // namespace pliant::robot

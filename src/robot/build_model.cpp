@@ -62,11 +62,9 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     add_chambers(draft, attacher);
     add_markers(draft, attacher);
     if (!draft.problems.empty()) return tl::unexpected(Error{Cause::input, draft.problems});
-    if (robot.contact) {
-        Result<sim::ContactRules> contact = build_contact(robot, draft.bodies);
-        if (!contact) return tl::unexpected(contact.error());
-        description.contact = std::move(*contact);
-    }
+    Result<std::optional<sim::ContactRules>> contact = build_contact(robot, draft.bodies);
+    if (!contact) return tl::unexpected(contact.error());
+    description.contact = std::move(*contact);
     description.notes = draft.notes_on_points();
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     Result<sim::Model> model = sim::Model::create(std::move(description));

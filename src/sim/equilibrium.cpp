@@ -186,13 +186,13 @@ bool Equilibrium::has_cable_friction() const {
     return std::any_of(cables.begin(), cables.end(), [](const Cable& cable) { return cable.friction > 0; });
 }
 
-void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, double time, double time_before,
-                                        Controls& controls) const {
+void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> all_wanted,
+                                        std::span<const Drive> before, Controls& controls) const {
     const auto& cables = model_->description().cables;
     for (std::size_t c = 0; c < cables.size(); ++c) {
         if (!(cables[c].friction > 0)) continue;
-        const Drive wanted = drive_at(c, time);
-        const double change = wanted.value - drive_at(c, time_before).value;
+        const Drive& wanted = all_wanted[c];
+        const double change = wanted.value - before[c].value;
         const bool by_length = wanted.kind == Drive::Kind::measure;
         const bool let_go = by_length ? change > 0 : change < 0;
         const CablePath& path = actuators_[c].cable();
@@ -205,11 +205,11 @@ void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, double time, d
     }
 }
 
-double Equilibrium::cable_friction_error(const State& state, double time) const {
+double Equilibrium::cable_friction_error(const State& state, std::span<const Drive> all_wanted) const {
     const auto& cables = model_->description().cables;
     double error = 0;
     for (std::size_t c = 0; c < cables.size(); ++c) {
-        const Drive wanted = drive_at(c, time);
+        const Drive& wanted = all_wanted[c];
         if (!(cables[c].friction > 0) || wanted.kind != Drive::Kind::measure) continue;
         const double excess = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
         const bool pulls = state.multiplier[static_cast<Eigen::Index>(c)] > 0;
@@ -390,6 +390,12 @@ bool Equilibrium::has_friction() const {
     return rules->settings.friction > 0 ||
            std::any_of(rules->obstacles.begin(), rules->obstacles.end(),
                        [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
+}
+
+std::optional<Vec3> Equilibrium::crossing(const State& state, const Controls& controls) const {
+    if (model_->contact() != nullptr && model_->contact()->settings().self) return std::nullopt;
+    const auto found = model_->surfaces().crossing(with_obstacles(state.x, controls.obstacles));
+    return found ? std::optional(found->point_m) : std::nullopt;
 }
 
 contact::Forces Equilibrium::contact_forces(const State& state, const Controls& controls) const {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -81,11 +82,13 @@ public:
 
     /// `stretch` (actuators): scale of the target shapes that each one drives, 1 at rest.
     [[nodiscard]] Controls controls(double time, std::span<const double> stretch = {}) const;
-    /// The shares of all cables with friction at positions x, while `time_before` leads to these controls; and, for
-    /// those driven by length, the weighted length that x would have if the true one were as wanted.
-    void freeze_cable_friction(const Eigen::VectorXd& x, double time, double time_before, Controls& controls) const;
+    /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
+    /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
+    /// wanted.
+    void freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> wanted, std::span<const Drive> before,
+                               Controls& controls) const;
     /// Largest error of the true lengths of cables with friction, relative to rest.
-    [[nodiscard]] double cable_friction_error(const State& state, double time) const;
+    [[nodiscard]] double cable_friction_error(const State& state, std::span<const Drive> wanted) const;
     [[nodiscard]] bool has_cable_friction() const;
     /// Where an actuator is driven by its measure: what it shall be, relative to rest.
     [[nodiscard]] double wanted_ratio(std::size_t actuator, double time) const;
@@ -117,6 +120,9 @@ public:
                                                                            const Controls& start_controls) const;
     /// True if something rubs.
     [[nodiscard]] bool has_friction() const;
+    /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
+    /// looked for.
+    [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
     /// Contact forces of a state, for results. Precondition: the model has contact.
     [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
 

@@ -9,6 +9,7 @@
 #include "sim/curvature.hpp"
 #include "sim/describe.hpp"
 #include "sim/elements.hpp"
+#include "sim/friction_rounds.hpp"
 #include "sim/solver_chain.hpp"
 
 namespace pliant::sim {
@@ -18,7 +19,7 @@ constexpr double least_stride = 1.0 / 256;
 constexpr double largest_stride = 8;
 constexpr int quick = 3;             // iterations after which the next piece may be larger
 constexpr int most_iterations = 40;  // of one piece: rather a smaller one than a long wait
-constexpr int friction_rounds = 4;
+constexpr int friction_rounds = 12;
 constexpr double worst_start = 0.2;  // error of a predicted state that is still worth starting from
 
 // What a piece changes at a stride of 1.
@@ -80,6 +81,7 @@ public:
         evaluation_ = system_.evaluate(state_, controls_);
         before_.reset();
         pulled_.reset();
+        loose_.clear();
         stride_ = 1;
         stale_ = false;
         iterations_ = 0;
@@ -124,6 +126,8 @@ public:
         step.iterations = iterations_;
         step.wall_s = wall_s_;
         step.solver = solver_;
+        step.converged = loose_.empty();
+        step.reason = loose_;
         sim::describe(model_, system_, state_, controls_, evaluation_, step);
         return step;
     }
@@ -205,7 +209,7 @@ private:
             std::string reason = predict(next, controls, state, known);
             StepOutcome outcome;
             if (reason.empty()) {
-                outcome = solve(next, controls, state, progress, std::move(known));
+                outcome = solve(controls, state, progress, std::move(known));
                 result.iterations += outcome.iterations;
                 reason = outcome.converged ? "" : outcome.reason;
             }
@@ -234,6 +238,7 @@ private:
         controls_ = std::move(controls);
         evaluation_ = std::move(outcome.evaluation);
         solver_ = outcome.solver;
+        loose_ = outcome.loose ? outcome.reason : std::string();
     }
 
     /// On along the way of the last piece where this one goes the same way, or back; else from where it is.
@@ -296,45 +301,10 @@ private:
     }
 
     /// `known`: of `state`, as long as there is no friction.
-    StepOutcome solve(const Place& next, Controls& controls, State& state, const Progress& progress,
-                      std::optional<Evaluation> known) {
+    StepOutcome solve(Controls& controls, State& state, const Progress& progress, std::optional<Evaluation> known) {
         chain_.restart();
-        const bool drags = system_.has_cable_friction();
-        if (drags) freeze_cables(next, state.x, controls);
-        controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
-        if (drags || system_.has_friction()) known.reset();
-        StepOutcome total;
-        for (int round = 0; round < friction_rounds; ++round) {
-            const int spent = total.iterations;
-            total = chain_.solve(system_, controls, {program_.tolerance, most_iterations}, state, progress,
-                                 std::exchange(known, std::nullopt));
-            total.iterations += spent;
-            if (!total.converged || !(drags || system_.has_friction())) break;
-            if (round + 1 == friction_rounds) break;
-            controls.friction = system_.freeze_friction(state, state_, controls, controls_);
-            if (drags) freeze_cables(next, state.x, controls);
-            total.evaluation = system_.evaluate(state, controls);
-            if (total.evaluation.residual <= program_.tolerance) break;
-        }
-        return total;
-    }
-
-    /// As Equilibrium::freeze_cable_friction, for drives that come from outside of the program.
-    void freeze_cables(const Place& next, const Eigen::VectorXd& x, Controls& controls) const {
-        const auto& cables = model_.description().cables;
-        for (std::size_t c = 0; c < cables.size(); ++c) {
-            if (!(cables[c].friction > 0)) continue;
-            const bool by_length = next.drives[c].kind == Drive::Kind::measure;
-            const double change = next.drives[c].value - place_.drives[c].value;
-            const bool let_go = by_length ? change > 0 : change < 0;
-            const CablePath& path = system_.actuators()[c].cable();
-            controls.shares[c] = path.tension_shares(view(x), let_go ? -cables[c].friction : cables[c].friction,
-                                                     cables[c].pulled_at_first);
-            if (!by_length) continue;
-            const double weighted = path.length(view(x), controls.shares[c]);
-            const double length = path.length(view(x));
-            controls.drives[c].value = weighted + (next.drives[c].value - length) * weighted / length;
-        }
+        return settle_friction(system_, chain_, {program_.tolerance, most_iterations}, friction_rounds,
+                               {state_, controls_, place_.drives}, controls, state, progress, std::move(known));
     }
 
     /// A new point that is pulled: how the body gives way there tells how stiff the spring is.
@@ -421,6 +391,7 @@ private:
     double spring_N_m_ = 0;
     bool stale_ = false;  ///< the state is not at rest at its place
     double stride_ = 1;
+    std::string loose_;  ///< on which looser terms the state was accepted; empty: it converged
     int iterations_ = 0;
     double wall_s_ = 0;
     Solver solver_ = Solver::automatic;

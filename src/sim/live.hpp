@@ -35,7 +35,8 @@ struct LiveTarget {
 
 /// What one call of advance() did.
 struct LiveProgress {
-    bool moved = false;    ///< the state is another one than before, and converged
+    bool moved =
+        false;  ///< the state is another one than before, and was accepted: Step::converged says on which terms
     bool arrived = false;  ///< the state is that of the target
     int iterations = 0;
     double wall_s = 0;

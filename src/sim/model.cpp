@@ -195,9 +195,42 @@ Status check_held(const Description& d) {
                        mesh.tet_count());
 }
 
+std::vector<double> numbers_of(const std::vector<Vec3>& points) {
+    std::vector<double> numbers;
+    numbers.reserve(3 * points.size());
+    for (const Vec3& p : points) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    return numbers;
+}
+
+/// Of the tets that carry material: meshed space may be passed through.
+contact::Surface surface_of_bodies(const Description& d) {
+    mesh::TetMesh bodies;
+    bodies.order = d.mesh.order;
+    bodies.points = d.mesh.points;
+    for (std::size_t t = 0; t < d.mesh.tet_count(); ++t) {
+        const int material = d.material_of_tet.empty()
+                                 ? d.material_of_region[static_cast<std::size_t>(d.mesh.region[t])]
+                                 : d.material_of_tet[t];
+        if (std::holds_alternative<material::ScaledTarget>(d.materials[static_cast<std::size_t>(material)].law))
+            continue;
+        const std::span<const int> tet = d.mesh.tet(t);
+        bodies.nodes.insert(bodies.nodes.end(), tet.begin(), tet.end());
+    }
+    return contact::robot_surface(bodies);
+}
+
+bool gives_way(const Description& d, const contact::Contact& contact) {
+    return d.contact->by_default && (!d.growths.empty() || contact.crossing_at_rest());
+}
+
+/// Nothing acts with it: only crossing() is asked.
+Result<contact::Contact> surfaces_without_contact(const Description& d) {
+    return contact::Contact::create(surface_of_bodies(d), {}, {.distance_m = 1, .stiffness_Pa = 1},
+                                    numbers_of(d.mesh.points));
+}
+
 Result<contact::Contact> create_contact(const Description& d) {
-    std::vector<double> rest;
-    for (const Vec3& p : d.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+    const std::vector<double> rest = numbers_of(d.mesh.points);
     std::vector<contact::Obstacle> obstacles;
     for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
     return contact::Contact::create(d.contact->surface, std::move(obstacles), d.contact->settings, rest);
@@ -236,7 +269,15 @@ Result<Model> Model::create(Description description) {
     if (model.description_.contact) {
         Result<contact::Contact> contact = create_contact(model.description_);
         if (!contact) return tl::unexpected(contact.error());
-        model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
+        if (gives_way(model.description_, *contact))
+            model.description_.contact.reset();
+        else
+            model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
+    }
+    if (!model.description_.contact) {
+        Result<contact::Contact> surfaces = surfaces_without_contact(model.description_);
+        if (!surfaces) return tl::unexpected(surfaces.error());
+        model.surfaces_ = std::make_unique<contact::Contact>(std::move(*surfaces));
     }
     return model;
 }

@@ -155,6 +155,9 @@ struct ContactRules {
     contact::Surface surface;    ///< of the robot's bodies
     contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
     std::vector<Obstacle> obstacles;
+    /// Nobody asked for it: it gives way where it could not work, to a robot that passes through itself at rest and to
+    /// the thesis' actuators, whose meshed space keeps its walls apart.
+    bool by_default = false;
 };
 
 /// A point of the material whose position is reported.
@@ -197,6 +200,9 @@ public:
     [[nodiscard]] const Elements& elements() const { return *elements_; }
     /// Nothing where nothing can touch.
     [[nodiscard]] const contact::Contact* contact() const { return contact_.get(); }
+    /// The surfaces of the bodies, to see whether they have passed through each other; those of contact() where there
+    /// is one.
+    [[nodiscard]] const contact::Contact& surfaces() const { return contact_ ? *contact_ : *surfaces_; }
     [[nodiscard]] int node_count() const { return static_cast<int>(description_.mesh.points.size()); }
     [[nodiscard]] int free_count() const { return free_count_; }
     /// (n), index among the free nodes, or -1 for nodes that supports hold in all directions. Rollers count as free.
@@ -208,6 +214,7 @@ private:
     Description description_;
     std::unique_ptr<Elements> elements_;
     std::unique_ptr<contact::Contact> contact_;
+    std::unique_ptr<contact::Contact> surfaces_;  ///< where there is no contact
     std::unique_ptr<HeldNodes> held_;
     std::vector<int> free_index_;
     int free_count_ = 0;

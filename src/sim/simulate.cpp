@@ -14,9 +14,12 @@
 #include "sim/curvature.hpp"
 #include "sim/describe.hpp"
 #include "sim/elements.hpp"
+#include "sim/friction_rounds.hpp"
+#include "sim/prescribed_approach.hpp"
 #include "sim/pressure_limit.hpp"
 #include "sim/solver_chain.hpp"
 #include "sim/stability.hpp"
+#include "sim/warnings.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -30,8 +33,6 @@ constexpr double good_start = 0.03;
 
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
-constexpr double friction_slack = 10;         // of the tolerance, where sliding contact goes back and forth
-constexpr double cable_friction_share = 0.1;  // of the tolerance, for the length of a cable with friction
 constexpr double sudden = 5;                  // times as far as in the step before
 constexpr double noticeable = 0.01;           // of the robot's size, as a mean of all nodes
 constexpr int most_pushes = 5;
@@ -88,6 +89,7 @@ public:
                 time_ = target;
                 evaluation_ = outcome.evaluation;
                 step.solver = outcome.solver;
+                if (outcome.loose) note_loose(outcome, step);
                 ++step.substeps;
                 continue;
             }
@@ -128,15 +130,15 @@ public:
     }
 
     /// A gap that has closed between two guide points: from here on the flanks would touch.
-    void warn(int step, std::vector<std::string>& warnings) {
-        if (model_.contact() != nullptr && model_.description().contact->settings.self) return;
+    void warn_of_closed_gaps(int step, std::vector<std::string>& warnings) {
+        if (model_.contact() != nullptr && model_.contact()->settings().self) return;
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             const int segment = system_.actuators()[c].cable().closed_segment(x);
             if (segment < 0 || !warned_.insert(c).second) continue;
             warnings.push_back(
                 fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
-                            "closed; without [contact] its flanks pass through each other",
+                            "closed; without contact its flanks pass through each other",
                             step, segment + 1, segment + 2, model_.description().cables[c].name));
         }
     }
@@ -210,6 +212,11 @@ private:
         return false;
     }
 
+    static void note_loose(const StepOutcome& outcome, Step& step) {
+        step.converged = false;
+        step.reason = outcome.reason;
+    }
+
     void note(const std::vector<IterationRecord>& history, int step, double time) {
         for (IterationRecord record : history) {
             record.step = step;
@@ -267,8 +274,9 @@ private:
             }
             Controls controls = system_.controls(time, stretch_);
             controls.inertia = solved_controls_.inertia;
-            const StepOutcome more = settle_friction(controls, next, progress);
+            const StepOutcome more = settle(controls, next, progress);
             outcome.converged = more.converged;
+            outcome.loose = more.loose;
             outcome.evaluation = more.evaluation;
             outcome.reason = more.reason;
             outcome.iterations += more.iterations;
@@ -303,21 +311,30 @@ private:
         if (program_.dynamics) controls.inertia = make_inertia(time - time_);
         StepOutcome outcome;
         Evaluation known;
-        outcome.reason = predict(time, controls, next, known);
+        outcome.reason = predict(time, controls, next, known, progress);
         if (!outcome.reason.empty()) return outcome;
         solvers_.restart();
-        return settle_friction(controls, next, progress, std::move(known));
+        return settle(controls, next, progress, std::move(known));
     }
 
     /// Starts from where the last states lead or, where that would turn a tet inside out or pass through something,
-    /// from the last state with the supports at their new place; `known` is its evaluation. Returns why there is no
-    /// start.
-    [[nodiscard]] std::string predict(double time, const Controls& controls, State& next, Evaluation& known) const {
+    /// from the last state with the supports at their new place, or with the robot pushed out of the way of what comes;
+    /// `known` is its evaluation. Returns why there is no start.
+    [[nodiscard]] std::string predict(double time, const Controls& controls, State& next, Evaluation& known,
+                                      const Progress& progress) const {
         if (extrapolate(time, controls, next, known)) return {};
         next = follow_supports(state_, controls);
         known = system_.evaluate(next, controls);
-        if (!known.possible()) return fmt::format("the prescribed motion {}", name(known.flaw));
-        return passes(next, controls) ? "" : "the prescribed motion passes through something in one go";
+        const bool possible = known.possible();
+        if (possible && passes(next, controls)) return {};
+        const std::string flaw(name(known.flaw));
+        next = state_;
+        if (model_.contact() != nullptr && approach(system_, laplacian_, controls_, controls, next, progress)) {
+            known = system_.evaluate(next, controls);
+            if (known.possible()) return {};
+        }
+        return possible ? "the prescribed motion passes through something in one go"
+                        : fmt::format("the prescribed motion {}", flaw);
     }
 
     /// On from the last four states or, if that ends far from equilibrium, from fewer, whichever is nearest; `known` is
@@ -377,37 +394,15 @@ private:
                1;
     }
 
-    /// Friction depends on the forces, which depend on friction: frozen, solved, and frozen anew until both agree (the
-    /// lagging of Li et al. 2020, section 5; likewise for cables that drag in their guides).
     /// `known`: of `next`, as long as there is no friction.
-    StepOutcome settle_friction(Controls& controls, State& next, const Progress& progress,
-                                std::optional<Evaluation> known = {}) {
-        const bool cables_drag = system_.has_cable_friction();
-        if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
-        controls.friction = system_.freeze_friction(state_, state_, controls_, controls_);
-        if (cables_drag || system_.has_friction()) known.reset();
-        StepOutcome total;
-        for (int round = 0; round < friction_rounds; ++round) {
-            StepOutcome outcome = solvers_.solve(system_, controls, {program_.tolerance, program_.iteration_limit},
-                                                 next, progress, std::exchange(known, std::nullopt));
-            outcome.iterations += total.iterations;
-            outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
-            total = std::move(outcome);
-            if (!total.converged || !(cables_drag || system_.has_friction())) break;
-            controls.friction = system_.freeze_friction(next, state_, controls, controls_);
-            if (cables_drag) system_.freeze_cable_friction(next.x, controls.time, time_, controls);
-            total.evaluation = system_.evaluate(next, controls);
-            const double length_error = system_.cable_friction_error(next, controls.time);
-            if (total.evaluation.residual <= program_.tolerance &&
-                length_error <= cable_friction_share * program_.tolerance)
-                break;
-            if (round + 1 < friction_rounds) continue;
-            total.converged =
-                total.evaluation.residual <= friction_slack * program_.tolerance && length_error <= program_.tolerance;
-            if (!total.converged) total.reason = "friction and the forces that it depends on do not settle";
-        }
+    StepOutcome settle(Controls& controls, State& next, const Progress& progress,
+                       std::optional<Evaluation> known = {}) {
+        const std::vector<Drive> before = system_.controls(time_).drives;
+        const StepSettings settings{program_.tolerance, program_.iteration_limit};
+        StepOutcome outcome = settle_friction(system_, solvers_, settings, friction_rounds, {state_, controls_, before},
+                                              controls, next, progress, std::move(known));
         solved_controls_ = controls;
-        return total;
+        return outcome;
     }
 
     [[nodiscard]] State follow_supports(const State& from, const Controls& controls) const {
@@ -449,6 +444,8 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
     Run walk(model, program);
     result.solver = walk.solver_name();
     result.warnings = model.description().notes;
+    if (const auto crossing = model.surfaces().crossing_at_rest())
+        result.warnings.push_back(warning_at_rest(crossing->point_m, model.contact() != nullptr));
     Step rest;
     walk.evaluate_rest();
     walk.describe(rest);
@@ -469,11 +466,12 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         }
         walk.judge(step, result.warnings, progress);
         walk.describe(step);
-        walk.warn(k, result.warnings);
+        walk.warn_of_closed_gaps(k, result.warnings);
         step.wall_s = seconds_since(begin);
         result.solve_s += step.wall_s;
         result.steps.push_back(std::move(step));
     }
+    add_warnings(result);
     result.iterations = walk.take_iterations();
     progress.advance("simulate", 1);
     return result;

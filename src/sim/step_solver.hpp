@@ -21,9 +21,10 @@ struct StepSettings {
 
 struct StepOutcome {
     bool converged = false;
+    bool loose = false;  ///< converged only on looser terms than the tolerance: friction_rounds.hpp
     int iterations = 0;
     Evaluation evaluation;                 ///< of the state that is left behind
-    std::string reason;                    ///< why it did not converge
+    std::string reason;                    ///< why it did not converge, or did only on looser terms
     Solver solver = Solver::automatic;     ///< that led to the state
     std::vector<IterationRecord> history;  ///< where it began and every iteration; step and time are not filled
 };

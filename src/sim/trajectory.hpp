@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,8 +62,9 @@ struct IterationRecord {
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
-    double time = 0;  ///< of the program; 0 at rest
-    bool converged = true;
+    double time = 0;        ///< of the program; 0 at rest
+    bool converged = true;  ///< false: accepted on looser terms than the tolerance; `reason` says which
+    std::string reason;
     int iterations = 0;
     int substeps = 1;                   ///< more than one where the step had to be halved
     double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
@@ -79,12 +81,13 @@ struct Step {
     std::vector<ContactState> contacts;  ///< (obstacles)
     double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
     double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of what is near enough to act
+    std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
     std::vector<MarkerState> markers;
     std::vector<Vec3> positions;  ///< (n, 3)
 };
 
 struct Trajectory {
-    std::vector<Step> steps;            ///< rest state first; only converged ones
+    std::vector<Step> steps;            ///< rest state first; only those that were accepted
     bool converged = true;              ///< the whole program was run
     std::string message;                ///< where and why it stopped, if it did
     std::vector<std::string> warnings;  ///< where the answer should not be trusted

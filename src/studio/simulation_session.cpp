@@ -8,6 +8,7 @@
 
 #include "robot/build.hpp"
 #include "sim/simulate.hpp"
+#include "sim/warnings.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -432,6 +433,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
                  {"time", step.time},
                  {"arrived", progress.arrived},
                  {"stuck", progress.reason},
+                 {"warnings", sim::warnings_of(step)},
                  {"playing", playing_},
                  {"residual", step.residual},
                  {"min_J", step.min_J},

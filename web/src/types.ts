@@ -45,6 +45,7 @@ export interface FrameHead {
   time: number;
   arrived: boolean;
   stuck: string;
+  warnings: string[]; // where the state should not be trusted
   playing: boolean;
   residual: number;
   min_J: number;

@@ -38,6 +38,22 @@ struct Bounds {
     }
 };
 
+/// Boxes of something at the start and at the end of a straight motion of its points.
+struct MovingBounds {
+    Bounds start, end;
+
+    /// False only if the two never overlap on the way: an axis along which one is beyond the other at both ends keeps
+    /// them apart at all times, however far both move.
+    [[nodiscard]] bool may_meet(const MovingBounds& b) const {
+        bool apart = false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            apart |= (start.high[k] < b.start.low[k]) & (end.high[k] < b.end.low[k]);
+            apart |= (b.start.high[k] < start.low[k]) & (b.end.high[k] < end.low[k]);
+        }
+        return !apart;
+    }
+};
+
 /// The shape of the tree: items in the order of leaves of eight, and the nodes over them. Immutable.
 class BoxTree {
 public:
@@ -68,12 +84,7 @@ public:
     /// Calls visit(l) for each leaf whose box overlaps `box`, in ascending order, from leaf `first` on.
     template <class Visit>
     void visit_leaves(const Fit& fit, const Bounds& box, std::size_t first, Visit&& visit) const {
-        for (std::size_t n = 0; n < nodes_.size();) {
-            const Node& node = nodes_[n];
-            const bool enter = node.end_leaf > first && fit.nodes[n].overlaps(box);
-            if (enter && node.next == n + 1) visit(node.end_leaf - 1);
-            n = enter ? n + 1 : node.next;
-        }
+        walk([&](std::size_t n) { return fit.nodes[n].overlaps(box); }, first, visit);
     }
 
     /// Calls visit(i, j) for the items i of leaf `l` of this tree and j of `other` that overlap to single precision;
@@ -81,20 +92,66 @@ public:
     template <class Visit>
     void visit_overlaps(const Fit& fit, std::size_t l, const BoxTree& other, const Fit& other_fit,
                         Visit&& visit) const {
-        const bool same = this == &other;
-        const std::span<const int> mine = leaf(l);
-        const Leaf& boxes = fit.leaves[l];
-        other.visit_leaves(other_fit, fit.nodes[node_of_leaf_[l]], same ? l : 0, [&](std::size_t m) {
-            const std::span<const int> theirs = other.leaf(m);
-            for (std::size_t i = 0; i < mine.size(); ++i) {
-                unsigned hits = overlaps(boxes, i, other_fit.leaves[m]);
-                if (same && l == m) hits &= ~0u << (i + 1);
-                for (; hits != 0; hits &= hits - 1) visit(mine[i], theirs[std::countr_zero(hits)]);
-            }
-        });
+        const auto hits = [&](std::size_t i, std::size_t m) { return overlaps(fit.leaves[l], i, other_fit.leaves[m]); };
+        other.visit_leaves(other_fit, fit.nodes[node_of_leaf_[l]], this == &other ? l : 0,
+                           [&](std::size_t m) { visit_hits(l, other, m, hits, visit); });
+    }
+
+    /// The boxes at both ends of a motion.
+    struct MovingFit {
+        Fit start, end;
+    };
+    /// As visit_overlaps, for those that may meet on the way.
+    template <class Visit>
+    void visit_meetings(const MovingFit& fit, std::size_t l, const BoxTree& other, const MovingFit& other_fit,
+                        Visit&& visit) const {
+        const std::size_t own = node_of_leaf_[l];
+        const MovingBounds box{fit.start.nodes[own], fit.end.nodes[own]};
+        const auto enters = [&](std::size_t n) {
+            return box.may_meet({other_fit.start.nodes[n], other_fit.end.nodes[n]});
+        };
+        const auto hits = [&](std::size_t i, std::size_t m) {
+            return ~(parted(fit.start.leaves[l], fit.end.leaves[l], i, other_fit.start.leaves[m],
+                            other_fit.end.leaves[m])) &
+                   ~(~0u << other.leaf(m).size());
+        };
+        other.walk(enters, this == &other ? l : 0, [&](std::size_t m) { visit_hits(l, other, m, hits, visit); });
     }
 
 private:
+    /// Calls visit(l) for each leaf from `first` on below nodes all of which enters(n) lets in.
+    template <class Enters, class Visit>
+    void walk(const Enters& enters, std::size_t first, Visit&& visit) const {
+        for (std::size_t n = 0; n < nodes_.size();) {
+            const Node& node = nodes_[n];
+            const bool enter = node.end_leaf > first && enters(n);
+            if (enter && node.next == n + 1) visit(node.end_leaf - 1);
+            n = enter ? n + 1 : node.next;
+        }
+    }
+    /// Calls visit(i, j) for the items of leaves l and m of `other` whose bits hits(index in l, m) sets.
+    template <class Hits, class Visit>
+    void visit_hits(std::size_t l, const BoxTree& other, std::size_t m, const Hits& hits, Visit&& visit) const {
+        const bool same = this == &other && l == m;
+        const std::span<const int> mine = leaf(l), theirs = other.leaf(m);
+        for (std::size_t i = 0; i < mine.size(); ++i) {
+            unsigned found = hits(i, m);
+            if (same) found &= ~0u << (i + 1);
+            for (; found != 0; found &= found - 1) visit(mine[i], theirs[std::countr_zero(found)]);
+        }
+    }
+    /// Bit j: along some axis, item i of `a` is beyond item j of `b` at both ends, or item j beyond item i.
+    static unsigned parted(const Leaf& a0, const Leaf& a1, std::size_t i, const Leaf& b0, const Leaf& b1) {
+        std::array<unsigned, leaf_size> apart{};
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t j = 0; j < leaf_size; ++j)
+                apart[j] |= (unsigned(a0.high[k][i] < b0.low[k][j]) & unsigned(a1.high[k][i] < b1.low[k][j])) |
+                            (unsigned(b0.high[k][j] < a0.low[k][i]) & unsigned(b1.high[k][j] < a1.low[k][i]));
+        unsigned bits = 0;
+        for (std::size_t j = 0; j < leaf_size; ++j) bits |= apart[j] << j;
+        return bits;
+    }
+
     /// In preorder: the left child follows its parent; `next` is the first node that is not below this one.
     struct Node {
         std::size_t next, end_leaf;

@@ -80,7 +80,10 @@ Friction Contact::freeze(const Pairs& pairs, std::span<const double> frozen, std
 
 double Contact::smallest_distance(const Pairs& pairs, std::span<const double> x) const {
     double smallest = std::numeric_limits<double>::infinity();
-    for (const Pair& pair : pairs) smallest = std::min(smallest, distance(pair, stencil_of(pair, x)));
+    for (const Pair& pair : pairs) {
+        const double drawn_in = pair.obstacle < 0 ? 0 : drawn_in_m_[pair.obstacle];
+        smallest = std::min(smallest, distance(pair, stencil_of(pair, x)) - drawn_in);
+    }
     return smallest;
 }
 

@@ -22,6 +22,7 @@
 
 #include "core/error.hpp"
 #include "mesh/tri_mesh.hpp"
+#include "sim/contact/belonging.hpp"
 #include "sim/contact/box_tree.hpp"
 #include "sim/contact/ccd.hpp"
 #include "sim/contact/friction.hpp"
@@ -53,7 +54,7 @@ struct Forces {
     std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot
     double self_N = 0;                ///< sum of the sizes of all normal forces of the robot on itself
     std::vector<double> pressure_Pa;  ///< (robot nodes) normal force over the area of the node; 0 inside
-    double smallest_distance_m = 0;   ///< of all pairs; infinity if there are none
+    double smallest_distance_m = 0;   ///< as of smallest_distance()
 };
 
 /// An edge that passes through a triangle.
@@ -61,18 +62,22 @@ struct Crossing {
     std::array<int, 2> edge;
     std::array<int, 3> triangle;
     int obstacle;  ///< -1: the robot with itself
+    Vec3 point_m;  ///< where they meet
 };
 
 /// Immutable, but for a memory of what was near at the last states, which is quicker and gives the same bits. A pair
-/// acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. Left out
-/// are features that share a node, those that touch at rest (bonded bodies) and obstacles among themselves.
+/// acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. Against
+/// obstacles the reach is min(distance_m, its distance at rest), and closed ones and half-spaces are drawn in by
+/// resting_share of distance_m (obstacle_inset.hpp), so that what presses on them rests where they are drawn. Left out
+/// are features that share a node or belong together at rest (belonging.hpp: bonded bodies, slivers) and obstacles
+/// among themselves.
 class Contact {
 public:
     /// `rest`: (3 robot nodes). Refused: obstacles that touch or cross the robot at rest, numbers that make no sense.
     [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
                                                 const Settings& settings, std::span<const double> rest);
 
-    /// Rest positions of all nodes, (3 nodes).
+    /// Rest positions of all nodes, (3 nodes); obstacles as they act, drawn in.
     [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
     [[nodiscard]] int node_count() const { return static_cast<int>(rest_.size() / 3); }
     [[nodiscard]] int robot_node_count() const { return robot_nodes_; }
@@ -102,11 +107,15 @@ public:
                                   std::span<const double> step_start) const;
 
     [[nodiscard]] Forces forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const;
-    /// Of the pairs; infinity if there are none.
+    /// Of the pairs; infinity if there are none. From an obstacle as it is drawn: below zero where the robot is pressed
+    /// on it hard.
     [[nodiscard]] double smallest_distance(const Pairs& pairs, std::span<const double> x) const;
 
-    /// The first crossing of surfaces at x, if there is one: for states that did not come about by largest_step.
+    /// The first crossing of surfaces at x, of the robot with itself whatever the settings say or with an obstacle, if
+    /// there is one: for states that did not come about by largest_step. Features that belong together do not count.
     [[nodiscard]] std::optional<Crossing> crossing(std::span<const double> x) const;
+    /// Where the robot passes through itself already at rest.
+    [[nodiscard]] std::optional<Crossing> crossing_at_rest() const;
 
 private:
     /// The robot's surface, or all meshes among the obstacles.
@@ -128,19 +137,26 @@ private:
     [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
     void add_obstacles();
+    void draw_in_obstacles();
+    [[nodiscard]] int obstacle_of(std::span<const int> nodes) const;  ///< of a pair's four nodes
+    [[nodiscard]] double reach(int obstacle, double apart_m) const;
     [[nodiscard]] std::optional<int> obstacle_touched_at_rest() const;
-    [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self) const;
+    [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
+    [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;
     [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;
+    [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
     void find_planes(std::span<const double> x, Pairs& pairs) const;
     [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
 
     Settings settings_;
     std::vector<Obstacle> obstacles_;
+    std::vector<double> drawn_in_m_;     ///< (obstacles)
     std::vector<int> first_node_;        ///< (obstacles + 1)
     std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
     std::vector<double> rest_;
     int robot_nodes_ = 0;
     double touching_m_ = 0;  ///< distances up to this are zero but for rounding
+    Belonging belonging_;
     Side robot_, others_;
     std::vector<Plane> planes_;
     std::shared_ptr<Memory> memory_;

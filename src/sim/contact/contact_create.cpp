@@ -1,7 +1,9 @@
 // What a Contact is made of, and what it refuses.
+#include <algorithm>
 #include <cmath>
 
 #include "sim/contact/contact.hpp"
+#include "sim/contact/obstacle_inset.hpp"
 
 namespace pliant::sim::contact {
 
@@ -88,12 +90,33 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.obstacle_of_node_.assign(rest.size() / 3, -1);
     contact.obstacles_ = std::move(obstacles);
     contact.touching_m_ = 1e-9 * diagonal(rest);
+    contact.belonging_ = Belonging(robot, rest, contact.touching_m_);
     contact.robot_ = make_side(std::move(robot), contact.rest_);
     contact.add_obstacles();
     if (const auto touched = contact.obstacle_touched_at_rest())
         return input_error("obstacle \"{}\" touches or crosses the robot at rest: leave a gap, or hold the robot there",
                            contact.obstacles_[*touched].name);
+    contact.draw_in_obstacles();
     return contact;
+}
+
+void Contact::draw_in_obstacles() {
+    const double depth = resting_share * settings_.distance_m;
+    drawn_in_m_.assign(obstacles_.size(), 0);
+    const auto place = [&](int node, const Vec3& p) {
+        std::copy_n(&p.x, 3, rest_.begin() + 3 * static_cast<std::ptrdiff_t>(node));
+    };
+    for (const Plane& plane : planes_) {
+        drawn_in_m_[plane.obstacle] = depth;
+        place(plane.node, node_at(rest_, plane.node) - depth * plane.normal);
+    }
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        const auto* surface = std::get_if<mesh::TriMesh>(&obstacles_[k].shape);
+        const auto points = surface != nullptr ? inset(*surface, depth) : std::nullopt;
+        if (!points) continue;
+        drawn_in_m_[k] = depth;
+        for (std::size_t p = 0; p < points->size(); ++p) place(first_node_[k] + static_cast<int>(p), (*points)[p]);
+    }
 }
 
 void Contact::add_obstacles() {

@@ -23,7 +23,7 @@ Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
     return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
 }
 
-/// Boxes of the features' points at x and, where dx is given, at x + dx.
+/// Boxes of the features' points at x or, where dx is given, at x + dx.
 template <class Nodes>
 std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const double> x, std::span<const double> dx,
                              double margin) {
@@ -31,8 +31,7 @@ std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const
     for (std::size_t f = 0; f < features.size(); ++f) {
         const auto add = [&](int node) {
             const Vec3 p = node_at(x, node);
-            boxes[f].add(p);
-            if (!dx.empty()) boxes[f].add(p + node_at(dx, node));
+            boxes[f].add(dx.empty() ? p : p + node_at(dx, node));
         };
         if constexpr (std::is_same_v<Nodes, int>) {
             add(features[f]);
@@ -47,7 +46,7 @@ std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const
 /// Features of one kind of one side.
 struct Group {
     const BoxTree* tree;
-    BoxTree::Fit fit;
+    BoxTree::MovingFit fit;  ///< without an end where nothing moves
 };
 
 }  // namespace
@@ -56,7 +55,8 @@ class Contact::Search {
 public:
     enum class What { pairs, crossings };
 
-    /// `margin`: how far apart features may be and still be found.
+    /// `margin`: how far apart features may be and still be found; with `dx` those that come so near on the way from x
+    /// to x + dx.
     Search(const Contact& contact, std::span<const double> x, std::span<const double> dx, double margin, What what,
            bool self) {
         const Side &robot = contact.robot_, &others = contact.others_;
@@ -88,18 +88,25 @@ public:
         [[nodiscard]] Features features() const {
             return kind == Kind::edge_edge ? Features::edge_edge : Features::point_triangle;
         }
-        /// True if the boxes of both features, each along dx, are no further apart than `margin` on any axis.
+        /// False only if the boxes of both features stay further apart than `margin` all along dx.
         [[nodiscard]] bool comes_near(std::span<const double> x, std::span<const double> dx, double margin) const {
             const std::size_t firsts = kind == Kind::edge_edge ? 2 : 1;
-            Bounds first, second;
+            MovingBounds first, second;
             for (std::size_t k = 0; k < 4; ++k) {
-                Bounds& own = k < firsts ? first : second;
+                MovingBounds& own = k < firsts ? first : second;
                 const Vec3 p = node_at(x, nodes[k]);
-                own.add(p);
-                own.add(p + node_at(dx, nodes[k]));
+                own.start.add(p);
+                own.end.add(p + node_at(dx, nodes[k]));
             }
-            first.widen(margin);
-            return first.overlaps(second);
+            first.start.widen(margin);
+            first.end.widen(margin);
+            return first.may_meet(second);
+        }
+        [[nodiscard]] std::span<const int> first_nodes() const {
+            return std::span(nodes).first(kind == Kind::edge_edge ? 2 : 1);
+        }
+        [[nodiscard]] std::span<const int> second_nodes() const {
+            return std::span(nodes).first(4).subspan(first_nodes().size());
         }
         [[nodiscard]] double distance_bound(std::span<const double> x) const {
             return contact::distance_bound(features(), stencil_at(std::span(nodes).first<4>(), x));
@@ -121,9 +128,7 @@ public:
                 const std::size_t from = std::max(begin, family.first_leaf);
                 const std::size_t to = std::min(end, family.first_leaf + family.first->tree->leaf_count());
                 for (std::size_t l = from; l < to; ++l)
-                    family.first->tree->visit_overlaps(
-                        family.first->fit, l - family.first_leaf, *family.second->tree, family.second->fit,
-                        [&](int i, int j) { offer(family, i, j, [&](const Candidate& c) { visit(c, result); }); });
+                    look(family, l - family.first_leaf, [&](const Candidate& c) { visit(c, result); });
             }
         });
         return results;
@@ -140,13 +145,26 @@ private:
     template <class Nodes>
     static Group group(const BoxTree& tree, const std::vector<Nodes>& features, std::span<const double> x,
                        std::span<const double> dx, double margin) {
-        return {&tree, tree.fit(boxes_of(features, x, dx, margin))};
+        Group group{&tree, {tree.fit(boxes_of(features, x, {}, margin)), {}}};
+        if (!dx.empty()) group.fit.end = tree.fit(boxes_of(features, x, dx, margin));
+        return group;
     }
 
     void add(Kind kind, const Side& first_side, const Side& second_side, const Group& first, const Group& second) {
         if (first.tree->leaf_count() == 0 || second.tree->leaf_count() == 0) return;
         families_.push_back({kind, &first_side, &second_side, &first, &second, leaf_count_});
         leaf_count_ += first.tree->leaf_count();
+    }
+
+    /// Calls visit(candidate) for what leaf `l` of the first features finds.
+    template <class Visit>
+    void look(const Family& f, std::size_t l, const Visit& visit) const {
+        const Group &a = *f.first, &b = *f.second;
+        const auto found = [&](int i, int j) { offer(f, i, j, visit); };
+        if (a.fit.end.nodes.empty())
+            a.tree->visit_overlaps(a.fit.start, l, *b.tree, b.fit.start, found);
+        else
+            a.tree->visit_meetings(a.fit, l, *b.tree, b.fit, found);
     }
 
     template <class Visit>
@@ -231,6 +249,10 @@ struct Contact::Memory {
     std::mutex mutex;
     std::vector<double> x;  ///< of the last call
     std::shared_ptr<const Nearby> nearby;
+    struct {
+        std::vector<double> x;
+        Pairs pairs;
+    } found;  ///< by the last find: a solver asks several times for one state
 };
 
 Contact::Contact() : memory_(std::make_shared<Memory>()) {}
@@ -249,13 +271,26 @@ std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x
 }
 
 Pairs Contact::find(std::span<const double> x) const {
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (std::ranges::equal(memory_->found.x, x)) return memory_->found.pairs;
+    }
+    Pairs pairs = search_pairs(x);
+    const std::lock_guard lock(memory_->mutex);
+    memory_->found.x.assign(x.begin(), x.end());
+    memory_->found.pairs = pairs;
+    return pairs;
+}
+
+Pairs Contact::search_pairs(std::span<const double> x) const {
     const double most = settings_.distance_m;
     const auto consider = [&](const Search::Candidate& c, Pairs& found) {
         if (c.distance_bound(x) >= most) return;
         const double squared = c.squared_distance(x);
         if (squared >= most * most) return;
-        const double apart = std::sqrt(c.squared_distance(rest_)), reach = std::min(most, 0.5 * apart);
-        if (apart > touching_m_ && squared < reach * reach)
+        const double apart = std::sqrt(c.squared_distance(rest_));
+        const double reach = this->reach(obstacle_of(c.nodes), apart);
+        if (squared < reach * reach && !belonging_.together(c.first_nodes(), c.second_nodes(), apart))
             found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
     };
     const auto known = nearby(x, {});
@@ -268,13 +303,20 @@ Pairs Contact::find(std::span<const double> x) const {
     return pairs;
 }
 
+int Contact::obstacle_of(std::span<const int> nodes) const {
+    return std::max(obstacle_of_node_[nodes[0]], obstacle_of_node_[nodes[3]]);
+}
+
+double Contact::reach(int obstacle, double apart_m) const {
+    return std::min(settings_.distance_m, obstacle < 0 || drawn_in_m_[obstacle] == 0 ? 0.5 * apart_m : apart_m);
+}
+
 Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const {
     Pair pair;
     pair.kind = edges ? PairKind::edge_edge : PairKind::point_triangle;
     std::copy_n(nodes.begin(), 4, pair.nodes.begin());
-    const int first = obstacle_of_node_[nodes[0]], second = obstacle_of_node_[nodes[3]];
-    pair.obstacle = std::max(first, second);
-    pair.robot_first = first < 0;
+    pair.obstacle = obstacle_of(nodes);
+    pair.robot_first = obstacle_of_node_[nodes[0]] < 0;
     pair.reach_m = reach_m;
     // Every place of a surface counts as part of a point and of a triangle, and again as part of an edge.
     pair.area_m2 = area_m2 / 2;
@@ -293,7 +335,7 @@ void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
             pair.nodes = {point, plane.node, plane.node, plane.node};
             pair.obstacle = plane.obstacle;
             pair.normal = plane.normal;
-            pair.reach_m = std::min(settings_.distance_m, 0.5 * distance(pair, stencil_at(pair.nodes, rest_)));
+            pair.reach_m = reach(plane.obstacle, distance(pair, stencil_at(pair.nodes, rest_)));
             pair.area_m2 = robot_.areas.points[i];
             if (distance(pair, stencil_at(pair.nodes, x)) < pair.reach_m) pairs.push_back(pair);
         }
@@ -306,7 +348,8 @@ double Contact::largest_step(std::span<const double> x, std::span<const double> 
         if (!c.comes_near(x, dx, margin)) return;
         const double t =
             contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
-        if (t < step && std::sqrt(c.squared_distance(rest_)) > touching_m_) step = t;
+        if (t < step && !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
+            step = t;
     };
     double step = largest_plane_step(x, dx);
     const auto known = nearby(x, dx);
@@ -330,7 +373,7 @@ double Contact::largest_plane_step(std::span<const double> x, std::span<const do
     return step;
 }
 
-std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool self) const {
+std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool self, bool at_rest) const {
     using Found = std::optional<Crossing>;
     const Search search(*this, x, {}, 0, Search::What::crossings, self);
     const auto test = [&](const Search::Candidate& c, Found& found) {
@@ -338,17 +381,39 @@ std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool 
         const bool joined =
             std::find(n.begin() + 2, n.end(), n[0]) != n.end() || std::find(n.begin() + 2, n.end(), n[1]) != n.end();
         if (found || joined) return;
-        if (segment_crosses_triangle(node_at(x, n[0]), node_at(x, n[1]), node_at(x, n[2]), node_at(x, n[3]),
-                                     node_at(x, n[4])))
-            found = {{n[0], n[1]}, {n[2], n[3], n[4]}, std::max(obstacle_of_node_[n[0]], obstacle_of_node_[n[2]])};
+        const Vec3 a = node_at(x, n[0]), b = node_at(x, n[1]);
+        const Vec3 t0 = node_at(x, n[2]), t1 = node_at(x, n[3]), t2 = node_at(x, n[4]);
+        const Rim rim = at_rest ? Rim::left_out : Rim::counts;
+        if (!segment_crosses_triangle(a, b, t0, t1, t2, rim) || (!at_rest && edge_and_triangle_belong_together(n)))
+            return;
+        const int obstacle = std::max(obstacle_of_node_[n[0]], obstacle_of_node_[n[2]]);
+        found = {{n[0], n[1]}, {n[2], n[3], n[4]}, obstacle, point_in_plane(a, b, t0, t1, t2)};
     };
     for (const Found& piece : search.run(Found{}, test))
         if (piece) return piece;
     return {};
 }
 
+bool Contact::edge_and_triangle_belong_together(std::span<const int, 5> n) const {
+    const std::span<const int> edge = n.first<2>(), triangle = n.last<3>();
+    const auto r = [&](std::size_t k) { return node_at(rest_, n[k]); };
+    if (segment_crosses_triangle(r(0), r(1), r(2), r(3), r(4))) return true;
+    double squared = std::numeric_limits<double>::infinity();
+    const auto offer = [&](Features features, const Stencil& at) {
+        squared = std::min(squared, squared_distance(nearest(features, at), at));
+    };
+    for (std::size_t k = 0; k < 2; ++k) offer(Features::point_triangle, {r(k), r(2), r(3), r(4)});
+    for (std::size_t k = 0; k < 3; ++k) offer(Features::edge_edge, {r(0), r(1), r(2 + k), r(2 + (k + 1) % 3)});
+    return belonging_.together(edge, triangle, std::sqrt(squared));
+}
+
 std::optional<Crossing> Contact::crossing(std::span<const double> x) const {
-    return first_crossing(x, settings_.self);
+    return first_crossing(x, true, false);
+}
+
+std::optional<Crossing> Contact::crossing_at_rest() const {
+    const auto found = first_crossing(rest_, true, true);
+    return found && found->obstacle < 0 ? found : std::nullopt;
 }
 
 std::optional<int> Contact::obstacle_touched_at_rest() const {
@@ -359,11 +424,10 @@ std::optional<int> Contact::obstacle_touched_at_rest() const {
                 touched = plane.obstacle;
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
     const auto test = [&](const Search::Candidate& c, int& found) {
-        if (std::sqrt(c.squared_distance(rest_)) <= touching_m_)
-            found = std::max(obstacle_of_node_[c.nodes[0]], obstacle_of_node_[c.nodes[3]]);
+        if (std::sqrt(c.squared_distance(rest_)) <= touching_m_) found = obstacle_of(c.nodes);
     };
     for (const int piece : search.run(-1, test)) touched = std::max(touched, piece);
-    if (const auto crossed = first_crossing(rest_, false)) touched = crossed->obstacle;
+    if (const auto crossed = first_crossing(rest_, false, true)) touched = crossed->obstacle;
     return touched < 0 ? std::nullopt : std::optional<int>(touched);
 }
 

@@ -455,3 +455,107 @@ TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
     refused({"it", mesh::TriMesh{{{0.005, -1, 0.02}, {0.005, 1, 0.02}, {0.005, 0, -1}}, {{0, 1, 2}}}});
     refused({"it", mesh::TriMesh{{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}}, {{0, 1, 2}}}});
 }
+
+namespace {
+
+/// A box whose top has, for every third point, a twin a hair beside it: fans of needles, some of whose edges are within
+/// nanometres of others with which they share no node.
+SpringBody box_with_slivers(double hair) {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {4, 4, 4}, 0.1);
+    const std::vector<std::array<int, 3>> whole = body.triangles;
+    body.triangles.clear();
+    int count = 0;
+    for (const auto& t : whole) {
+        if (count++ % 3 != 0) {
+            body.triangles.push_back(t);
+            continue;
+        }
+        // A point just inside one side: two slender triangles and a needle along that side.
+        const Vec3 a = node_at(body.rest, t[0]), b = node_at(body.rest, t[1]), c = node_at(body.rest, t[2]);
+        const Vec3 m = 0.5 * (a + b), p = m + hair / norm(c - m) * (c - m);
+        const int node = static_cast<int>(body.node_count());
+        body.rest.insert(body.rest.end(), {p.x, p.y, p.z});
+        for (const int corner : t) body.springs.push_back({node, corner, norm(p - node_at(body.rest, corner))});
+        body.triangles.insert(body.triangles.end(), {{t[0], t[1], node}, {t[1], t[2], node}, {t[2], t[0], node}});
+    }
+    return body;
+}
+
+}  // namespace
+
+TEST_CASE("slivers do not hinder: what is a hair apart at rest belongs together") {
+    for (const double hair : {3e-10, 6e-8, 1e-6}) {
+        CAPTURE(hair);
+        const SpringBody body = box_with_slivers(hair);
+        const Contact contact = contact_of(body, usual);
+        // Shear that closes half of the hairs, and then some.
+        Vector dx = Vector::Zero(static_cast<Eigen::Index>(body.rest.size()));
+        for (Eigen::Index i = 0; i < dx.size() / 3; ++i) {
+            const Vec3 p = node_at(body.rest, static_cast<int>(i));
+            dx.segment<3>(3 * i) << 0.2 * p.z + 0.1 * p.y, -0.15 * p.x, 0.1 * p.y;
+            if (i >= 125) dx.segment<3>(3 * i) += Eigen::Vector3d(3, -2, 1) * hair;
+        }
+        CHECK(contact.largest_step(contact.rest(), span(dx)) == 1);
+        const Vector x = vector_of(contact.rest()) + dx;
+        CHECK(contact.find(span(x)).empty());
+        CHECK_FALSE(contact.crossing(span(x)).has_value());
+    }
+}
+
+TEST_CASE("a crossing is told with its place, whether or not the robot may touch itself") {
+    const SpringBody body = two_boxes(3);
+    Settings without_self = usual;
+    without_self.self = false;
+    for (const Settings& settings : {usual, without_self}) {
+        const Contact contact = contact_of(body, settings);
+        CHECK_FALSE(contact.crossing(contact.rest()).has_value());
+        CHECK_FALSE(contact.crossing(span(approached(contact, 64, 1.9e-3, 0, 1))).has_value());
+        const auto crossing = contact.crossing(span(approached(contact, 64, 2.3e-3, 0, 1)));
+        REQUIRE(crossing);
+        // The upper box's sides pass through the lower one's top, or its bottom is passed through by the lower's edges.
+        CHECK(crossing->point_m.z > 0.0096);
+        CHECK(crossing->point_m.z < 0.0101);
+        CHECK(crossing->obstacle == -1);
+    }
+    // What crosses at rest is told of once, and no more afterwards.
+    SpringBody overlapping = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    overlapping.add(spring_box({0.0013, 0.0021, 0.009}, {0.008, 0.0085, 0.01}, {2, 2, 2}));
+    const Contact contact = contact_of(overlapping, usual);
+    CHECK(contact.crossing_at_rest().has_value());
+    CHECK_FALSE(contact.crossing(contact.rest()).has_value());
+}
+
+TEST_CASE("an obstacle acts where it is drawn: the robot rests on it within a tenth of the distance of contact") {
+    // A cube on a floor and on a block, under a pressure of 3 % of the stiffness: by the barrier alone it would hover
+    // 0.97 of the distance above.
+    const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    mesh::TriMesh block;
+    for (int k = 0; k < 8; ++k)
+        block.points.push_back({k & 1 ? 0.05 : -0.03, k & 2 ? 0.04 : -0.03, k & 4 ? 0.0 : -0.02});
+    block.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    for (const Obstacle& obstacle : {Obstacle{"floor", HalfSpace{{}, {0, 0, 1}}}, Obstacle{"block", block}}) {
+        CAPTURE(obstacle.name);
+        const Contact contact = contact_of(body, usual, {obstacle});
+        const std::size_t n = body.node_count();
+        Statics statics{&body,
+                        500,
+                        &contact,
+                        std::vector<double>(3 * n),
+                        std::vector<double>(n, 1e-3),
+                        body.rest,
+                        std::vector<bool>(static_cast<std::size_t>(contact.node_count()))};
+        for (std::size_t i = 0; i < n; ++i) statics.load[3 * i + 2] = -0.03 / static_cast<double>(n);
+        for (std::size_t i = n; i < statics.held.size(); ++i) statics.held[i] = true;
+        Vector x = vector_of(contact.rest());
+        REQUIRE(statics.minimise(x, nullptr, 1e-8) > 0);
+        const double lowest = [&] {
+            double z = 1;
+            for (std::size_t i = 0; i < n; ++i) z = std::min(z, x[static_cast<Eigen::Index>(3 * i + 2)]);
+            return z;
+        }();
+        CHECK(std::abs(lowest) < 0.1 * usual.distance_m);
+        const double apart = contact.smallest_distance(contact.find(span(x)), span(x));
+        CHECK(apart == doctest::Approx(lowest).scale(1e-3).epsilon(0.05));
+    }
+}

@@ -339,6 +339,7 @@ function Status() {
     );
   if (!head || !s) return <div class="status" data-testid="status" data-state="none" />;
   const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : 'catching up';
+  const warning = head.warnings.join('. ');
   const words = {
     replay: 'replay',
     stuck: 'it goes no further',
@@ -346,8 +347,10 @@ function Status() {
     'catching up': 'catching up',
   }[state];
   return (
-    <div class="status" role="status" data-testid="status" data-state={state} title={head.stuck}>
-      <span class={`lamp ${state === 'arrived' ? 'good' : state === 'stuck' ? 'bad' : 'busy'}`} /> {words}
+    <div class="status" role="status" data-testid="status" data-state={state} title={head.stuck || warning}>
+      <span class={`lamp ${state === 'stuck' ? 'bad' : state !== 'arrived' ? 'busy' : warning ? 'warn' : 'good'}`} />{' '}
+      {words}
+      {warning && <span data-testid="state-warning">: {warning}</span>}
       <span class="quiet">
         residual {head.residual.toExponential(0)} · {s.tets.toLocaleString('en')} tets · {head.solve_ms.toFixed(0)} ms
         <span class="wide">
