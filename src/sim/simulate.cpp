@@ -343,8 +343,9 @@ private:
         double least = worst_start;
         for (std::size_t count = past_.size() + 1; count >= 2 && least > good_start; --count) {
             State state = onward(time, count, controls);
+            if (!passes(state, controls)) continue;  // first: contact then knows whether anything is near at its end
             Evaluation e = system_.evaluate(state, controls);
-            if (!e.possible() || !(e.error() < least) || !passes(state, controls)) continue;
+            if (!e.possible() || !(e.error() < least)) continue;
             least = e.error();
             next = std::move(state);
             known = std::move(e);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <utility>
 
 #include "sim/elements.hpp"
 
@@ -198,10 +200,10 @@ private:
         const bool conservative = system_.conservative();
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
         system_.add_free(direction.dx, 1, motion);
-        const double longest = system_.largest_step(state_.x, motion, controls_);
-        for (double alpha = longest; alpha > curvature_.smallest_share() * longest; alpha *= 0.5) {
+        Way way(*this, motion);
+        for (double alpha = way.longest(); alpha > curvature_.smallest_share() * way.longest(); alpha *= 0.5) {
             State next = state_;
-            next.x = go(alpha * motion);
+            next.x = way.at(alpha);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);
             Evaluation evaluation = system_.evaluate(next, controls_);
             obstacle_ = evaluation.flaw;
@@ -219,13 +221,39 @@ private:
         return false;
     }
 
-    /// Where `motion` leads. Precondition: straight on, nothing is met.
-    [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& motion) const {
-        const Eigen::VectorXd end = curvature_.go(state_.x, motion);
-        // The solver may turn the body where motion is straight, and so meet what lies beside the straight way.
-        if (system_.largest_step(state_.x, end - state_.x, controls_) < 1) return state_.x + motion;
-        return end;
-    }
+    /// Where shares of a motion lead. The solver may turn the body where motion is straight; if it meets something on
+    /// that way, it goes straight, and no further than nothing is met.
+    class Way {
+    public:
+        Way(const StepSolver& solver, const Eigen::VectorXd& motion) : solver_(solver), motion_(motion) {
+            turned_ = free_end(1);
+            if (!turned_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
+        }
+        [[nodiscard]] double longest() const { return longest_; }
+        /// Precondition: alpha is at most longest(), and falls from call to call.
+        [[nodiscard]] Eigen::VectorXd at(double alpha) {
+            if (alpha == 1 && turned_) return *std::exchange(turned_, std::nullopt);
+            if (std::optional<Eigen::VectorXd> end = free_end(alpha)) return std::move(*end);
+            // Straight on, longest() is known to be free only where the whole turned way was not.
+            const double share =
+                longest_ < 1 ? 1 : solver_.system_.largest_step(solver_.state_.x, alpha * motion_, solver_.controls_);
+            return solver_.state_.x + share * alpha * motion_;
+        }
+
+    private:
+        /// Where the solver goes for this share, if it meets nothing.
+        [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
+            const Eigen::VectorXd& x = solver_.state_.x;
+            Eigen::VectorXd end = solver_.curvature_.go(x, alpha * motion_);
+            if (solver_.system_.largest_step(x, end - x, solver_.controls_) < 1) return std::nullopt;
+            return end;
+        }
+
+        const StepSolver& solver_;
+        const Eigen::VectorXd& motion_;
+        std::optional<Eigen::VectorXd> turned_;  ///< the end of the whole way
+        double longest_ = 1;
+    };
 
     /// What the present excess adds to the merit: a cable that is not too long costs nothing.
     [[nodiscard]] double cost_of_excess(const Evaluation& evaluation) const {

@@ -92,7 +92,11 @@ public:
     template <class Visit>
     void visit_overlaps(const Fit& fit, std::size_t l, const BoxTree& other, const Fit& other_fit,
                         Visit&& visit) const {
-        const auto hits = [&](std::size_t i, std::size_t m) { return overlaps(fit.leaves[l], i, other_fit.leaves[m]); };
+        const auto hits = [&](std::size_t i, std::size_t m) {
+            // Of most leaves that overlap, few items reach into the other.
+            if (!box_of(fit.leaves[l], i).overlaps(other_fit.nodes[other.node_of_leaf_[m]])) return 0U;
+            return overlaps(fit.leaves[l], i, other_fit.leaves[m]);
+        };
         other.visit_leaves(other_fit, fit.nodes[node_of_leaf_[l]], this == &other ? l : 0,
                            [&](std::size_t m) { visit_hits(l, other, m, hits, visit); });
     }
@@ -111,6 +115,9 @@ public:
             return box.may_meet({other_fit.start.nodes[n], other_fit.end.nodes[n]});
         };
         const auto hits = [&](std::size_t i, std::size_t m) {
+            const std::size_t n = other.node_of_leaf_[m];
+            const MovingBounds item{box_of(fit.start.leaves[l], i), box_of(fit.end.leaves[l], i)};
+            if (!item.may_meet({other_fit.start.nodes[n], other_fit.end.nodes[n]})) return 0U;
             return ~(parted(fit.start.leaves[l], fit.end.leaves[l], i, other_fit.start.leaves[m],
                             other_fit.end.leaves[m])) &
                    ~(~0u << other.leaf(m).size());
@@ -139,6 +146,11 @@ private:
             if (same) found &= ~0u << (i + 1);
             for (; found != 0; found &= found - 1) visit(mine[i], theirs[std::countr_zero(found)]);
         }
+    }
+    static Bounds box_of(const Leaf& leaf, std::size_t i) {
+        Bounds box;
+        for (std::size_t k = 0; k < 3; ++k) box.low[k] = leaf.low[k][i], box.high[k] = leaf.high[k][i];
+        return box;
     }
     /// Bit j: along some axis, item i of `a` is beyond item j of `b` at both ends, or item j beyond item i.
     static unsigned parted(const Leaf& a0, const Leaf& a1, std::size_t i, const Leaf& b0, const Leaf& b1) {

@@ -16,6 +16,9 @@ namespace {
 /// A tenth: the share of its present distance that a step leaves to every pair.
 constexpr double kept_share = 0.1;
 
+/// After so many calls near each other it is worth knowing what is near.
+constexpr int settled_calls = 2;
+
 /// How far a node may go, in distances at which forces act, before what was near is looked for again.
 constexpr double slack_share = 0.5;
 
@@ -249,15 +252,36 @@ struct Contact::Memory {
     std::mutex mutex;
     std::vector<double> x;  ///< of the last call
     std::shared_ptr<const Nearby> nearby;
+    int settled = 0;  ///< calls in a row that were near the one before
     struct {
         std::vector<double> x;
         Pairs pairs;
     } found;  ///< by the last find: a solver asks several times for one state
+    /// A state, and how far each node may be from it on any axis without anything coming within reach.
+    struct {
+        std::vector<double> x;
+        double radius_m = 0;
+        [[nodiscard]] bool holds(std::span<const double> at, std::span<const double> dx) const {
+            return x.size() == at.size() && Nearby::are_within(x, at, dx, radius_m);
+        }
+    } clear;
 };
+
+namespace {
+
+/// How far a search for the way of a step looks, in distances at which forces act: what it sees tells how far nothing
+/// comes near afterwards.
+constexpr double look_out = 3;
+
+/// Of the least room of any pair: two nodes, each on three axes.
+constexpr double radius_share = 0.5 / 1.75;
+
+}  // namespace
 
 Contact::Contact() : memory_(std::make_shared<Memory>()) {}
 
-/// A state far from the last one is likely to be left behind at once; from the second one near it on, knowing pays.
+/// A state far from the last one is likely to be left behind at once, and a step that ends in one iteration asks twice
+/// where it begins; from the third call near each other on, knowing pays.
 std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x, std::span<const double> dx) const {
     const std::lock_guard lock(memory_->mutex);
     Memory& memory = *memory_;
@@ -266,7 +290,8 @@ std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x
     const bool settles = memory.x.size() == x.size() && Nearby::are_within(memory.x, x, {}, slack_m) &&
                          Nearby::are_within(x, x, dx, slack_m);
     memory.x.assign(x.begin(), x.end());
-    if (!settles) return nullptr;
+    memory.settled = settles ? memory.settled + 1 : 0;
+    if (memory.settled < settled_calls) return nullptr;
     return memory.nearby = std::make_shared<const Nearby>(*this, x);
 }
 
@@ -274,6 +299,7 @@ Pairs Contact::find(std::span<const double> x) const {
     {
         const std::lock_guard lock(memory_->mutex);
         if (std::ranges::equal(memory_->found.x, x)) return memory_->found.pairs;
+        if (planes_.empty() && memory_->clear.holds(x, {})) return {};
     }
     Pairs pairs = search_pairs(x);
     const std::lock_guard lock(memory_->mutex);
@@ -343,21 +369,47 @@ void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
 }
 
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    const double margin = kept_share * settings_.distance_m;
-    const auto limit = [&](const Search::Candidate& c, double& step) {
-        if (!c.comes_near(x, dx, margin)) return;
-        const double t =
-            contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
-        if (t < step && !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
-            step = t;
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (planes_.empty() && memory_->clear.holds(x, dx)) return 1;
+    }
+    const double margin = kept_share * settings_.distance_m, most = look_out * settings_.distance_m;
+    std::vector<double> end(x.begin(), x.end());
+    for (std::size_t i = 0; i < end.size(); ++i) end[i] += dx[i];
+    // What a pair may lose of its distance at the end without acting, nor ever coming to a tenth of what it was.
+    const auto room = [&](double apart_m, double reach_m) { return std::min(apart_m - reach_m, 0.5 * apart_m); };
+    struct Found {
+        double step;
+        double room_m;  ///< the least of all pairs
     };
-    double step = largest_plane_step(x, dx);
+    const auto measure = [&](const Search::Candidate& c, Found& found) {
+        if (room(c.distance_bound(end), settings_.distance_m) >= found.room_m) return;
+        const double apart = std::sqrt(c.squared_distance(rest_));
+        const double left = room(std::sqrt(c.squared_distance(end)), reach(obstacle_of(c.nodes), apart));
+        if (left < found.room_m && !belonging_.together(c.first_nodes(), c.second_nodes(), apart)) found.room_m = left;
+    };
+    const auto limit = [&](const Search::Candidate& c, Found& found) {
+        if (found.room_m > 0) measure(c, found);
+        if (!c.comes_near(x, dx, margin)) return;
+        const double t = contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx),
+                                               kept_share, found.step);
+        if (t < found.step &&
+            !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
+            found.step = t;
+    };
+    // What is near already is not told further than forces act.
     const auto known = nearby(x, dx);
-    const std::vector<double> pieces =
-        known ? known->run(step, limit)
-              : Search(*this, x, dx, margin, Search::What::pairs, settings_.self).run(step, limit);
-    for (const double piece : pieces) step = std::min(step, piece);
-    return step;
+    Found all{largest_plane_step(x, dx), known ? 0 : room(most, settings_.distance_m)};
+    const std::vector<Found> pieces =
+        known ? known->run(all, limit)
+              : Search(*this, x, dx, most, Search::What::pairs, settings_.self).run(all, limit);
+    for (const Found& piece : pieces) all = {std::min(all.step, piece.step), std::min(all.room_m, piece.room_m)};
+    if (all.room_m > 0) {
+        const std::lock_guard lock(memory_->mutex);
+        memory_->clear.x = std::move(end);
+        memory_->clear.radius_m = radius_share * all.room_m;
+    }
+    return all.step;
 }
 
 double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
