@@ -169,3 +169,18 @@ steps = 20
     CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(2.46).scale(0).epsilon(1e-5));
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }
+
+TEST_CASE("pulled by 60 mm the coarse finger presses on itself; told not to, it passes through itself and says so") {
+    std::string text = finger("finger.vtk", 1, 24);
+    text.replace(text.find("50 mm"), 5, "60 mm");
+    const sim::Trajectory touching = simulate(text), through = simulate(text + "[contact]\nself = false\n");
+    REQUIRE_MESSAGE(touching.converged, touching.message);
+    REQUIRE_MESSAGE(through.converged, through.message);
+    CHECK(touching.warnings.empty());
+    CHECK(touching.steps.back().self_contact_N > 5);
+    CHECK(touching.steps.back().cables[0].tension_N == doctest::Approx(5.87).scale(0).epsilon(0.01));
+    CHECK(through.steps.back().cables[0].tension_N == doctest::Approx(4.18).scale(0).epsilon(0.01));
+    REQUIRE(through.warnings.size() == 1);
+    CHECK(through.warnings[0].find("from step 23 on, the robot passes through itself near (") == 0);
+    for (const sim::Step& step : through.steps) CHECK(step.crossing_m.has_value() == (step.index >= 23));
+}
