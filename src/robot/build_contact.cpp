@@ -17,9 +17,10 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
     if (const auto* solid = std::get_if<mesh::Solid>(&spec.shape)) {
         surface = mesh::tessellate(*solid, chord_share * distance_m / robot.unit_m);
     } else {
-        Result<mesh::SurfaceFile> file = mesh::read_surface(std::get<SurfaceFile>(spec.shape).path);
+        const auto& given = std::get<SurfaceFile>(spec.shape);
+        Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
         if (!file) return tl::unexpected(file.error());
-        surface = std::move(file->mesh);
+        surface = mesh::placed(std::move(file->mesh), given.placement);
     }
     if (!surface) return surface;
     return mesh::scaled(std::move(*surface), robot.unit_m);
@@ -28,13 +29,12 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
 }  // namespace
 
 Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
-    const ContactSpec spec = robot.contact.value_or(ContactSpec{});
-    if (!spec.self && robot.obstacles.empty()) return std::nullopt;
+    if (!robot.contact || (!robot.contact->self && robot.obstacles.empty())) return std::nullopt;
+    const ContactSpec& spec = *robot.contact;
     Box3 box;
     for (const Vec3& p : bodies.points) box.add(p);
     sim::ContactRules rules;
     rules.surface = sim::contact::robot_surface(bodies);
-    rules.by_default = !robot.contact;
     rules.settings.self = spec.self;
     rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : distance_share * box.diagonal();
     rules.settings.slip_m = spec.slip > 0 ? spec.slip * robot.unit_m : slip_share * rules.settings.distance_m;

@@ -9,8 +9,8 @@
 
 namespace pliant::robot {
 
-/// `bodies`: the tets that carry material, metres. Nothing where the file switches contact off and has no obstacle.
-/// Errors name the obstacle and its line.
+/// `bodies`: the tets that carry material, metres. Nothing where the file has neither [contact] nor an obstacle,
+/// or switches contact with itself off and has no obstacle. Errors name the obstacle and its line.
 [[nodiscard]] Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies);
 
 }  // namespace pliant::robot

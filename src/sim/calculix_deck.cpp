@@ -113,8 +113,7 @@ private:
     }
 
     Status check() {
-        if (d_.contact && !d_.contact->by_default)
-            return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
+        if (d_.contact) return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
         if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs");

@@ -219,10 +219,6 @@ contact::Surface surface_of_bodies(const Description& d) {
     return contact::robot_surface(bodies);
 }
 
-bool gives_way(const Description& d, const contact::Contact& contact) {
-    return d.contact->by_default && (!d.growths.empty() || contact.crossing_at_rest());
-}
-
 /// Nothing acts with it: only crossing() is asked.
 Result<contact::Contact> surfaces_without_contact(const Description& d) {
     return contact::Contact::create(surface_of_bodies(d), {}, {.distance_m = 1, .stiffness_Pa = 1},
@@ -269,12 +265,8 @@ Result<Model> Model::create(Description description) {
     if (model.description_.contact) {
         Result<contact::Contact> contact = create_contact(model.description_);
         if (!contact) return tl::unexpected(contact.error());
-        if (gives_way(model.description_, *contact))
-            model.description_.contact.reset();
-        else
-            model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
-    }
-    if (!model.description_.contact) {
+        model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
+    } else {
         Result<contact::Contact> surfaces = surfaces_without_contact(model.description_);
         if (!surfaces) return tl::unexpected(surfaces.error());
         model.surfaces_ = std::make_unique<contact::Contact>(std::move(*surfaces));

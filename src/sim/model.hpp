@@ -155,9 +155,6 @@ struct ContactRules {
     contact::Surface surface;    ///< of the robot's bodies
     contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
     std::vector<Obstacle> obstacles;
-    /// Nobody asked for it: it gives way where it could not work, to a robot that passes through itself at rest and to
-    /// the thesis' actuators, whose meshed space keeps its walls apart.
-    bool by_default = false;
 };
 
 /// A point of the material whose position is reported.

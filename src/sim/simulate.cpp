@@ -33,8 +33,8 @@ constexpr double good_start = 0.03;
 
 constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
-constexpr double sudden = 5;                  // times as far as in the step before
-constexpr double noticeable = 0.01;           // of the robot's size, as a mean of all nodes
+constexpr double sudden = 5;         // times as far as in the step before
+constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
 constexpr int most_pushes = 5;
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
