@@ -66,13 +66,14 @@ sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const Cavit
 
 /// A closed surface whose points ride on the tets that hold them.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
-                       const std::filesystem::path& path) {
-    const Result<mesh::SurfaceFile> file = mesh::read_surface(path);
+                       const SurfaceFile& given) {
+    Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
     if (!file) {
         draft.problem(spec.line, "chamber", spec.name, file.error().message);
         return {};
     }
-    const mesh::TriMesh surface = mesh::scaled(file->mesh, draft.robot.unit_m);
+    const mesh::TriMesh surface =
+        mesh::scaled(mesh::placed(std::move(file->mesh), given.placement), draft.robot.unit_m);
     if (Status closed = mesh::check_closed(surface); !closed) {
         draft.problem(spec.line, "chamber", spec.name, closed.error().message);
         return {};
@@ -96,7 +97,7 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
 void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
     sim::Chamber chamber{spec.name, {}, spec.target};
     if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
-        chamber.wall = wall_of_file(draft, attacher, spec, file->path);
+        chamber.wall = wall_of_file(draft, attacher, spec, *file);
     else if (const auto* cavity = std::get_if<CavityAt>(&spec.air))
         chamber.wall = wall_of_cavity(draft, spec, *cavity);
     else

@@ -6,6 +6,8 @@
 
 #include "core/files.hpp"
 #include "core/test_folder.hpp"
+#include "mesh/surface_file.hpp"
+#include "mesh/test_shapes.hpp"
 #include "mesh/tet_writer.hpp"
 #include "robot/test_run.hpp"
 
@@ -133,4 +135,29 @@ TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved an
     CHECK(message(replaced(text, "count = 3", "count = 100000")).find("1 to 1000 are possible") != std::string::npos);
     CHECK(message(replaced(eighth, "[10, 10, 10]] } }]", "[10, 10, 10]] }, place = { scale = 2 } }]"))
               .find("a shape is placed by translate, rotate and repeat") != std::string::npos);
+}
+
+TEST_CASE("surfaces of chambers and obstacles are placed, too") {
+    const test::Folder folder("placed");
+    REQUIRE(mesh::write_stl(folder.path() / "cube.stl", mesh::test::cube()));
+    const std::string text = head + R"(mesh = { size = "4 mm", order = 1 }
+body = [{ name = "block", material = "soft", geometry = { difference = [
+    { box = [[0, 0, 0], [10, 10, 10]] }, { box = [[3, 3, 3], [7, 7, 7]] }] } }]
+fixed = [{ name = "floor", box = [[0, 0, 0], [10, 10, 0]] }]
+chamber = [{ name = "air", surface = "cube.stl", place = { scale = 0.4, move = [3, 3, 3] }, target = { volume_ratio = 1.1 } }]
+obstacle = [{ name = "lid", surface = "cube.stl", place = { rotate = { angle = 90, axis = [1, 0, 0] }, move = [0, 10, 12] } }]
+)";
+    const Built built = testing::build(parse_robot(text, folder.path() / "block.toml"));
+    const sim::Description& d = built.model.description();
+    const sim::Wall& wall = d.chambers.at(0).wall;
+    std::vector<double> x;
+    for (const Vec3& p : d.mesh.points) x.insert(x.end(), {p.x, p.y, p.z});
+    Box3 air;
+    for (const sim::Attachment& point : wall.points) air.add(sim::position(point, x));
+    CHECK(norm(air.low - Vec3{3e-3, 3e-3, 3e-3}) < 1e-9);
+    CHECK(norm(air.high - Vec3{7e-3, 7e-3, 7e-3}) < 1e-9);
+    const auto& lid = std::get<mesh::TriMesh>(d.contact->obstacles.at(0).body.shape);
+    // (x, y, z) -> (x, -z, y), then moved.
+    CHECK(norm(mesh::bounds(lid).low - Vec3{0, 0, 12e-3}) < 1e-9);
+    CHECK(norm(mesh::bounds(lid).high - Vec3{10e-3, 10e-3, 22e-3}) < 1e-9);
 }
