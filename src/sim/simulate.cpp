@@ -143,8 +143,8 @@ public:
         }
     }
 
-    /// Of a robot at rest at every instant, after each step: whether it jumped on the way, and whether where it is now
-    /// is stable. If not it goes on to where it is, if the program says by how much to push it.
+    /// Of a robot at rest at every instant, after each step: whether it jumped on the way. If the program says by how
+    /// much to push it, it also goes on from where it is unstable to where it is stable.
     void judge(Step& step, std::vector<std::string>& warnings, const Progress& progress) {
         if (program_.dynamics) return;
         if (jumped(progress))
@@ -153,26 +153,49 @@ public:
                             "equilibrium that leads from one to the other; what it does in between takes "
                             "time, and the state after it may be another one in reality",
                             step.index));
-        const bool was_unstable = std::exchange(unstable_, false);
-        const auto motion = stability_.falling_motion(state_, controls_);
-        if (motion && program_.imperfection_m > 0 && leave(*motion, step, progress))
-            warnings.push_back(
-                fmt::format("at step {} the equilibrium is unstable; a push of {:.3g} mm along its softest "
-                            "motion led to a stable one",
-                            step.index, 1e3 * program_.imperfection_m));
-        else if ((unstable_ = motion.has_value()) && !was_unstable)
-            warnings.push_back(
-                fmt::format("from step {} on the equilibrium is unstable: a real robot buckles to one side where this "
-                            "one stays in balance; program.imperfection follows the stable way",
-                            step.index));
-        else if (was_unstable && !unstable_)
-            warnings.push_back(fmt::format("from step {} on the equilibrium is stable again", step.index));
+        if (program_.imperfection_m > 0) {
+            const auto motion = stability_.falling_motion(state_, controls_);
+            if (motion && leave(*motion, step, progress))
+                warnings.push_back(
+                    fmt::format("at step {} the equilibrium is unstable; a push of {:.3g} mm along its softest "
+                                "motion led to a stable one",
+                                step.index, 1e3 * program_.imperfection_m));
+        }
         reported_ = {time_, state_};
+    }
+
+    /// At the end: whether the last state is stable. If not, the first step that was not is sought by halving; a look
+    /// at every step would take as long as the steps.
+    void judge_end(Trajectory& result) {
+        if (program_.dynamics || result.steps.size() < 2 || !stability_.falling_motion(state_, controls_)) return;
+        std::size_t stable = 0, unstable = result.steps.size() - 1;
+        while (unstable - stable > 1 && !system_.has_cable_friction()) {
+            const std::size_t middle = (stable + unstable) / 2;
+            (is_unstable(result.steps[middle]) ? unstable : stable) = middle;
+        }
+        result.warnings.push_back(
+            fmt::format("from step {} on the equilibrium is unstable: a real robot buckles to one side where this one "
+                        "stays in balance; program.imperfection follows the stable way",
+                        unstable));
     }
 
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
+    [[nodiscard]] bool is_unstable(const Step& step) {
+        State state = system_.rest();
+        for (std::size_t n = 0; n < step.positions.size(); ++n) {
+            const Vec3& p = step.positions[n];
+            state.x.segment<3>(3 * static_cast<Eigen::Index>(n)) << p.x, p.y, p.z;
+        }
+        Eigen::Index a = 0;
+        for (const CableState& cable : step.cables) state.multiplier[a++] = cable.tension_N;
+        for (const ChamberState& chamber : step.chambers) state.multiplier[a++] = -chamber.pressure_Pa;
+        const Controls controls = system_.controls(step.time);
+        state.multiplier = system_.evaluate(state, controls).multiplier;
+        return stability_.falling_motion(state, controls).has_value();
+    }
+
     /// A step that is much quicker than the one before it is looked at closely.
     [[nodiscard]] bool jumped(const Progress& progress) {
         const double way = (state_.x - reported_.state.x).norm();
@@ -433,7 +456,6 @@ private:
     Moment reported_;               ///< after the last step of the program
     double last_way_ = 0;           ///< that this step took
     double size_ = 0;               ///< of the robot at rest
-    bool unstable_ = false;         ///< after the last step
     std::vector<IterationRecord> iterations_;
 };
 
@@ -472,6 +494,9 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         result.solve_s += step.wall_s;
         result.steps.push_back(std::move(step));
     }
+    const auto end = std::chrono::steady_clock::now();
+    walk.judge_end(result);
+    result.solve_s += seconds_since(end);
     add_warnings(result);
     result.iterations = walk.take_iterations();
     progress.advance("simulate", 1);

@@ -14,9 +14,10 @@
 namespace pliant::sim {
 
 /// Looks for the motion along which the tangent is softest among those that keep every length and volume that is
-/// driven: the smallest ratio v^T K v / v^T M v, where M is the tangent of an earlier state, by preconditioned
-/// conjugate gradients (Knyazev 2001, a block of one). Each look begins where the last one ended, so that two or three
-/// solves with a factor that is there are enough; a new one is made every few looks. What it calls unstable is: the
+/// driven: the smallest ratio v^T K v / v^T M v, where M is the tangent of the first state or of a later one, by
+/// preconditioned conjugate gradients (Knyazev 2001, a block of one). The first look takes one factor if that state is
+/// stable. Each later one begins where the last one ended, so that two or three solves with a factor that is there are
+/// enough; a new one is made every few looks. What it calls unstable is: the
 /// tangent was negative along a motion. It may overlook a mode that got soft between two looks.
 class Stability {
 public:
