@@ -104,7 +104,7 @@ TEST_CASE("points in curved tets are where they were put, and a cable round a bo
     }
     CHECK(farthest < 1e-9);
     // The first and the last segment differ in direction by one turn less than the guides.
-    const CablePath path(cable, rest);
+    const CablePath path(cable.points, rest);
     const double left = path.tension_shares(rest, friction, true).back();
     CHECK(left == doctest::Approx(std::exp(-friction * turn * (guides - 2) / (guides - 1))).scale(0).epsilon(1e-6));
 }

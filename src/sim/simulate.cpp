@@ -222,7 +222,7 @@ private:
             Controls controls = controls_;
             if (!system_.evaluate(next, controls).possible() || !passes(next, controls)) return false;
             solvers_.restart();
-            const StepOutcome outcome = settle_friction(controls, next, progress);
+            const StepOutcome outcome = settle(controls, next, progress);
             step.iterations += outcome.iterations;
             note(outcome.history, step.index, time_);
             if (!outcome.converged || stability_.falling_motion(next, controls)) continue;
