@@ -34,7 +34,7 @@ Description fork(double push_m, int order = 1) {
 }
 
 void add_contact(Description& d) {
-    d.contact = ContactRules{contact::robot_surface(d.mesh), {.distance_m = 0.05 * mm, .stiffness_Pa = 1e5}, {}, true};
+    d.contact = ContactRules{contact::robot_surface(d.mesh), {.distance_m = 0.05 * mm, .stiffness_Pa = 1e5}, {}};
 }
 
 std::size_t mentions(const std::vector<std::string>& warnings, const std::string& text) {
