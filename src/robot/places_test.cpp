@@ -110,7 +110,7 @@ TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved an
     const Built once = build(eighth);
     mesh::TetMesh unit = mesh::scaled(once.model.mesh(), 100);  // a cube of side 1 in the file's unit
     unit.region_names = {"block"};
-    REQUIRE(mesh::write_tet_mesh(unit, folder.path() / "cube.vtk"));
+    REQUIRE(mesh::write_tet_mesh(folder.path() / "cube.vtk", unit));
     const std::string place =
         "place = { scale = 10, mirror = { normal = [1, 0, 0] }, rotate = { angle = 90, axis = [0, 0, 1] }, "
         "move = [0, 0, 5], repeat = { count = 3, move = [20, 0, 0] } }";
