@@ -90,33 +90,44 @@ Result<HeldNodes> HeldNodes::create(std::span<const Support> supports, int node_
 }
 
 Status HeldNodes::add_shared(std::span<const Support> supports, int node, const std::vector<int>& holders) {
-    Shared shared{node, {}, Directions(0, 3)};
-    const Support* whole = nullptr;
-    bool moves = false;
+    Shared shared{node, holders, Directions(0, 3)};
     for (const int s : holders) {
-        const Support& support = supports[static_cast<std::size_t>(s)];
         const Directions& rows = directions_[static_cast<std::size_t>(s)];
-        moves = moves || support.moves();
-        if (rows.rows() == 3 && whole != nullptr)
-            return input_error("fixed \"{}\" and fixed \"{}\" share nodes; let each node belong to one", whole->name,
-                               support.name);
-        if (rows.rows() == 3) whole = &support;
-        shared.supports.push_back(s);
         shared.directions.conservativeResize(shared.directions.rows() + rows.rows(), 3);
         shared.directions.bottomRows(rows.rows()) = rows;
     }
+    if (Status status = check_shared(supports, holders); !status) return status;
     const Eigen::Matrix3d free = complement_of(shared.directions);
-    const auto held = static_cast<Eigen::Index>(std::lround(3 - free.trace()));
-    if (moves && shared.directions.rows() > held)
-        return input_error(
-            "fixed \"{}\" and fixed \"{}\" hold the same nodes in the same direction while one of them moves; "
-            "let each node belong to one, or give them other directions",
-            supports[static_cast<std::size_t>(holders[0])].name, supports[static_cast<std::size_t>(holders[1])].name);
-    if (held == 3)
+    if (free.trace() < 0.5)
         fixed_[static_cast<std::size_t>(node)] = true;
     else
         rollers_.push_back({node, free});
     shared_.push_back(std::move(shared));
+    return {};
+}
+
+/// Two supports must not both hold a node in all directions, nor in the same one while one of them moves.
+Status HeldNodes::check_shared(std::span<const Support> supports, const std::vector<int>& holders) const {
+    for (const int s : holders) {
+        for (const int t : holders) {
+            if (s >= t) continue;
+            const Support &first = supports[static_cast<std::size_t>(s)],
+                          &second = supports[static_cast<std::size_t>(t)];
+            const Directions &a = directions_[static_cast<std::size_t>(s)],
+                             &b = directions_[static_cast<std::size_t>(t)];
+            if (a.rows() == 3 && b.rows() == 3)
+                return input_error("fixed \"{}\" and fixed \"{}\" share nodes; let each node belong to one", first.name,
+                                   second.name);
+            Directions both(a.rows() + b.rows(), 3);
+            both << a, b;
+            const auto held = static_cast<Eigen::Index>(std::lround(3 - complement_of(both).trace()));
+            if (held < both.rows() && (first.moves() || second.moves()))
+                return input_error(
+                    "fixed \"{}\" and fixed \"{}\" hold the same nodes in the same direction while one of them moves; "
+                    "let each node belong to one, or give them other directions",
+                    first.name, second.name);
+        }
+    }
     return {};
 }
 

@@ -50,6 +50,7 @@ private:
     };
     HeldNodes() = default;
     [[nodiscard]] Status add_shared(std::span<const Support> supports, int node, const std::vector<int>& holders);
+    [[nodiscard]] Status check_shared(std::span<const Support> supports, const std::vector<int>& holders) const;
 
     std::vector<Directions> directions_;   ///< (supports)
     std::vector<std::vector<int>> alone_;  ///< (supports) nodes that no other support holds

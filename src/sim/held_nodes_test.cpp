@@ -117,7 +117,7 @@ TEST_CASE("half of a bent beam with a plane of symmetry is half of the whole bea
             if (at_end) end.push_back(face);
         }
         SurfaceShares shares = surface_shares(d.mesh, end);
-        d.loads = {{"push", std::move(shares.nodes), std::move(shares.shares), {0, 0, half ? 0.002 : 0.004}}};
+        d.loads = {{"push", std::move(shares.nodes), std::move(shares.shares), {0, 0, half ? 0.02 : 0.04}}};
         const int corner = nodes_where(d.mesh, [](Vec3 p) { return norm(p - Vec3{6 * side, 0, 0}) < tiny; }).at(0);
         d.markers = {{"tip", {{corner}, {1.0}, {}}}};
         return testing::solve(std::move(d), {.steps = 2, .tolerance = 1e-8});
@@ -155,10 +155,11 @@ TEST_CASE("supports that contradict each other are named") {
     CHECK(message(d).empty());
     Description twice = d;
     twice.supports.push_back(roller("again", d.mesh, 0, side, 0.5 * side));
-    CHECK(holds(message(twice), "fixed \"end\" and fixed \"again\" hold the same nodes in the same direction"));
+    CHECK_MESSAGE(holds(message(twice), "fixed \"end\" and fixed \"again\" hold the same nodes in the same direction"),
+                  message(twice));
     Description still = d;
     still.supports.push_back(roller("again", d.mesh, 1, 0));
-    CHECK(message(still).empty());  // neither moves: they agree
+    CHECK_MESSAGE(message(still).empty(), message(still));  // neither moves: they agree
     Description clamps = d;
     clamps.supports = {{"a", plane_nodes(d.mesh, 0, 0), {}}, {"b", plane_nodes(d.mesh, 1, 0), {}}};
     CHECK(holds(message(clamps), "share nodes"));

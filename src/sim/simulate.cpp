@@ -147,12 +147,14 @@ public:
     /// much to push it, it also goes on from where it is unstable to where it is stable.
     void judge(Step& step, std::vector<std::string>& warnings, const Progress& progress) {
         if (program_.dynamics) return;
-        if (jumped(progress))
+        if (jumped(progress)) {
+            if (step.index > 1) before_jump_.push_back(static_cast<std::size_t>(step.index) - 1);
             warnings.push_back(
                 fmt::format("at step {} the robot jumps: between two states near each other there is no "
                             "equilibrium that leads from one to the other; what it does in between takes "
                             "time, and the state after it may be another one in reality",
                             step.index));
+        }
         if (program_.imperfection_m > 0) {
             const auto motion = stability_.falling_motion(state_, controls_);
             if (motion && leave(*motion, step, progress))
@@ -164,19 +166,26 @@ public:
         reported_ = {time_, state_};
     }
 
-    /// At the end: whether the last state is stable. If not, the first step that was not is sought by halving; a look
-    /// at every step would take as long as the steps.
+    /// At the end: whether the last state is stable, and those before a jump. Of the first that is not, the first step
+    /// that was not is sought by halving; a look at every step would take as long as the steps.
     void judge_end(Trajectory& result) {
-        if (program_.dynamics || result.steps.size() < 2 || !stability_.falling_motion(state_, controls_)) return;
-        std::size_t stable = 0, unstable = result.steps.size() - 1;
-        while (unstable - stable > 1 && !system_.has_cable_friction()) {
-            const std::size_t middle = (stable + unstable) / 2;
-            (is_unstable(result.steps[middle]) ? unstable : stable) = middle;
+        if (program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
+        before_jump_.push_back(result.steps.size() - 1);
+        for (const std::size_t suspect : before_jump_) {
+            if (!is_unstable(result.steps[suspect])) continue;
+            std::size_t stable = 0, unstable = suspect;
+            while (unstable - stable > 1) {
+                const std::size_t middle = (stable + unstable) / 2;
+                (is_unstable(result.steps[middle]) ? unstable : stable) = middle;
+            }
+            const bool jumps = suspect + 1 < result.steps.size();
+            result.warnings.push_back(
+                fmt::format("from step {} on the equilibrium is unstable{}: a real robot buckles to one side where "
+                            "this one stays in "
+                            "balance; program.imperfection follows the stable way",
+                            unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : ""));
+            return;
         }
-        result.warnings.push_back(
-            fmt::format("from step {} on the equilibrium is unstable: a real robot buckles to one side where this one "
-                        "stays in balance; program.imperfection follows the stable way",
-                        unstable));
     }
 
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
@@ -455,7 +464,8 @@ private:
     std::set<std::size_t> warned_;  ///< cables
     Moment reported_;               ///< after the last step of the program
     double last_way_ = 0;           ///< that this step took
-    double size_ = 0;               ///< of the robot at rest
+    std::vector<std::size_t> before_jump_;  ///< steps
+    double size_ = 0;                       ///< of the robot at rest
     std::vector<IterationRecord> iterations_;
 };
 

@@ -87,13 +87,13 @@ TEST_CASE("a spring bends a body as a dead load of its force does") {
     const Attachment tip = d.markers[0].point;
     const Vec3 anchor{0.03, 0.005, 0.06};
     Description sprung = d;
-    sprung.springs = {{"spring", {tip, {{}, {}, anchor}}, 0.5, 0.02}};
+    sprung.springs = {{"spring", {tip, {{}, {}, anchor}}, 2, 0.02}};
     const Trajectory held = testing::solve(std::move(sprung), {.steps = 2, .tolerance = 1e-8});
     REQUIRE_MESSAGE(held.converged, held.message);
     const Step& last = held.steps.back();
     const Vec3 to_anchor = anchor - last.markers[0].position_m;
     CHECK(last.springs[0].length_m == doctest::Approx(norm(to_anchor)).epsilon(1e-9));
-    CHECK(last.springs[0].force_N == doctest::Approx(0.5 * (norm(to_anchor) - 0.02)).epsilon(1e-9));
+    CHECK(last.springs[0].force_N == doctest::Approx(2 * (norm(to_anchor) - 0.02)).epsilon(1e-9));
     CHECK(last.markers[0].position_m.z > 0.01);  // it bends: this is no small motion
 
     d.loads = {{"pull", tip.nodes, tip.weights, (last.springs[0].force_N / norm(to_anchor)) * to_anchor}};
