@@ -108,7 +108,7 @@ struct Control::State_ {
     Script script;
     std::vector<double> times;
 
-    [[nodiscard]] Status ask_for(State next, const std::function<Status(const Snapshot&)>& allowed,
+    [[nodiscard]] Status ask_for(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed,
                                  std::function<void()> task);
     [[nodiscard]] bool stop_move();
     [[nodiscard]] Status run_one_move(const std::string& program);
@@ -137,16 +137,17 @@ struct Control::State_ {
 
 // --- asking --------------------------------------------------------------------------------------------------------
 
-/// Checks the state and takes the next one in one go, so that two who ask at once do not both get it.
-Status Control::State_::ask_for(State next, const std::function<Status(const Snapshot&)>& allowed,
+/// Checks the state and takes the next one in one go, so that two who ask at once do not both get it. Without a next
+/// one it stays as it is.
+Status Control::State_::ask_for(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed,
                                 std::function<void()> task) {
     Status status;
     desk.update([&](Snapshot& s) {
         status = allowed(s);
-        if (status) s.state = next;
+        if (status && next) s.state = *next;
     });
     if (!status) return status;
-    desk.event("state", std::string(state_text(next)));
+    if (next) desk.event("state", std::string(state_text(*next)));
     {
         const std::scoped_lock lock(mutex);
         tasks.push_back(std::move(task));
@@ -198,9 +199,8 @@ Status Control::load(PrintJob job) {
     if (!script) return tl::unexpected(script.error());
     auto times = script_times(*script, state_->setup.printer);
     if (!times) return tl::unexpected(times.error());
-    State stay = State::offline;
     return state_->ask_for(
-        stay = snapshot().state,
+        std::nullopt,
         [](const Snapshot& s) -> Status {
             if (!is_printing(s.state) && s.state != State::working && s.state != State::connecting) return {};
             return failure("not now: the printer is {}", state_text(s.state));

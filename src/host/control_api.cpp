@@ -46,6 +46,7 @@ json job_json(const Snapshot& s) {
 json progress_json(const Snapshot& s) {
     return {{"completion", or_null(!s.job.empty(), s.completion * 100)},
             {"printTime", or_null(!s.job.empty(), s.seconds_done)},
+            {"begun", s.begun_s ? json(*s.begun_s) : json(nullptr)},
             {"printTimeLeft", or_null(!s.job.empty(), s.seconds_left)},
             {"layer", or_null(s.layer >= 0, s.layer)},
             {"material", or_null(s.material >= 0, s.material)},

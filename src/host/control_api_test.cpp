@@ -143,6 +143,19 @@ TEST_CASE("the feed: history, then what is new, each event once") {
     CHECK(other == seen);
 }
 
+TEST_CASE("a job that is loaded leaves the state as it is, whatever it was when it was asked") {
+    Bench b;
+    b.load();
+    for (const Event& event : b.control.events_since(0)) CHECK(event.kind != "state");
+    CHECK(b.control.snapshot().state == State::offline);
+    REQUIRE(b.control.connect());
+    b.control.serve_until_idle();
+    const long before = b.control.snapshot().last_event;
+    b.load();
+    for (const Event& event : b.control.events_since(before)) CHECK(event.kind != "state");
+    CHECK(b.control.snapshot().state == State::idle);
+}
+
 TEST_CASE("the emergency stop is one request and writes M112 at once") {
     Bench b;
     REQUIRE(b.control.connect());

@@ -142,6 +142,7 @@ struct Snapshot {
     double exposure_s = 0;            ///< how long it shall be
     double completion = 0;            ///< share of the print's time, 0 to 1
     double seconds_done = 0;          ///< since the print began, pauses included
+    std::optional<double> begun_s;    ///< when that was, on the devices' clock; nullopt: none has begun
     double seconds_left = 0;          ///< as planned
     std::vector<double> exposures_s;  ///< by material, where they have been changed; else 0
     machine::Position position;       ///< after the last command

@@ -42,6 +42,7 @@ PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
       clock_(run.setup.clock),
       begin_s_(run.setup.clock.now()) {
     run_.desk.update([&](Snapshot& s) {
+        s.begun_s = begin_s_;
         s.exposures_s.assign(run_.job.materials.size(), 0);
         for (const ChangeFact& change : facts_.changes) {
             if (change.material >= 0 && static_cast<std::size_t>(change.material) < s.exposures_s.size())
@@ -128,13 +129,18 @@ double PrintRun::exposure_s(const machine::Expose& light) const {
     return seconds;
 }
 
+std::string PrintRun::material_name(int material) const {
+    const auto m = static_cast<std::size_t>(material);
+    return m < run_.job.materials.size() ? run_.job.materials[m] : fmt::format("material {}", material + 1);
+}
+
 bool PrintRun::skipped(int layer) const {
     return std::find(facts_.skipped_layers.begin(), facts_.skipped_layers.end(), layer) != facts_.skipped_layers.end();
 }
 
 Status PrintRun::expose(std::size_t step) {
     const machine::Expose& light = *run_.script.light(step);
-    if (light.layer != layer_) run_.desk.event("layer", fmt::format("{}", light.layer));
+    if (light.layer != layer_) run_.desk.event("layer", fmt::format("{}", light.layer + 1));
     layer_ = light.layer;
     run_.desk.update([&](Snapshot& s) {
         s.layer = light.layer;
@@ -145,7 +151,7 @@ Status PrintRun::expose(std::size_t step) {
     LightFact& fact = found->second;
     if (is_new && skipped(light.layer)) {
         facts_.lights.erase(found);
-        run_.desk.event("log", fmt::format("the light of layer {} is left out", light.layer));
+        run_.desk.event("log", fmt::format("the light of layer {} is left out", light.layer + 1));
         return {};
     }
     if (is_new) fact = {light.layer, light.material, exposure_s(light), 0, false, 0, 0};
@@ -188,7 +194,8 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     const double start_s = clock_.now();
     if (run_.setup.guard != nullptr) run_.setup.guard->lit(start_s);
     Status status = projector_.show_for(image, left_s);
-    run_.desk.event("light", fmt::format("layer {}, material {}, {:.3f} s", fact.layer, fact.material, left_s));
+    run_.desk.event("light",
+                    fmt::format("layer {}, {}, {:.3f} s", fact.layer + 1, material_name(fact.material), left_s));
     run_.desk.update([&](Snapshot& s) {
         s.lit = true;
         s.exposure_s = fact.planned_s;
@@ -306,14 +313,14 @@ Status PrintRun::keep_changes() {
             s.exposures_s.resize(run_.job.materials.size());
             s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         });
-        run_.desk.event("log", fmt::format("from layer {} on material {} is lit for {:g} s", change.from_layer,
-                                           change.material, change.seconds));
+        run_.desk.event("log", fmt::format("from layer {} on {} is lit for {:g} s", change.from_layer + 1,
+                                           material_name(change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {
         if (layer <= layer_) continue;
         if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
         facts_.skipped_layers.push_back(layer);
-        run_.desk.event("log", fmt::format("layer {} will get no light", layer));
+        run_.desk.event("log", fmt::format("layer {} will get no light", layer + 1));
     }
     return {};
 }
