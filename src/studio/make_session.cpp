@@ -77,7 +77,7 @@ Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::st
         const std::lock_guard lock(mutex_);
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
         job_->colours = std::move(colours);
-        news = last_event_ = event({{"type", "job"}, {"revision", revision_}});
+        news = event({{"type", "job"}, {"revision", revision_}});
     }
     tell_(news);
     return {};
@@ -121,8 +121,8 @@ std::shared_ptr<OpenJob> MakeSession::job() const {
 
 std::vector<std::string> MakeSession::news() const {
     const std::lock_guard lock(mutex_);
-    if (last_event_.empty()) return {};
-    return {last_event_};
+    // That there is none is news too: to a page that knew a job before the studio was started again.
+    return {event({{"type", "job"}, {"revision", job_ ? revision_ : 0}})};
 }
 
 }  // namespace pliant::studio

@@ -63,7 +63,6 @@ private:
     mutable std::mutex mutex_;
     std::shared_ptr<OpenJob> job_;
     int revision_ = 0;
-    std::string last_event_;
     std::atomic<bool> slicing_ = false, cancelled_ = false;
     std::thread thread_;
 };

@@ -204,9 +204,17 @@ report::PrintExtras PrintSession::extras() const {
     return extras;
 }
 
+std::string PrintSession::verdict() const {
+    const auto machine = this->machine();
+    if (!machine || !machine->twin || !machine->is_free() || !machine->control.snapshot().finished) return "null";
+    const auto block = block_of(*machine->twin, machine->file);
+    return block ? dumped({{"passed", block->report.passed}}) : "null";
+}
+
 Status PrintSession::take_twin(const Order& order, double speed) {
     if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
-    if (Status status = give_back(); !status) return status;
+    const std::lock_guard one_at_a_time(orders_);
+    if (Status status = leave(); !status) return status;
     Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready->archive, ready->printer.projector);
@@ -224,7 +232,8 @@ Status PrintSession::take_twin(const Order& order, double speed) {
 
 Status PrintSession::take_port(const Order& order, const operate::PortOptions& port) {
     if (Status status = check_device(port.device); !status) return status;
-    if (Status status = give_back(); !status) return status;
+    const std::lock_guard one_at_a_time(orders_);
+    if (Status status = leave(); !status) return status;
     Result<operate::ReadyJob> ready = operate::load_job(order.job);
     if (!ready) return tl::unexpected(ready.error());
     auto station = operate::PortStation::open(port, *ready);
@@ -278,6 +287,11 @@ void PrintSession::end(const std::shared_ptr<Machine>& machine) {
 }
 
 Status PrintSession::give_back() {
+    const std::lock_guard one_at_a_time(orders_);
+    return leave();
+}
+
+Status PrintSession::leave() {
     std::shared_ptr<Machine> machine = this->machine();
     if (!machine) return {};
     if (under_way(machine->control.snapshot().state))
@@ -333,12 +347,15 @@ host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path
     const auto machine = this->machine();
     if (!machine) return {404, R"({"error":"no machine has been taken"})"};
     if (method == "POST" && path == "/api/job") {
+        // Two who start at once: the second must not clear what the first has begun.
+        const std::lock_guard one_at_a_time(orders_);
         const std::string command = command_of(body);
         const host::Snapshot now = machine->control.snapshot();
         if (command == "start" && now.door_open.value_or(false))
             return {409, R"({"error":"the door is open: shut it, then start"})"};
         if (command == "start" && machine->is_free() && now.state != host::State::connecting) prepare_start(*machine);
         if (command == "resume") pour(*machine);
+        return host::handle_api(machine->control, method, path, body);
     }
     return host::handle_api(machine->control, method, path, body);
 }
@@ -387,8 +404,8 @@ std::string PrintSession::part(int revision, std::size_t from) const {
     return machine ? machine->part.packet(revision, from) : "";
 }
 
+/// That there is none is news too: to a page that knew a machine before the studio was started again.
 std::vector<std::string> PrintSession::news() const {
-    if (!machine()) return {};
     return {R"({"type":"machine"})"};
 }
 

@@ -64,10 +64,14 @@ public:
     [[nodiscard]] Files files() const;
     /// What its journal does not hold.
     [[nodiscard]] report::PrintExtras extras() const;
+    /// What has come of a print that is complete, JSON: {"passed"}, null where nobody can know (at a port, in
+    /// mid-print). Cost: as report::cured_block().
+    [[nodiscard]] std::string verdict() const;
 
 private:
     struct Machine;
     [[nodiscard]] Status take(const std::shared_ptr<Machine>& machine);
+    [[nodiscard]] Status leave();
     void watch(const std::shared_ptr<Machine>& machine);
     static void prepare_start(Machine& machine);
     static void pour(Machine& machine);
@@ -77,6 +81,7 @@ private:
     std::function<void(const std::string& json)> tell_;
     std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; gone with the session
     std::atomic<int> taken_ = 0;     ///< machines, so far
+    std::mutex orders_;              ///< held while a machine is taken or left, or a print is begun: one at a time
     mutable std::mutex mutex_;
     std::shared_ptr<Machine> machine_;
 };

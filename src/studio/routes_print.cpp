@@ -162,6 +162,9 @@ void add_print_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
     routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or shuts the door of the virtual printer", json,
                       true, set_door, json});
+    routes.push_back({"GET", "/api/print/verdict",
+                      "of a complete print on the virtual printer: {\"passed\"}, whether it cured as drawn; else null",
+                      json, false, [](Studio& s, const Request&) { return json_response(s.print().verdict()); }});
     routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
                       "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",

@@ -103,12 +103,15 @@ SimulationSession::~SimulationSession() {
     thread_.join();
 }
 
-void SimulationSession::open(RobotText source) {
+void SimulationSession::open(RobotText source, After after) {
     const std::lock_guard lock(mutex_);
     to_build_ = std::move(source);
     built_once_ = false;
-    wanted_ = {};
-    input_ = false;
+    if (after == After::from_rest) wanted_ = {};
+    wanted_.pull.reset();
+    wanted_.playing = wanted_.to_rest = false;
+    wanted_.again = after == After::as_before;
+    input_ = wanted_.again;
     changed_.notify_all();
 }
 
@@ -129,7 +132,7 @@ void SimulationSession::drive(const DriveMessage& message) {
 void SimulationSession::follow(const Follow& message) {
     const std::lock_guard lock(mutex_);
     wanted_.tag = message.tag;
-    wanted_.time = std::max(message.time, 0.0);
+    wanted_.time = wanted_.followed = std::max(message.time, 0.0);
     wanted_.actuators.clear();
     wanted_.follow = true;
     wanted_.playing = false;
@@ -140,7 +143,7 @@ void SimulationSession::follow(const Follow& message) {
 void SimulationSession::play(bool on) {
     const std::lock_guard lock(mutex_);
     wanted_.playing = on;
-    wanted_.actuators.clear();
+    if (on) wanted_.actuators.clear();
     input_ = true;
     changed_.notify_all();
 }
@@ -225,7 +228,7 @@ void SimulationSession::work() {
                 to_build_.reset();
             } else if (input_) {
                 wanted = wanted_;
-                wanted_.to_rest = wanted_.show_again = wanted_.follow = false;
+                wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = false;
                 input_ = false;
             }
         }
@@ -268,11 +271,14 @@ void SimulationSession::build(RobotText source) {
         return refuse({Cause::input, fmt::format("{}: cables with gap elements and chambers of elements cannot be "
                                                  "steered live; pliant simulate runs their program",
                                                  source.file.filename().string())});
+    const std::shared_ptr<const Built> before = this->built();
     auto built = std::make_shared<const Built>(std::move(source), std::move(*robot), std::move(*model), ++revision_);
     live_.reset();
     live_.emplace(built->model, built->robot.program);
     target_ = live_->target_at(0);
+    driven_.clear();
     pulled_vertex_ = -1;
+    want_as_before(before.get(), *built);
     {
         const std::lock_guard lock(mutex_);
         built_ = built;
@@ -288,10 +294,26 @@ void SimulationSession::build(RobotText source) {
     finished("");
 }
 
+/// Names tell whether what was wanted of the robot before still says something.
+void SimulationSession::want_as_before(const Built* before, const Built& now) {
+    const auto names = [](const Built& b) {
+        const sim::Description& d = b.model.description();
+        std::vector<std::string> all;
+        for (const auto& cable : d.cables) all.push_back("cable " + cable.name);
+        for (const auto& chamber : d.chambers) all.push_back("chamber " + chamber.name);
+        return all;
+    };
+    const std::lock_guard lock(mutex_);
+    if (!wanted_.again || (before != nullptr && names(*before) == names(now))) return;
+    wanted_ = {};
+    input_ = false;
+}
+
 void SimulationSession::apply(const Wanted& wanted) {
     if (wanted.to_rest) {
         live_->return_to_rest();
         target_ = live_->target_at(0);
+        driven_.clear();
         pulled_vertex_ = -1;
         playing_ = false;
         settled_ = true;
@@ -309,16 +331,22 @@ void SimulationSession::apply(const Wanted& wanted) {
         if (playing_ && target_.time >= end * (1 - 1e-9)) target_ = live_->target_at(0);
         if (!playing_) publish({false, settled_, 0, 0, ""});
     }
-    const auto pull = target_.pull;
-    if (wanted.follow) {
-        target_ = live_->target_at(std::min(wanted.time, built_->robot.program.duration));
-        target_.pull = pull;
-    } else if (!playing_) {
-        target_.time = std::min(wanted.time, built_->robot.program.duration);
-        for (const ActuatorValue& value : wanted.actuators) set_actuator(value);
-    }
+    set_target(wanted);
     set_pull(wanted.pull);
     settled_ = false;
+}
+
+void SimulationSession::set_target(const Wanted& wanted) {
+    const double end = built_->robot.program.duration;
+    if (wanted.follow || wanted.again) {
+        auto pull = std::move(target_.pull);
+        target_ = live_->target_at(std::min(wanted.followed, end));
+        target_.pull = std::move(pull);
+    }
+    driven_ = wanted.actuators;
+    if (playing_ || wanted.follow) return;
+    target_.time = std::min(wanted.time, end);
+    for (const ActuatorValue& value : wanted.actuators) set_actuator(value);
 }
 
 void SimulationSession::set_actuator(const ActuatorValue& value) {
@@ -370,7 +398,7 @@ void SimulationSession::go_on_playing() {
         {
             const std::lock_guard lock(mutex_);
             wanted_.playing = false;
-            wanted_.time = target_.time;
+            wanted_.time = wanted_.followed = target_.time;
         }
         publish({false, true, 0, 0, ""});
         return;
@@ -380,7 +408,7 @@ void SimulationSession::go_on_playing() {
     target_.pull = pull;
     settled_ = false;
     const std::lock_guard lock(mutex_);
-    wanted_.time = target_.time;
+    wanted_.time = wanted_.followed = target_.time;
 }
 
 void SimulationSession::advance() {
@@ -450,8 +478,17 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
         json["pull"] = {{"vertex", pulled_vertex_}, {"force_N", Json::array({force.x, force.y, force.z})}};
     }
     std::string text = dumped(json);
-    text.insert(text.size() - 1, fmt::format(R"(,"obstacles":{})", built_->scene.obstacle_offsets(step.time)));
+    text.insert(text.size() - 1, fmt::format(R"(,"wanted":{},"obstacles":{})", wanted_json(),
+                                             built_->scene.obstacle_offsets(step.time)));
     return text;
+}
+
+/// Where the robot is led, so that every page shows that and not what it has asked for itself.
+std::string SimulationSession::wanted_json() const {
+    Json actuators = Json::array();
+    for (const ActuatorValue& v : driven_)
+        actuators.push_back({{"name", v.name}, {"kind", v.kind}, {"value", v.value}});
+    return dumped({{"time", target_.time}, {"actuators", actuators}});
 }
 
 }  // namespace pliant::studio

@@ -25,6 +25,9 @@ namespace pliant::studio {
 /// How fine: linear tets answer at once and bend too little; quadratic ones are those of `pliant simulate`.
 enum class Accuracy { preview, fine };
 
+/// Where a robot goes once it has been built: one that was only changed goes where the one before was wanted.
+enum class After { from_rest, as_before };
+
 /// A robot file as the studio has it.
 struct RobotText {
     std::filesystem::path file;  ///< what messages call it, and what paths in it are relative to
@@ -59,7 +62,8 @@ public:
     SimulationSession& operator=(const SimulationSession&) = delete;
 
     /// Builds this robot; what is being built is given up. Nothing is heard of the old one once the new one is there.
-    void open(RobotText source);
+    /// With other actuators than before it starts from rest in any case.
+    void open(RobotText source, After after = After::from_rest);
     void drive(const DriveMessage& message);
     void follow(const Follow& message);
     void play(bool on);
@@ -86,24 +90,29 @@ private:
     struct Wanted {
         double tag = 0;
         double time = 0;
+        double followed = 0;  ///< time to which the program itself was followed; of actuators that are not listed
         std::vector<ActuatorValue> actuators;
         std::optional<PullMessage> pull;
         bool playing = false;
         bool to_rest = false;
         bool show_again = false;
         bool follow = false;
+        bool again = false;  ///< all of it, by a robot that has just been built
     };
 
     void work();
     void build(RobotText source);
+    void want_as_before(const Built* before, const Built& now);
     void advance();
     void apply(const Wanted& wanted);
+    void set_target(const Wanted& wanted);
     void set_actuator(const ActuatorValue& value);
     void set_pull(const std::optional<PullMessage>& message);
     void go_on_playing();
     void publish(const sim::LiveProgress& progress);
     void remember(const sim::Step& step);
     [[nodiscard]] std::string frame_head(const sim::Step& step, const sim::LiveProgress& progress);
+    [[nodiscard]] std::string wanted_json() const;
     void tell(const std::string& key, const std::string& json);
 
     SessionEvents events_;
@@ -125,6 +134,7 @@ private:
     std::optional<sim::Live> live_;
     sim::LiveTarget target_;
     double tag_ = 0;
+    std::vector<ActuatorValue> driven_;  ///< what the target has by hand; empty: all of it follows the program
     int pulled_vertex_ = -1;
     bool settled_ = true, playing_ = false;
     int revision_ = 0;

@@ -68,7 +68,7 @@ Status Studio::start(const std::filesystem::path& file) {
     document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::preview, {}};
     // What the user's own file names lies where the user wants it.
     document_.outside = folder_.texts_leading_outside(*text, document_.file);
-    rebuild();
+    rebuild(After::from_rest);
     return {};
 }
 
@@ -77,8 +77,8 @@ Studio::Document Studio::document() {
     return document_;
 }
 
-void Studio::rebuild() {
-    simulation_->open({document_.file, document_.text, document_.accuracy});
+void Studio::rebuild(After after) {
+    simulation_->open({document_.file, document_.text, document_.accuracy}, after);
     hub_.send_text(document_event(document_));
 }
 
@@ -102,14 +102,14 @@ Status Studio::edit(const std::string& text) {
         document_.redo.clear();
         document_.text = text;
     }
-    rebuild();
+    rebuild(After::as_before);
     return {};
 }
 
 void Studio::take_back(std::vector<std::string>& from, std::vector<std::string>& to) {
     to.push_back(std::exchange(document_.text, from.back()));
     from.pop_back();
-    rebuild();
+    rebuild(After::as_before);
 }
 
 Status Studio::undo() {
@@ -158,7 +158,7 @@ Status Studio::open_file(const std::string& name) {
         std::swap(document_, opened);
         return status;
     }
-    rebuild();
+    rebuild(After::from_rest);
     return {};
 }
 
@@ -168,14 +168,14 @@ void Studio::open_example(const std::string& name) {
     const std::lock_guard lock(mutex_);
     const std::string text(example->text);
     document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}};
-    rebuild();
+    rebuild(After::from_rest);
 }
 
 void Studio::set_accuracy(Accuracy accuracy) {
     const std::lock_guard lock(mutex_);
     if (document_.accuracy == accuracy) return;
     document_.accuracy = accuracy;
-    rebuild();
+    rebuild(After::as_before);
 }
 
 Response Studio::handle(const Request& request) {
@@ -196,7 +196,11 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
     const auto send = [&](const std::string& json) {
         connection->send_text(std::make_shared<const std::string>(json));
     };
-    send(document_event(document()));
+    {
+        // Sent under the lock: a change that comes meanwhile is told after it, not before.
+        const std::lock_guard lock(mutex_);
+        send(document_event(document_));
+    }
     for (const std::string& news : simulation_->news()) send(news);
     for (const std::string& news : make_->news()) send(news);
     for (const std::string& news : print_->news()) send(news);

@@ -73,7 +73,7 @@ private:
     [[nodiscard]] Status check_files(const std::string& text) const;
     /// Goes to the last text of `from`; what there was goes to the end of `to`.
     void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
-    void rebuild();
+    void rebuild(After after);
     void greet(const std::shared_ptr<Connection>& connection);
 
     ProjectFolder folder_;

@@ -125,6 +125,58 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
         CHECK_MESSAGE(ask(studio, "GET", std::string("/api/export/") + name).status == 200, name);
 }
 
+TEST_CASE("a robot that was changed goes where the one before was wanted; another one starts from rest") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    studio.receive(page, R"({"type":"follow","tag":1,"time":0.5})");
+    CHECK(arrived(studio, page, 1)["cables"][0]["length_mm"].get<double>() == doctest::Approx(39).epsilon(1e-5));
+    const auto arrived_anew = [&](int revision, double time) {
+        for (;;) {
+            const auto out = page->next();
+            REQUIRE(out);
+            if (!out->binary) continue;
+            const Json head = head_of(*out->bytes);
+            if (head["revision"] == revision && head["arrived"] == true && head["time"] == time) return head;
+        }
+    };
+    std::string stiffer = bar;
+    stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
+    REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
+    const Json followed = arrived_anew(2, 0.5);
+    CHECK(followed["cables"][0]["length_mm"].get<double>() == doctest::Approx(39).epsilon(1e-5));
+    CHECK(followed["wanted"]["time"] == 0.5);
+    CHECK(followed["wanted"]["actuators"].empty());
+
+    studio.receive(page,
+                   R"({"type":"drive","tag":2,"actuators":[{"name":"flexor","kind":"shortening_mm","value":1.5}]})");
+    (void)arrived(studio, page, 2);
+    REQUIRE(ask(studio, "POST", "/api/robot/undo", "", "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    Json driven = arrived_anew(3, 0.5);
+    while (driven["cables"][0]["length_mm"].get<double>() > 38.6) driven = arrived_anew(3, 0.5);
+    CHECK(driven["wanted"]["actuators"][0] == Json{{"name", "flexor"}, {"kind", "shortening_mm"}, {"value", 1.5}});
+
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"bar.toml"})", "first_page").status == 200);
+    const Json fresh = arrived_anew(4, 0);
+    CHECK(fresh["cables"][0]["length_mm"].get<double>() == doctest::Approx(40));
+    CHECK(fresh["wanted"]["time"] == 0);
+}
+
+TEST_CASE("a page that comes back hears that there is neither job nor machine") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    CHECK(studio.make().news() == std::vector<std::string>{R"({"revision":0,"type":"job"})"});
+    CHECK(studio.print().news() == std::vector<std::string>{R"({"type":"machine"})"});
+    CHECK(ask(studio, "GET", "/api/print/verdict").body == "null");
+}
+
 TEST_CASE("a mistake in the file is told with its line, and the robot before stays") {
     const Project project;
     auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
