@@ -1,9 +1,12 @@
 // The frame around the three sections.
 import { useRef, useState } from 'preact/hooks';
+import { DiscardQuestion, unlessLost } from './discard';
 import { useDismiss } from './dismiss';
 import { Icon } from './icons';
 import { Make } from './make/make';
+import { EmergencyStop } from './print/emergency';
 import { Print } from './print/print';
+import { info } from './print/state';
 import { Simulate } from './simulate/simulate';
 import { api, building, documentState, helm, notice, online, post, problems, scene, section, send, type Section } from './store';
 import { theme, toggleTheme } from './theme';
@@ -33,14 +36,14 @@ function Open() {
         <div class="popover open-list" onClick={() => setProject(null)}>
           <h3>Examples</h3>
           {project.examples.map((name) => (
-            <button class="item" onClick={() => post('/api/example', { name })}>
+            <button class="item" onClick={() => unlessLost(`Opening the example ${name.replace(/_/g, ' ')}`, () => void post('/api/example', { name }))}>
               {name.replace(/_/g, ' ')}
             </button>
           ))}
           <h3 title={project.folder}>This folder</h3>
           {project.files.length === 0 && <p class="quiet">no robot files or jobs</p>}
           {project.files.map((name) => (
-            <button class="item" onClick={() => post('/api/open', { name })}>
+            <button class="item" onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
               {name}
             </button>
           ))}
@@ -55,7 +58,7 @@ function Helm() {
   if (!online.value)
     return (
       <span class="helm lost" role="status" data-testid="helm" data-state="offline">
-        <span class="pulse" /> connection lost, trying again
+        <span class="pulse" /> connection lost, reconnecting
       </span>
     );
   if (h.asked)
@@ -94,16 +97,16 @@ export function App() {
     ['print', 'Print'],
   ];
   return (
-    <div class="app">
+    <div class={`app ${info.value?.machine ? 'with-machine' : ''}`}>
       <header>
-        <span class="brand" aria-label="Pliant">
+        <h1 class="brand">
           <svg viewBox="0 0 24 24" aria-hidden="true">
             <path d="M3 17c5.5 0 7-2.2 9-6.2S16.5 4.5 21 4.5" />
             <circle cx="3.5" cy="17" r="1.6" />
             <circle cx="20.5" cy="4.5" r="1.6" />
           </svg>
           Pliant
-        </span>
+        </h1>
         <nav class="sections" aria-label="Sections">
           {sections.map(([name, label]) => (
             <a
@@ -120,7 +123,7 @@ export function App() {
         <span class="grow" />
         {problems.value.length > 0 && (
           <span class="helm lost" data-testid="file-wrong">
-            <Icon name="warn" /> {problems.value.length} {problems.value.length === 1 ? 'mistake' : 'mistakes'} in the file
+            <Icon name="warn" /> {problems.value.length} {problems.value.length === 1 ? 'error' : 'errors'} in the file
           </span>
         )}
         <Helm />
@@ -128,9 +131,11 @@ export function App() {
           <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
         </button>
       </header>
+      <EmergencyStop />
       {section.value === 'simulate' && <Simulate />}
       {section.value === 'make' && <Make />}
       {section.value === 'print' && <Print />}
+      <DiscardQuestion />
       {notice.value && (
         <div class="notice" role="alert" data-testid="notice">
           {notice.value}

@@ -10,11 +10,15 @@ const asked = location.hash.slice(1) as Section;
 export const section = signal<Section>(sections.includes(asked) ? asked : 'simulate');
 
 export const online = signal(false);
+/// How often the line has been opened: what was known before the last time may not be so any more.
+export const lines = signal(0);
 export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
 export const mayDrive = computed(() => online.value && helm.value.you);
 
 export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'preview' as 'preview' | 'fine' });
 export const scene = signal<Scene | null>(null);
+/// Linear elements: quick, too stiff, and never to be taken for the answer.
+export const rough = computed(() => scene.value?.head.order === 1);
 export const frame = signal<Frame | null>(null);
 export const building = signal<{ stage: string; fraction: number } | null>(null);
 export const problems = signal<Problem[]>([]);
@@ -54,6 +58,7 @@ export const page = pageKey();
 
 let socket: WebSocket | null = null;
 let retry = 250;
+let sceneKnown = false; // frames are of a scene that this line has told of
 let fields: string[] = [];
 // Tags rise from page to page, so that a frame is never taken for the answer to another page's input.
 let tag = Math.floor(performance.timeOrigin % 5e8);
@@ -110,6 +115,16 @@ export function say(text: string) {
   noticeTimer = window.setTimeout(() => (notice.value = ''), 6000);
 }
 
+/// Shows where the robot is led, by whomever; not while an input of this page is on its way.
+function adopt({ wanted: to }: FrameHead) {
+  if (helm.value.you && sentAt.size > 0) return;
+  wantedTime.value = to.time;
+  following.value = to.actuators.length === 0;
+  const known = wanted.peek();
+  const fresh = to.actuators.filter((a) => known[a.name]?.kind !== a.kind || known[a.name]?.value !== a.value);
+  if (fresh.length > 0) wanted.value = { ...known, ...Object.fromEntries(fresh.map((a) => [a.name, { kind: a.kind, value: a.value }])) };
+}
+
 async function loadScene() {
   const response = await api('/api/scene');
   const loaded = readPacket<SceneHead>(await response.arrayBuffer());
@@ -117,16 +132,12 @@ async function loadScene() {
   const first = readPacket<FrameHead>(await frameResponse.arrayBuffer());
   batch(() => {
     const same = scene.value !== null && sameActuators(scene.value.head, loaded.head);
+    sceneKnown = true;
     scene.value = loaded;
     frame.value = first.head.revision === loaded.head.revision ? first : null;
-    if (!same) {
-      wanted.value = Object.fromEntries(loaded.head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
-      wantedTime.value = 0;
-      following.value = true;
-    }
+    if (!same) wanted.value = Object.fromEntries(loaded.head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
+    if (frame.value) adopt(frame.value.head);
   });
-  // After a change of the file the robot goes where it was wanted before.
-  if (Object.entries(wanted.value).some(([, w]) => w.value !== restValue(w.kind)) && helm.value.you) driveAll();
 }
 
 function sameActuators(a: SceneHead, b: SceneHead) {
@@ -143,13 +154,22 @@ export function driveAll() {
   sendInput({ type: 'drive', time: wantedTime.value, actuators });
 }
 
+/// To rest, by its program again; whatever is on its way there will not be answered.
+export function toRest() {
+  sentAt.clear();
+  send({ type: 'rest' });
+}
+
 export async function loadJob() {
   job.value = (await (await api('/api/job')).json()) as Job;
 }
 
 function receiveText(text: string) {
   const event = JSON.parse(text) as Record<string, unknown> & { type: string };
-  if (event.type === 'helm') helm.value = event as never;
+  if (event.type === 'helm') {
+    helm.value = event as never;
+    if (!helm.value.you) sentAt.clear();
+  }
   if (event.type === 'document') documentState.value = event as never;
   if (event.type === 'scene') loadScene().catch((e: Error) => say(e.message));
   if (event.type === 'build') {
@@ -161,14 +181,15 @@ function receiveText(text: string) {
     slicing.value = event.stage ? (event as never) : null;
     sliceError.value = (event.error as string) ?? '';
   }
-  if (event.type === 'job') loadJob().catch((e: Error) => say(e.message));
+  if (event.type === 'job' && event.revision === 0) job.value = null;
+  else if (event.type === 'job') loadJob().catch((e: Error) => say(e.message));
   if (event.type === 'error') say(String(event.error));
   for (const listener of listeners) listener(event);
 }
 
 function receiveFrame(buffer: ArrayBuffer) {
   const next = readPacket<FrameHead>(buffer);
-  if (scene.value === null || next.head.revision !== scene.value.head.revision) return;
+  if (!sceneKnown || scene.value === null || next.head.revision !== scene.value.head.revision) return;
   const now = performance.now();
   frameTimes.push(now);
   while (frameTimes.length > 0 && frameTimes[0] < now - 1000) frameTimes.shift();
@@ -180,31 +201,60 @@ function receiveFrame(buffer: ArrayBuffer) {
     }
     frameRate.value = frameTimes.length;
     frame.value = next;
-    if (next.head.playing) wantedTime.value = next.head.time;
+    adopt(next.head);
   });
 }
+
+/// A line has been opened: what the page knows is of the one before, and perhaps of another studio. All of it is told
+/// again; what is not told is not so any more.
+function forget() {
+  sceneKnown = false;
+  sentAt.clear();
+  batch(() => {
+    building.value = null;
+    problems.value = [];
+    slicing.value = null;
+    online.value = true;
+    lines.value += 1;
+  });
+}
+
+const pingEvery = 5000; // ms
+const mostUnanswered = 3; // pings, before the line counts as dead: a computer may be busy
+
 
 export function connect() {
   const opened = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`);
   opened.binaryType = 'arraybuffer';
   socket = opened;
-  const ping = window.setInterval(() => send({ type: 'ping' }), 5000);
+  let unanswered = 0;
+  const lost = () => {
+    clearInterval(ping);
+    if (socket !== opened) return;
+    socket = null;
+    online.value = false;
+    opened.close();
+    setTimeout(connect, retry);
+    retry = Math.min(2 * retry, 4000);
+  };
+  // A computer that is gone closes nothing: only its silence tells.
+  const ping = window.setInterval(() => {
+    if (unanswered >= mostUnanswered) return lost();
+    unanswered += 1;
+    send({ type: 'ping' });
+  }, pingEvery);
   opened.onopen = () => {
     retry = 250;
-    online.value = true;
+    forget();
     send({ type: 'hello', page });
     if (fields.length) send({ type: 'fields', names: fields });
   };
   opened.onmessage = (event: MessageEvent) => {
+    unanswered = 0;
     if (typeof event.data === 'string') receiveText(event.data);
     else receiveFrame(event.data as ArrayBuffer);
   };
-  opened.onclose = () => {
-    clearInterval(ping);
-    online.value = false;
-    if (socket === opened) setTimeout(connect, retry);
-    retry = Math.min(2 * retry, 4000);
-  };
+  opened.onclose = lost;
 }
 
 /// Whoever closes the page lets go of the helm at once.

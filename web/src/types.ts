@@ -47,6 +47,7 @@ export interface FrameHead {
   stuck: string;
   warnings: string[]; // where the state should not be trusted
   playing: boolean;
+  wanted: { time: number; actuators: { name: string; kind: string; value: number }[] }; // no actuators: as the program has it
   residual: number;
   min_J: number;
   energy_mJ: number;

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, startBrowser, startStudio } from './studio.mjs';
+import { openPage, program, startBrowser, startPrint as start, startStudio, takeTwin } from './studio.mjs';
 
 // 20 layers of 20 x 10 mm: 0.4 ml. The vat gives 0.25 ml at a time.
 const robot = `name = "plate"
@@ -71,16 +71,6 @@ async function coloured(page) {
   }, png);
 }
 
-async function takeTwin(page, speed) {
-  await page.getByTestId('take-speed').selectOption(speed);
-  await page.getByTestId('take-twin').click();
-  await page.waitForSelector('[data-testid=print-state]');
-}
-async function start(page) {
-  for (const box of await page.locator('.checklist input').all()) await box.check();
-  await page.getByTestId('start').click();
-}
-
 test('an open door pauses the print and says so; an empty vat asks for resin; the part grows, and the report judges it', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   await takeTwin(page, '10');
@@ -131,6 +121,8 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   const cells = await page.evaluate(() => Number(document.querySelector('[data-testid=part]').dataset.runs));
   assert.ok(cells > 100 && cells < 40000, `${cells} runs of cells`);
 
+  await page.getByTestId('verdict').waitFor({ timeout: 60000 });
+  assert.match(await text(page, 'verdict'), /As drawn/);
   const report = await page.evaluate(async () => (await fetch('/api/print/report')).text());
   assert.match(report, /pill good">as drawn/, report.match(/First deviation[^<]*/)?.[0]);
   assert.match(report, /<td>400\.000 mm³<\/td>/);

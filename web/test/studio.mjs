@@ -11,10 +11,10 @@ const { chromium } = require('playwright-core');
 
 export const program = process.env.PLIANT_PROGRAM ?? 'build/release/apps/pliant/pliant';
 
-/// A studio on a free port, in a folder of its own.
-export async function startStudio(args = [], cwd = undefined) {
+/// A studio on a free port, or on `port`, in a folder of its own.
+export async function startStudio(args = [], cwd = undefined, port = 0) {
   const folder = cwd ?? mkdtempSync(join(tmpdir(), 'pliant_web_'));
-  const child = spawn(program, ['studio', '--port', '0', '-q', ...args], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
+  const child = spawn(program, ['studio', '--port', String(port), '-q', ...args], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
   const address = await new Promise((resolve, reject) => {
     let text = '';
     child.stdout.on('data', (data) => {
@@ -92,4 +92,17 @@ export function unzipped(bytes, name) {
 /// The robot is there and at equilibrium. How soon depends on who else uses the machine.
 export async function settled(page) {
   await page.waitForSelector('[data-testid=status][data-state=arrived]', { timeout: 90_000 });
+}
+
+/// Takes the virtual printer for the job at hand.
+export async function takeTwin(page, speed) {
+  await page.getByTestId('take-speed').selectOption(speed);
+  await page.getByTestId('take-twin').click();
+  await page.waitForSelector('[data-testid=print-state]');
+}
+
+/// Confirms what only people can see, and starts.
+export async function startPrint(page) {
+  for (const box of await page.locator('.checklist input').all()) await box.check();
+  await page.getByTestId('start').click();
 }

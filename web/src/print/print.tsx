@@ -2,14 +2,16 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { mayDrive, online, post, say } from '../store';
+import { NumberField } from '../number_field';
+import { post } from '../store';
 import { clock } from '../make/plan';
 import { orbitHelp } from '../orbit_keys';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
 import { followPart, part } from './part';
 import { Safety } from './safety';
-import { busy, events, flags, host, info, load, now } from './state';
+import { busy, events, flags, host, info, known, maySteer, now, verdict } from './state';
+import { stopOf } from './stopped';
 import { TakeMachine } from './take';
 
 const speeds = [1, 10, 60, 300];
@@ -19,16 +21,16 @@ const ticks = signal<Record<string, boolean>>({});
 function Known() {
   const n = now.value!;
   const i = info.value!;
-  const connected = flags.value.operational;
+  const connected = known.value && flags.value.operational;
   return (
     <ul class="checklist known" data-testid="known">
       <li class={connected ? 'good' : 'bad'}>
         <Icon name={connected ? 'check' : 'warn'} />
-        <span>{connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'a firmware without a name'}` : 'the machine does not answer'}</span>
+        <span>{!known.value ? 'whether the machine answers is not known' : connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'a firmware without a name'}` : 'the machine does not answer'}</span>
       </li>
-      <li class={flags.value.error ? 'bad' : 'good'}>
-        <Icon name={flags.value.error ? 'warn' : 'check'} />
-        <span>{flags.value.error ? 'stopped: connect again' : 'the projector is open and dark'}</span>
+      <li class={connected ? 'good' : 'bad'}>
+        <Icon name={connected ? 'check' : 'warn'} />
+        <span>{!known.value ? 'whether the projector is dark is not known' : !connected ? 'not connected: the projector was told to be dark' : 'the projector is open and dark'}</span>
       </li>
       <li class="good">
         <Icon name="check" />
@@ -72,13 +74,13 @@ function Checklist() {
         {items.map(([key, text]) => (
           <li key={key}>
             <label>
-              <input type="checkbox" checked={ticks.value[key] ?? false} disabled={!mayDrive.value} onChange={(e) => (ticks.value = { ...ticks.value, [key]: e.currentTarget.checked })} />
+              <input type="checkbox" checked={ticks.value[key] ?? false} disabled={!maySteer.value} onChange={(e) => (ticks.value = { ...ticks.value, [key]: e.currentTarget.checked })} />
               <span>{text}</span>
             </label>
           </li>
         ))}
       </ul>
-      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !mayDrive.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
+      <button class="primary wide-button" data-testid="start" disabled={open > 0 || !maySteer.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
         {doorOpen ? 'Shut the door first' : open > 0 ? `${open} to check` : 'Start the print'}
       </button>
     </section>
@@ -90,7 +92,7 @@ function GoOn() {
   const [lit, setLit] = useState('');
   const [untouched, setUntouched] = useState(false);
   const [sure, setSure] = useState(false);
-  const may = mayDrive.value && !flags.value.working;
+  const may = maySteer.value && !flags.value.working;
   return (
     <section class="block interrupted" data-testid="interrupted">
       <h3>A print of this job was interrupted</h3>
@@ -109,22 +111,22 @@ function GoOn() {
             })
           }
         >
-          <Icon name="play" /> Go on with it
+          <Icon name="play" /> Resume
         </button>
         {sure ? (
           <>
             <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void host('job', { command: 'cancel' })}>
-              Put it away for good
+              Discard for good
             </button>
             <button onClick={() => setSure(false)}>No</button>
           </>
         ) : (
           flags.value.ready ? (
             <button disabled={!may} data-testid="put-away" onClick={() => setSure(true)}>
-              Put it away
+              Discard
             </button>
           ) : (
-            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to put it away, or to look first">
+            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to discard it, or to look first">
               Connect only
             </button>
           )
@@ -164,17 +166,13 @@ function Light() {
             {name}
             {n.progress.exposures[m] > 0 && <span class="quiet"> changed</span>}
           </span>
-          <span class="number">
-            <input
-              type="number"
-              min={0}
-              step="any"
-              disabled={!mayDrive.value}
-              value={n.progress.exposures[m] || exposure_s}
-              onChange={(e) => host('job/exposure', { material: m, seconds: Number(e.currentTarget.value) })}
-            />
-            <span class="unit">s</span>
-          </span>
+          <NumberField
+            value={n.progress.exposures[m] || exposure_s}
+            range={{ from: 0, to: Infinity, open: true }}
+            unit="s"
+            disabled={!maySteer.value}
+            onValue={(seconds) => host('job/exposure', { material: m, seconds })}
+          />
         </label>
       ))}
       <form
@@ -187,7 +185,7 @@ function Light() {
         <span>Leave out layer</span>
         <span class="number">
           <input type="number" min={(n.progress.layer ?? 0) + 2} max={n.job.layers} step={1} value={skip} onInput={(e) => setSkip(e.currentTarget.value)} />
-          <button class="small" disabled={!skip || !mayDrive.value}>
+          <button class="small" disabled={!skip || !maySteer.value}>
             Leave out
           </button>
         </span>
@@ -202,9 +200,9 @@ function Lost() {
     <div class="prompt bad" role="alert" data-testid="lost">
       <Icon name="warn" />
       <span>
-        <b>This page has lost the studio</b>
-        What you see is old. A print goes on without this page, as long as the studio runs; if the studio has ended, the light is off and the machine stands still. To stop the
-        machine now, use its own switch.
+        <b>Connection lost, reconnecting…</b>
+        This page has lost the studio, and what the machine does is not known. A print goes on without this page as long as the studio runs; if the studio has ended, the light is
+        off and the machine stands still. To stop the machine now, use its own switch.
       </span>
     </div>
   );
@@ -244,53 +242,93 @@ function Steering() {
   const n = now.value!;
   const f = flags.value;
   const [sure, setSure] = useState(false);
+  useEffect(() => {
+    if (!busy.value) setSure(false);
+  }, [busy.value]);
+  const connectable = f.error || (f.closedOrError && !n.job.canResume && n.state.text === 'Offline');
+  if (!busy.value && !connectable) return null;
   return (
     <section class="block steering">
-      {f.paused && <Waiting />}
+      {f.paused && known.value && <Waiting />}
       <div class="row left">
         {(f.printing || f.pausing) && (
-          <button data-testid="pause" disabled={!mayDrive.value || f.pausing} onClick={() => host('job', { command: 'pause', action: 'pause' })}>
+          <button data-testid="pause" disabled={!maySteer.value || f.pausing} onClick={() => host('job', { command: 'pause', action: 'pause' })}>
             <Icon name="pause" /> {f.pausing ? 'pausing…' : 'Pause'}
           </button>
         )}
         {f.paused && (
-          <button class="primary" data-testid="resume" disabled={!mayDrive.value || n.machine.door === 'open'} onClick={() => host('job', { command: 'resume' })}>
-            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, go on' : 'Go on'}
+          <button class="primary" data-testid="resume" disabled={!maySteer.value || n.machine.door === 'open'} onClick={() => host('job', { command: 'resume' })}>
+            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, go on' : 'Resume'}
           </button>
         )}
-        {busy.value &&
-          (sure ? (
-            <>
-              <button
-                class="danger"
-                data-testid="cancel-sure"
-                disabled={!mayDrive.value}
-                onClick={() => {
-                  setSure(false);
-                  void host('job', { command: 'cancel' });
-                }}
-              >
-                Cancel for good
-              </button>
-              <button onClick={() => setSure(false)}>No</button>
-            </>
-          ) : (
-            <button data-testid="cancel" disabled={!mayDrive.value || f.cancelling} onClick={() => setSure(true)}>
-              <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
-            </button>
-          ))}
-        {(f.error || (f.closedOrError && !n.job.canResume && n.state.text === 'Offline')) && (
-          <button class="primary" disabled={!mayDrive.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
+        {busy.value && !sure && (
+          <button data-testid="cancel" disabled={!maySteer.value || f.cancelling} onClick={() => setSure(true)}>
+            <Icon name="stop" /> {f.cancelling ? 'parking…' : 'Cancel'}
+          </button>
+        )}
+        {connectable && (
+          <button class="primary" disabled={!maySteer.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
             Connect again
           </button>
         )}
-        <span class="grow" />
-        <button class="danger" data-testid="emergency" onClick={() => post('/api/print/stop')}>
-          Emergency stop
-        </button>
       </div>
+      {busy.value && sure && (
+        <div class="row left wrap">
+          <button
+            class="danger"
+            data-testid="cancel-sure"
+            disabled={!maySteer.value}
+            onClick={() => {
+              setSure(false);
+              void host('job', { command: 'cancel' });
+            }}
+          >
+            Cancel print
+          </button>
+          <button onClick={() => setSure(false)}>Keep printing</button>
+        </div>
+      )}
       {f.printing && <p class="quiet small-print">The print goes on when this page is closed. The studio must keep running, and its computer awake.</p>}
     </section>
+  );
+}
+
+/// What came of it, where that can be known.
+function Verdict() {
+  if (!known.value || busy.value || !now.value!.progress.finished) return null;
+  if (!info.value!.twin) return <p class="quiet">Everything has been exposed as planned; whether it cured, only a look at the part tells.</p>;
+  if (!verdict.value) return <p class="quiet">The cured block is compared with the drawing…</p>;
+  const { passed } = verdict.value;
+  return (
+    <p class={`verdict ${passed ? 'good' : 'bad'}`} data-testid="verdict" data-passed={passed}>
+      <Icon name={passed ? 'check' : 'warn'} />
+      {passed ? 'As drawn: every pixel of the cured block holds what its image asks for.' : 'Not as drawn: the report says where and how.'}
+    </p>
+  );
+}
+
+function Headline() {
+  const n = now.value!;
+  const stop = known.value ? stopOf() : null;
+  const printed = n.progress.finished && !busy.value;
+  return (
+    <>
+      <div class="row">
+        <b class="state" data-testid="print-state">
+          {!known.value ? 'Not known' : stop ? stop.title : printed ? 'Printed' : n.state.text}
+        </b>
+        <span class="quiet">{n.job.file.name}</span>
+      </div>
+      {!known.value && <p class="quiet">last heard: {n.state.text}</p>}
+      {stop ? (
+        <p class="problems" data-testid="stopped">
+          {stop.text} {stop.cause && <span class="quiet">({stop.cause})</span>}
+        </p>
+      ) : (
+        known.value && n.state.message && <p class={n.progress.failed || flags.value.error ? 'problems' : 'quiet'}>{n.state.message}</p>
+      )}
+      <Verdict />
+    </>
   );
 }
 
@@ -298,33 +336,35 @@ function Progress() {
   const n = now.value!;
   const p = n.progress;
   const done = p.completion ?? 0;
+  const told = (text: string | number) => (known.value ? text : '–');
   return (
     <section class="block">
-      <div class="row">
-        <b class="state" data-testid="print-state">
-          {p.finished && !busy.value ? 'Printed' : n.state.text}
-        </b>
-        <span class="quiet">{n.job.file.name}</span>
-      </div>
-      {n.state.message && <p class={p.failed || flags.value.error ? 'problems' : 'quiet'}>{n.state.message}</p>}
-      <div class="progress tall" role="progressbar" aria-valuenow={Math.round(done)} aria-valuemin={0} aria-valuemax={100}>
+      <Headline />
+      <div
+        class={`progress tall ${known.value ? '' : 'old'}`}
+        role="progressbar"
+        aria-label="Progress of the print"
+        aria-valuenow={known.value ? Math.round(done) : undefined}
+        aria-valuemin={0}
+        aria-valuemax={100}
+      >
         <div style={{ width: `${done}%` }} />
       </div>
       <div class="figures small-figures">
         <div>
-          <b data-testid="print-layer">{p.layer === null ? '–' : p.layer + 1}</b>
+          <b data-testid="print-layer">{told(p.layer === null ? '–' : p.layer + 1)}</b>
           <span>of {n.job.layers} layers</span>
         </div>
         <div>
-          <b>{clock(p.printTimeLeft ?? 0)}</b>
+          <b>{told(clock(p.printTimeLeft ?? 0))}</b>
           <span>left</span>
         </div>
         <div>
-          <b>{clock(p.printTime ?? 0)}</b>
-          <span>so far</span>
+          <b>{told(clock(p.printTime ?? 0))}</b>
+          <span>elapsed</span>
         </div>
         <div>
-          <b>{n.machine.slot || '–'}</b>
+          <b>{told(n.machine.slot || '–')}</b>
           <span>slot in use</span>
         </div>
       </div>
@@ -335,14 +375,15 @@ function Progress() {
 function Picture() {
   const p = now.value!.progress;
   const i = info.value!;
-  const known = p.layer !== null && p.material !== null;
-  const name = known ? i.materials[p.material!]?.name : '';
+  const begun = p.layer !== null && p.material !== null;
+  const lit = p.lit && known.value;
+  const name = begun ? i.materials[p.material!]?.name : '';
   return (
-    <figure class={`picture ${p.lit ? 'lit' : ''}`}>
-      {known ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no light yet</div>}
+    <figure class={`picture ${lit ? 'lit' : ''}`}>
+      {begun ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no light yet</div>}
       <figcaption>
         {name}
-        <span>{p.lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
+        <span>{!known.value ? 'light not known' : lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
       </figcaption>
     </figure>
   );
@@ -411,7 +452,7 @@ function Machine3D() {
 function ByHand() {
   const m = info.value!.machine!;
   const n = now.value!;
-  const ready = flags.value.ready && mayDrive.value;
+  const ready = flags.value.ready && maySteer.value;
   const [step, setStep] = useState(5);
   return (
     <section class="block">
@@ -470,6 +511,9 @@ function Log() {
   const atEnd = useRef(true); // who has scrolled up is left there
   const top = useRef(0);
   const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
+  const begun = now.value!.progress.begun;
+  // Counted as the time elapsed is: from the beginning of the print.
+  const at = (e: { clock: number }) => (begun === null || e.clock < begun - 0.5 ? '' : clock(Math.max(0, e.clock - begun)));
   const last = shown[shown.length - 1]?.number;
   useEffect(() => {
     if (list.current && atEnd.current) list.current.scrollTop = list.current.scrollHeight;
@@ -492,7 +536,7 @@ function Log() {
       >
         {shown.map((e) => (
           <li class={e.kind} key={e.number}>
-            <time>{clock(e.clock)}</time>
+            <time>{at(e)}</time>
             <span>{e.kind === 'layer' ? `layer ${e.text}` : e.text}</span>
           </li>
         ))}
@@ -502,9 +546,6 @@ function Log() {
 }
 
 export function Print() {
-  useEffect(() => {
-    if (!info.value) load().catch((e: Error) => say(e.message));
-  }, []);
   const i = info.value;
   if (!i?.machine || !now.value)
     return (
@@ -523,7 +564,7 @@ export function Print() {
           <b>{i.machine.name}</b>
           <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>
-        {!online.value && <Lost />}
+        {!known.value && <Lost />}
         <Progress />
         <Steering />
         {!busy.value && (now.value.job.canResume ? <GoOn /> : <Checklist />)}
@@ -535,7 +576,7 @@ export function Print() {
               {speeds.map((s) => (
                 <button
                   aria-pressed={i.speed === s}
-                  disabled={!mayDrive.value}
+                  disabled={!maySteer.value}
                   onClick={async () => {
                     if (await post('/api/print/speed', { speed: s })) info.value = { ...i, speed: s };
                   }}
@@ -549,8 +590,8 @@ export function Print() {
             <Icon name="download" /> Report
           </a>
           {!busy.value && (
-            <button class="small" disabled={!mayDrive.value} data-testid="leave" onClick={() => post('/api/print/leave')}>
-              Give the machine back
+            <button class="small" disabled={!maySteer.value} data-testid="leave" onClick={() => post('/api/print/leave')}>
+              Disconnect
             </button>
           )}
         </section>

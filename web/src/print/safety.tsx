@@ -1,6 +1,6 @@
 // What watches over the machine, as its printer file has it: door, limit switches, the emergency line.
-import { mayDrive, post } from '../store';
-import { flags, info, now, type MachineInfo } from './state';
+import { post } from '../store';
+import { flags, info, known, maySteer, now, type MachineInfo } from './state';
 
 /// What an emergency stop pulls.
 function lineText(line: MachineInfo['emergency'], twin: boolean): string {
@@ -12,7 +12,7 @@ function lineText(line: MachineInfo['emergency'], twin: boolean): string {
 }
 
 function Door() {
-  const door = now.value!.machine.door;
+  const door = known.value ? now.value!.machine.door : null;
   const twin = info.value!.twin;
   return (
     <li class={door === 'open' ? 'bad' : ''} data-testid="door" data-state={door ?? 'unknown'}>
@@ -20,8 +20,8 @@ function Door() {
       <span>
         <b>Door</b> {door === 'open' ? 'open' : door === 'shut' ? 'shut' : 'not known yet'}
       </span>
-      {twin && door !== null && (
-        <button class="small" disabled={!mayDrive.value} data-testid="move-door" onClick={() => post('/api/print/door', { open: door !== 'open' })}>
+      {twin && now.value!.machine.door !== null && (
+        <button class="small" disabled={!maySteer.value} data-testid="move-door" onClick={() => post('/api/print/door', { open: door !== 'open' })}>
           {door === 'open' ? 'Shut it' : 'Open it'}
         </button>
       )}
@@ -31,8 +31,8 @@ function Door() {
 
 export function Safety() {
   const m = info.value!.machine!;
-  const read = now.value!.machine.switches;
-  const connected = flags.value.operational;
+  const read: Record<string, boolean> = known.value ? now.value!.machine.switches : {};
+  const connected = known.value && flags.value.operational;
   return (
     <section class="block" data-testid="safety">
       <h3>Switches</h3>

@@ -1,6 +1,6 @@
 // The print as the studio tells it.
-import { computed, signal } from '@preact/signals';
-import { api, onEvent, post, say } from '../store';
+import { batch, computed, effect, signal } from '@preact/signals';
+import { api, lines, mayDrive, onEvent, online, post, say } from '../store';
 
 export interface Now {
   state: { text: string; message: string; flags: Record<string, boolean> };
@@ -8,6 +8,7 @@ export interface Now {
   progress: {
     completion: number | null;
     printTime: number | null;
+    begun: number | null; // on the clock of the events
     printTimeLeft: number | null;
     layer: number | null;
     material: number | null;
@@ -70,6 +71,15 @@ export const events = signal<Now['events']>([]);
 export const flags = computed(() => now.value?.state.flags ?? {});
 export const busy = computed(() => ['printing', 'pausing', 'paused', 'cancelling'].some((f) => flags.value[f]));
 
+/// What came of a complete print; null: nobody knows.
+export const verdict = signal<{ passed: boolean } | null>(null);
+
+/// The line whose studio has told where the print stands.
+const toldBy = signal(0);
+/// False: what is shown is as old as the line that was lost, and may be of a studio that has ended.
+export const known = computed(() => online.value && toldBy.value === lines.value);
+export const maySteer = computed(() => mayDrive.value && known.value);
+
 const mostEvents = 400;
 
 function take(next: Now) {
@@ -79,17 +89,53 @@ function take(next: Now) {
   now.value = next;
 }
 
-export async function load() {
+let loading = 0;
+let meanwhile: Now[] = [];
+
+/// What the studio says while its answer is under way may be newer than the answer: it is taken after it.
+async function load() {
+  const mine = ++loading;
+  const line = lines.value;
+  meanwhile = [];
   const loaded = (await (await api('/api/print')).json()) as PrintInfo & { now: Now };
-  info.value = loaded;
-  events.value = [];
-  now.value = null;
-  if (loaded.machine) take(loaded.now);
+  if (mine !== loading) return;
+  loading = 0;
+  if (busy.value && !loaded.machine) say('The studio has been started again: the print that was shown here has ended with the one before.');
+  batch(() => {
+    info.value = loaded;
+    events.value = [];
+    now.value = null;
+    toldBy.value = line;
+    if (loaded.machine) [loaded.now, ...meanwhile].forEach(take);
+  });
+}
+
+const retryAfter = 1000; // ms
+function loadSurely() {
+  load().catch((e: Error) => {
+    if (!online.value) return; // the next line asks again
+    say(e.message);
+    setTimeout(loadSurely, retryAfter);
+  });
 }
 
 onEvent((event) => {
-  if (event.type === 'machine') load().catch((e: Error) => say(e.message));
-  if (event.type === 'print' && event.current) take(event.current as Now);
+  if (event.type === 'machine') loadSurely();
+  if (event.type !== 'print' || !event.current) return;
+  if (loading) meanwhile.push(event.current as Now);
+  else take(event.current as Now);
+});
+
+const complete = computed(() => known.value && (now.value?.progress.finished ?? false) && !busy.value);
+effect(() => {
+  if (!complete.value) {
+    verdict.value = null;
+    return;
+  }
+  api('/api/print/verdict')
+    .then((r) => r.json())
+    .then((v: { passed: boolean } | null) => complete.value && (verdict.value = v))
+    .catch((e: Error) => say(e.message));
 });
 
 export const host = (path: string, body: unknown) => post(`/api/print/host/${path}`, body);

@@ -1,6 +1,7 @@
 // A slider and a number for every actuator.
 import { batch } from '@preact/signals';
-import { driveAll, following, frame, mayDrive, scene, wanted, wantedTime } from '../store';
+import { NumberField, type Range } from '../number_field';
+import { driveAll, following, frame, mayDrive, rough, scene, wanted, wantedTime } from '../store';
 import type { Actuator } from '../types';
 import { shownFrame } from './view_state';
 
@@ -59,6 +60,22 @@ function range(actuator: Actuator, kind: string, value: number): [number, number
   }
 }
 
+/// What there can be at all; the slider shows a part of it.
+function possible(actuator: Actuator, kind: string): Range {
+  switch (kind) {
+    case 'shortening_mm':
+      return { from: -Infinity, to: +actuator.rest.toPrecision(5), open: true };
+    case 'tension_N':
+      return { from: 0, to: Infinity };
+    case 'volume_change_mm3':
+      return { from: -(+actuator.rest.toPrecision(5)), to: Infinity, open: true };
+    case 'pressure_kPa':
+      return { from: -Infinity, to: Infinity };
+    default:
+      return { from: 0, to: Infinity, open: true };
+  }
+}
+
 function niceAbove(x: number): number {
   const power = 10 ** Math.floor(Math.log10(x));
   return power * ([1, 2, 5, 10].find((f) => f * power >= x) ?? 10);
@@ -89,7 +106,8 @@ function holdOthers(name: string) {
 function Control({ actuator }: { actuator: Actuator }) {
   const want = wanted.value[actuator.name] ?? { kind: actuator.kind, value: 1 };
   const now = reading(actuator, want.kind);
-  const value = following.value && Number.isFinite(now) ? now : want.value;
+  // Where the program leads it, or another page, what it is at says more than what was asked for here.
+  const value = (following.value || !mayDrive.value) && Number.isFinite(now) ? now : want.value;
   const kind = kinds[want.kind];
   const [low, high] = range(actuator, want.kind, value);
   const head = frame.value?.head;
@@ -107,6 +125,7 @@ function Control({ actuator }: { actuator: Actuator }) {
           {actuator.name}
         </label>
         <output class="force" data-testid={`force-${actuator.name}`}>
+          {rough.value && '≈ '}
           {force}
         </output>
       </div>
@@ -138,21 +157,16 @@ function Control({ actuator }: { actuator: Actuator }) {
             </option>
           ))}
         </select>
-        <span class="number">
-          <input
-            type="number"
-            aria-label={`${kind.label} of ${actuator.name}`}
-            data-testid={`number-${actuator.name}`}
-            step={kind.step}
-            value={+value.toPrecision(5)}
-            disabled={!mayDrive.value}
-            onChange={(e) => {
-              const v = Number(e.currentTarget.value);
-              if (e.currentTarget.value !== '' && Number.isFinite(v)) drive(actuator.name, want.kind, v);
-            }}
-          />
-          <span class="unit">{kind.unit}</span>
-        </span>
+        <NumberField
+          value={+value.toPrecision(5)}
+          range={possible(actuator, want.kind)}
+          unit={kind.unit}
+          step={kind.step}
+          label={`${kind.label} of ${actuator.name}`}
+          testId={`number-${actuator.name}`}
+          disabled={!mayDrive.value}
+          onValue={(v) => drive(actuator.name, want.kind, v)}
+        />
       </div>
     </div>
   );

@@ -1,28 +1,53 @@
 // The robot's materials and its file.
-import { effect, signal } from '@preact/signals';
+import { batch, effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
-import { api, documentState, frame, mayDrive, onEvent, post, problems, say, scene } from '../store';
+import { NumberField } from '../number_field';
+import { api, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
 import { setKey } from './toml_edit';
 import { pinned } from './view_state';
 
 export const text = signal('');
-const theirs = signal('');
+/// The text as the studio has it.
+export const theirs = signal('');
 
+/// Forgets what has not been applied.
+export function revert() {
+  text.value = theirs.value;
+}
+
+let applied: string | null = null; // on its way to the studio
+let savedLine = 0; // the line, and whether the text was in a file, when it was last heard of
+let wasUnsaved = false;
+
+/// What has not been applied is kept, and so is what a studio that was started again does not have any more.
 async function load() {
+  const line = lines.value;
   const next = await (await api('/api/robot')).text();
-  theirs.value = next;
-  text.value = next;
+  const mine = text.value;
+  const dirty = mine !== theirs.value && mine !== applied;
+  const lost = line !== savedLine && wasUnsaved && next !== theirs.value;
+  const keep = helm.value.you && (dirty || lost) && mine !== next;
+  batch(() => {
+    theirs.value = next;
+    if (!keep) text.value = next;
+  });
+  if (lost && keep) say('The studio was started again without your unsaved text. It is still here under File: Apply brings it back.');
+  applied = null;
+  savedLine = line;
+  wasUnsaved = documentState.value.unsaved;
 }
 onEvent((event) => {
   if (event.type === 'document') load().catch((e: Error) => say(e.message));
 });
 
 export async function apply(next: string): Promise<boolean> {
+  applied = next;
   try {
     await api('/api/robot', { method: 'PUT', headers: { 'Content-Type': 'text/plain' }, body: next });
     return true;
   } catch (error) {
+    applied = null;
     say((error as Error).message);
     return false;
   }
@@ -34,11 +59,15 @@ export function pinNow(label: string) {
   if (now) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now };
 }
 
-function change(material: string, key: string, value: string, label: string) {
+function change(material: string, key: string, value: string, label: string): boolean | Promise<boolean> {
   const next = setKey(text.value, `material.${material}`, key, value);
-  if (next === null) return say(`${material} is not written out in the file: change it there`);
+  if (next === null) {
+    say(`${material} is not written out in the file: change it there`);
+    return false;
+  }
   pinNow(label);
-  void apply(next);
+  text.value = next;
+  return apply(next);
 }
 
 export function Materials() {
@@ -55,37 +84,24 @@ export function Materials() {
           </legend>
           <label>
             <span>Young's modulus</span>
-            <span class="number">
-              <input
-                type="number"
-                min={0}
-                step="any"
-                data-testid={`modulus-${m.name}`}
-                value={+m.youngs_modulus_MPa.toPrecision(6)}
-                onChange={(e) => {
-                  const v = Number(e.currentTarget.value);
-                  if (v > 0) change(m.name, 'youngs_modulus', `"${v} MPa"`, `${m.name}: ${+m.youngs_modulus_MPa.toPrecision(4)} MPa`);
-                }}
-              />
-              <span class="unit">MPa</span>
-            </span>
+            <NumberField
+              value={+m.youngs_modulus_MPa.toPrecision(6)}
+              range={{ from: 0, to: Infinity, open: true }}
+              unit="MPa"
+              testId={`modulus-${m.name}`}
+              onValue={(v) => change(m.name, 'youngs_modulus', `"${v} MPa"`, `${m.name}: ${+m.youngs_modulus_MPa.toPrecision(4)} MPa`)}
+            />
           </label>
           <label>
             <span>Poisson ratio</span>
-            <span class="number">
-              <input
-                type="number"
-                min={0}
-                max={0.4999}
-                step={0.01}
-                value={+m.poisson_ratio.toPrecision(6)}
-                onChange={(e) => {
-                  const v = Number(e.currentTarget.value);
-                  if (v >= 0 && v < 0.5) change(m.name, 'poisson_ratio', `${v}`, `${m.name}: Poisson ratio ${m.poisson_ratio}`);
-                }}
-              />
-              <span class="unit" />
-            </span>
+            <NumberField
+              value={+m.poisson_ratio.toPrecision(6)}
+              range={{ from: 0, to: 0.4999 }}
+              unit=""
+              step={0.01}
+              testId={`poisson-${m.name}`}
+              onValue={(v) => change(m.name, 'poisson_ratio', `${v}`, `${m.name}: Poisson ratio ${m.poisson_ratio}`)}
+            />
           </label>
         </fieldset>
       ))}
@@ -116,12 +132,17 @@ export function Editor() {
         <button class="primary small" disabled={!changed || !mayDrive.value} onClick={() => apply(text.value)} data-testid="apply">
           Apply
         </button>
+        {changed && (
+          <button class="small" onClick={revert} data-testid="revert">
+            Revert
+          </button>
+        )}
         <span class="quiet keys">Ctrl+Enter</span>
         <span class="grow" />
-        <button class="bare" title="Undo" aria-label="Undo" disabled={!d.undo || !mayDrive.value} onClick={() => post('/api/robot/undo')}>
+        <button class="bare" title="Undo" aria-label="Undo" disabled={!d.undo || changed || !mayDrive.value} onClick={() => post('/api/robot/undo')}>
           <Icon name="undo" />
         </button>
-        <button class="bare" title="Redo" aria-label="Redo" disabled={!d.redo || !mayDrive.value} onClick={() => post('/api/robot/redo')}>
+        <button class="bare" title="Redo" aria-label="Redo" disabled={!d.redo || changed || !mayDrive.value} onClick={() => post('/api/robot/redo')}>
           <Icon name="redo" />
         </button>
         <button class="bare" title="Save" aria-label="Save" disabled={changed || !mayDrive.value || (!d.unsaved && !!d.name)} onClick={save}>

@@ -2,7 +2,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { scene } from '../store';
+import { rough, scene } from '../store';
 import { cssColour, theme } from '../theme';
 import { pinned } from './view_state';
 import { tracks, tracksVersion } from './tracks';
@@ -12,6 +12,16 @@ interface Line {
   colour: string;
   values: () => number[];
   unit: string;
+}
+
+/// Powers of ten, few enough to be told apart: every line of a logarithmic axis over many decades is a grey block.
+function decades(least: number, most: number): number[] {
+  const mostLines = 5;
+  const [from, to] = [Math.ceil(Math.log10(least) - 1e-9), Math.floor(Math.log10(most) + 1e-9)];
+  const stride = Math.max(1, Math.ceil((to - from + 1) / mostLines));
+  const lines = [];
+  for (let k = from; k <= to; k += stride) lines.push(10 ** k);
+  return lines;
 }
 
 const palette = ['#d1495b', '#2e86ab', '#e08e2b', '#4c956c', '#8e6bbf', '#5f6b7a'];
@@ -34,7 +44,7 @@ function Plot({ title, lines, log, extra }: { title: string; lines: Line[]; log?
         scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
         axes: [
           { ...axis, size: 24, values: (_, v) => v.map((s) => `${s} s`) },
-          { ...axis, size: 44, values: (_, v) => v.map((x) => (x == null ? '' : log ? x.toExponential(0) : `${+x.toPrecision(4)}`)) },
+          { ...axis, size: 44, ...(log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((x) => (x == null ? '' : log ? x.toExponential(0) : `${+x.toPrecision(4)}`)) },
         ],
         series: [
           { label: 'time', value: (_, v) => (v == null ? '–' : `${v.toFixed(2)} s`) },
@@ -74,6 +84,7 @@ function Plot({ title, lines, log, extra }: { title: string; lines: Line[]; log?
   return (
     <figure class="plot">
       <figcaption>
+        {rough.value && !log && '≈ '}
         {title} {extra && <span class="quiet">{extra}</span>}
       </figcaption>
       <div ref={box} />
@@ -110,7 +121,7 @@ export function Plots() {
         />
       )}
       {head.markers.length > 0 && (
-        <Plot title="Way of the markers" lines={head.markers.map((m, k) => line(m.name, k, 'mm', () => tracks.markers[k] ?? []))} />
+        <Plot title="Marker displacement" lines={head.markers.map((m, k) => line(m.name, k, 'mm', () => tracks.markers[k] ?? []))} />
       )}
       <Plot title="Residual" extra={`converged below ${head.tolerance}`} log lines={[line('residual', 5, '', () => tracks.residual)]} />
     </div>

@@ -13,6 +13,7 @@ import {
   mayDrive,
   post,
   problems,
+  rough,
   say,
   scene,
   send,
@@ -22,6 +23,7 @@ import {
   wantFields,
   documentState,
   restValue,
+  toRest as askForRest,
 } from '../store';
 import { Actuators } from './actuators';
 import { gradientCss } from './colormap';
@@ -231,7 +233,7 @@ function toRest() {
   wantedTime.value = 0;
   look.shownFrame.value = null;
   wanted.value = Object.fromEntries(head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
-  send({ type: 'rest' });
+  askForRest();
   clearTracks();
 }
 
@@ -280,7 +282,7 @@ function Timeline() {
           const without = text.value.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
           void apply(`${without.trimEnd()}\n\n${keys}\n`).then((done) => done && (recorded.value = []));
         }}>
-          Put {recorded.value.length} samples into the file
+          Insert {recorded.value.length} samples as program
         </button>
       )}
     </div>
@@ -328,6 +330,27 @@ function Export() {
   );
 }
 
+const refine = (accuracy: 'preview' | 'fine') => void post('/api/accuracy', { accuracy });
+
+/// What linear elements are worth: they are too stiff in bending, more so the fewer lie across a wall.
+function Rough() {
+  const own = scene.value?.head.accuracy === 'fine'; // the file itself asks for them
+  return (
+    <span class="rough" data-testid="rough">
+      Linear elements are too stiff: forces can be 1.3 to 3 times too large, motions too small.{' '}
+      {own ? (
+        <>
+          The file asks for them: <code>mesh.order = 1</code>.
+        </>
+      ) : (
+        <button class="small" disabled={!mayDrive.value} onClick={() => refine('fine')} data-testid="refine">
+          Refine
+        </button>
+      )}
+    </span>
+  );
+}
+
 function Status() {
   const head = frame.value?.head;
   const s = scene.value?.head;
@@ -342,14 +365,15 @@ function Status() {
   const warning = head.warnings.join('. ');
   const words = {
     replay: 'replay',
-    stuck: 'it goes no further',
-    arrived: 'at equilibrium',
-    'catching up': 'catching up',
+    stuck: 'did not converge',
+    arrived: rough.value ? '≈ linear preview' : 'at equilibrium',
+    'catching up': 'Solving…',
   }[state];
+  const lamp = state === 'arrived' && (warning || rough.value) ? 'warn' : { replay: 'busy', stuck: 'bad', arrived: 'good', 'catching up': 'busy' }[state];
   return (
-    <div class="status" role="status" data-testid="status" data-state={state} title={head.stuck || warning}>
-      <span class={`lamp ${state === 'stuck' ? 'bad' : state !== 'arrived' ? 'busy' : warning ? 'warn' : 'good'}`} />{' '}
-      {words}
+    <div class="status" role="status" data-testid="status" data-state={state} data-lamp={lamp} title={head.stuck || warning}>
+      <span class={`lamp ${lamp}`} /> {words}
+      {state === 'stuck' && <span data-testid="stuck-why">: {head.stuck}</span>}
       {warning && <span data-testid="state-warning">: {warning}</span>}
       <span class="quiet">
         residual {head.residual.toExponential(0)} · {s.tets.toLocaleString('en')} tets · {head.solve_ms.toFixed(0)} ms
@@ -359,6 +383,7 @@ function Status() {
           {latency.value > 0 && ` · ${latency.value.toFixed(0)} ms to picture`}
         </span>
       </span>
+      {rough.value && <Rough />}
     </div>
   );
 }
@@ -373,7 +398,10 @@ function Readings() {
       <tbody>
         {head.markers.map((m, k) => (
           <tr key={m.name} data-testid={`marker-${m.name}`}>
-            <th>{m.name}</th>
+            <th>
+              {rough.value && '≈ '}
+              {m.name}
+            </th>
             {(shown.markers[k] ?? []).map((v) => (
               <td>{v.toFixed(2)}</td>
             ))}
@@ -391,7 +419,7 @@ function Readings() {
         ))}
         {pull && (
           <tr>
-            <th>your pull</th>
+            <th>{rough.value && '≈ '}applied force</th>
             {pull.force_N.map((v) => (
               <td>{v.toFixed(2)}</td>
             ))}
@@ -439,7 +467,7 @@ function Hints() {
     localStorage.setItem('pliant_hints', String(to));
   };
   return (
-    <aside class="hint" data-testid="hint">
+    <div class="hint" data-testid="hint">
       <b>{k + 1} of 3</b>
       <p>{hints[k]}</p>
       <div>
@@ -452,19 +480,18 @@ function Hints() {
           </button>
         )}
       </div>
-    </aside>
+    </div>
   );
 }
 
 function Accuracy() {
   const fine = documentState.value.accuracy === 'fine';
-  const set = (accuracy: string) => void post('/api/accuracy', { accuracy });
   return (
-    <div class="segments" role="group" aria-label="Elements" title="Linear tets answer at once and bend too little; quadratic ones are those of pliant simulate">
-      <button aria-pressed={!fine} disabled={!mayDrive.value} onClick={() => set('preview')}>
-        quick
+    <div class="segments" role="group" aria-label="Elements" title="Linear elements answer at once, but their forces can be 1.3 to 3 times too large; quadratic ones are those of pliant simulate">
+      <button aria-pressed={!fine} disabled={!mayDrive.value} onClick={() => refine('preview')}>
+        ≈ quick
       </button>
-      <button aria-pressed={fine} disabled={!mayDrive.value} onClick={() => set('fine')} data-testid="fine">
+      <button aria-pressed={fine} disabled={!mayDrive.value} onClick={() => refine('fine')} data-testid="fine">
         accurate
       </button>
     </div>
@@ -491,16 +518,18 @@ export function Simulate() {
         <Status />
       </section>
       <aside class="side">
-        <nav class="tabs" role="tablist">
-          {tabs.map(([name, label]) => (
-            <button role="tab" aria-selected={panel.value === name} onClick={() => (panel.value = name)} data-testid={`tab-${name}`}>
-              {label}
-              {name === 'file' && problems.value.length > 0 && <span class="badge">{problems.value.length}</span>}
-            </button>
-          ))}
+        <div class="tabs">
+          <div class="tab-list" role="tablist">
+            {tabs.map(([name, label]) => (
+              <button role="tab" aria-selected={panel.value === name} onClick={() => (panel.value = name)} data-testid={`tab-${name}`}>
+                {label}
+                {name === 'file' && problems.value.length > 0 && <span class="badge">{problems.value.length}</span>}
+              </button>
+            ))}
+          </div>
           <span class="grow" />
           <Accuracy />
-        </nav>
+        </div>
         <div class="panel" key={panel.value}>
           {panel.value === 'move' && (
             <>

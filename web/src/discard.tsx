@@ -1,0 +1,51 @@
+// What has not been saved is not lost without a question: neither when something else is opened nor when the page is left.
+import { computed, signal } from '@preact/signals';
+import { documentState, helm } from './store';
+import { theirs, text, revert } from './simulate/editor';
+
+/// Text that the studio does not have, or that no file has.
+export const unsaved = computed(() => helm.value.you && (text.value !== theirs.value || documentState.value.unsaved));
+
+const question = signal<{ what: string; go: () => void } | null>(null);
+
+/// Does it at once where nothing is lost, else once that has been agreed to.
+export function unlessLost(what: string, go: () => void) {
+  if (unsaved.value) question.value = { what, go };
+  else go();
+}
+
+window.addEventListener('beforeunload', (e) => {
+  if (unsaved.value) e.preventDefault();
+});
+
+export function DiscardQuestion() {
+  const q = question.value;
+  if (!q) return null;
+  const close = () => (question.value = null);
+  return (
+    <div class="question-back" onKeyDown={(e) => e.key === 'Escape' && close()}>
+      <div class="question card" role="alertdialog" aria-modal="true" aria-labelledby="discard-title" data-testid="discard-question">
+        <h2 id="discard-title">Discard unsaved changes?</h2>
+        <p>
+          The robot file {documentState.value.name && <b>{documentState.value.name}</b>} has changes that are not saved. {q.what} discards them.
+        </p>
+        <div class="row left">
+          <button class="primary" ref={(b) => b?.focus()} onClick={close} data-testid="keep-editing">
+            Keep editing
+          </button>
+          <button
+            class="danger"
+            data-testid="discard"
+            onClick={() => {
+              close();
+              revert();
+              q.go();
+            }}
+          >
+            Discard changes
+          </button>
+        </div>
+      </div>
+    </div>
+  );
+}

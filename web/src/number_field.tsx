@@ -1,0 +1,68 @@
+// A field for a number. What cannot be is said beside it, with what can; leaving the field puts the last good value back.
+import { useState } from 'preact/hooks';
+
+export interface Range {
+  from: number;
+  to: number;
+  open?: boolean; // the ends themselves are out
+}
+
+export function rangeText({ from, to, open }: Range, unit: string): string {
+  const u = unit && ` ${unit}`;
+  if (from === -Infinity && to === Infinity) return 'a number is needed';
+  if (to === Infinity) return `${open ? 'more than' : 'at least'} ${from}${u} is needed`;
+  if (from === -Infinity) return `${open ? 'less than' : 'at most'} ${to}${u} is needed`;
+  return `${open ? 'between' : 'from'} ${from} ${open ? 'and' : 'to'} ${to}${u} is needed`;
+}
+
+export function inRange(v: number, { from, to, open }: Range): boolean {
+  return Number.isFinite(v) && (open ? v > from && v < to : v >= from && v <= to);
+}
+
+interface Props {
+  value: number;
+  range: Range;
+  unit: string;
+  label?: string; // where no <label> stands around it
+  step?: number | 'any';
+  disabled?: boolean;
+  testId?: string;
+  /// False, or a promise of it: refused, and the last value is put back.
+  onValue: (v: number) => void | boolean | Promise<boolean>;
+}
+
+export function NumberField({ value, range, unit, label, step = 'any', disabled, testId, onValue }: Props) {
+  const [wrong, setWrong] = useState('');
+  const take = async (input: HTMLInputElement) => {
+    const v = input.valueAsNumber;
+    if (!inRange(v, range)) return setWrong(`${input.value || 'This'}: ${rangeText(range, unit)}`);
+    setWrong('');
+    if ((await onValue(v)) === false) input.value = String(value);
+  };
+  return (
+    <span class="number-field">
+      <span class="number">
+        <input
+          type="number"
+          aria-label={label}
+          aria-invalid={wrong !== ''}
+          data-testid={testId}
+          step={step}
+          value={value}
+          disabled={disabled}
+          onInput={() => setWrong('')}
+          onChange={(e) => void take(e.currentTarget)}
+          onBlur={(e) => {
+            if (!inRange(e.currentTarget.valueAsNumber, range)) e.currentTarget.value = String(value);
+          }}
+        />
+        <span class="unit">{unit}</span>
+      </span>
+      {wrong && (
+        <span class="wrong" role="alert" data-testid={testId && `wrong-${testId}`}>
+          {wrong}
+        </span>
+      )}
+    </span>
+  );
+}

@@ -1,0 +1,12 @@
+// The emergency stop: at one place of the window in every section, for every page, as long as there is a machine.
+import { post } from '../store';
+import { info } from './state';
+
+export function EmergencyStop() {
+  if (!info.value?.machine) return null;
+  return (
+    <button class="danger emergency" data-testid="emergency" onClick={() => post('/api/print/stop')}>
+      Emergency stop
+    </button>
+  );
+}

@@ -1,0 +1,273 @@
+// The page shows what is so, says what it does not know, and loses nothing that a person has typed.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, program, settled, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
+
+const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
+const patience = { timeout: 90_000 };
+let folder;
+let browser;
+let studio;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'pliant_truth_'));
+  copyFileSync(example('tutorial/finger.toml'), join(folder, 'finger.toml'));
+  execFileSync(program, ['slice', join(folder, 'finger.toml'), '--printer', example('printers/tower.toml'), '--layer', '1 mm', '-q', '-o', join(folder, 'finger.zip')]);
+  studio = await startStudio(['finger.toml'], folder);
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await studio?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const text = (page, id) => page.getByTestId(id).textContent();
+const head = (page) => page.evaluate(() => window.pliant.frame.value.head);
+/// A print that has begun, and goes on as slowly as a real one.
+async function printing(page) {
+  await takeTwin(page, '300');
+  await startPrint(page);
+  await page.waitForFunction(() => Number(document.querySelector('[data-testid=print-layer]')?.textContent) >= 1, null, patience);
+  await page.getByRole('button', { name: '1×', exact: true }).click();
+}
+/// Types into a field and leaves it, as people do.
+async function type(page, id, value) {
+  await page.getByTestId(id).fill(value);
+  await page.getByTestId(id).press('Enter');
+}
+
+test('a studio that dies in mid-print and comes back: the page says what it does not know, then what is so', async (t) => {
+  const first = await startStudio(['finger.zip'], folder);
+  const port = new URL(first.address).port;
+  const { page } = await openPage(browser, `${first.address}#print`, t);
+  await printing(page);
+  first.child.kill('SIGKILL');
+  await page.getByTestId('lost').waitFor(patience);
+  assert.match(await text(page, 'lost'), /Connection lost, reconnecting/);
+  assert.equal(await text(page, 'print-state'), 'Not known');
+  assert.equal(await text(page, 'print-layer'), '–');
+  assert.ok(await page.getByTestId('pause').isDisabled());
+  assert.ok(await page.getByTestId('cancel').isDisabled());
+  assert.equal(await page.locator('.picture.lit').count(), 0);
+  // Without a job: neither print nor job of the studio before are there any more.
+  const second = await startStudio(['finger.toml'], folder, port);
+  t.after(() => second.stop());
+  await page.getByText('There is no job yet').waitFor(patience);
+  assert.equal(await page.getByTestId('print-state').count(), 0);
+  assert.equal(await page.getByTestId('emergency').count(), 0, 'there is no machine to stop');
+  assert.match(await text(page, 'notice'), /has ended/);
+});
+
+test('a line that dies without a word is found dead by its silence', async (t) => {
+  const other = await startStudio(['finger.zip'], folder);
+  t.after(() => other.stop());
+  const { page } = await openPage(browser, `${other.address}#print`, t);
+  await printing(page);
+  other.child.kill('SIGSTOP');
+  t.after(() => other.child.kill('SIGCONT'));
+  await page.getByTestId('lost').waitFor(patience);
+  other.child.kill('SIGCONT');
+  await page.getByTestId('lost').waitFor({ state: 'detached', ...patience });
+  assert.equal(await text(page, 'print-state'), 'Printing');
+  assert.ok(Number(await text(page, 'print-layer')) >= 1);
+});
+
+test('the emergency stop never moves: at every width, whatever is asked and wherever one has scrolled', async (t) => {
+  const other = await startStudio(['finger.zip'], folder);
+  t.after(() => other.stop());
+  const { page } = await openPage(browser, `${other.address}#print`, t, { viewport: { width: 1440, height: 900 } });
+  assert.equal(await page.getByTestId('emergency').count(), 0);
+  await printing(page);
+  const seen = async (width, height) => {
+    const box = await page.getByTestId('emergency').boundingBox();
+    assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${width}: ${JSON.stringify(box)}`);
+    const hit = await page.evaluate(([x, y]) => document.elementFromPoint(x, y)?.dataset.testid, [box.x + box.width / 2, box.y + box.height / 2]);
+    assert.equal(hit, 'emergency', `${width}: something lies over it`);
+    // Nor does it lie over anything that can be pressed.
+    const under = await page.evaluate((b) =>
+      [...document.querySelectorAll('header a, header button')]
+        .filter((e) => e.checkVisibility())
+        .map((e) => [e.getBoundingClientRect(), e.textContent])
+        .filter(([r]) => r.left < b.x + b.width && r.right > b.x && r.top < b.y + b.height && r.bottom > b.y)
+        .map(([, name]) => name), box);
+    assert.deepEqual(under, [], `${width}`);
+    return box;
+  };
+  for (const [width, height] of [[1440, 900], [1280, 720], [1024, 700], [390, 844]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(200);
+    const before = await seen(width, height);
+    await page.getByTestId('cancel').click();
+    await page.getByTestId('cancel-sure').waitFor();
+    assert.deepEqual(await seen(width, height), before, `${width}: after Cancel was pressed`);
+    await page.getByRole('button', { name: 'Keep printing' }).click();
+    await page.evaluate(() => document.querySelectorAll('.print, .steer').forEach((e) => e.scrollTo(0, 1e5)));
+    assert.deepEqual(await seen(width, height), before, `${width}: scrolled`);
+    for (const section of ['simulate', 'make', 'print']) {
+      await page.getByTestId(`section-${section}`).click();
+      assert.deepEqual(await seen(width, height), before, `${width}: ${section}`);
+    }
+  }
+  await page.getByTestId('emergency').click();
+  await page.getByTestId('stopped').waitFor(patience);
+  assert.equal(await text(page, 'print-state'), 'Emergency stop');
+  assert.match(await text(page, 'stopped'), /light is off.*then (press Resume|connect again)/);
+  assert.doesNotMatch(await page.locator('.steer .block').first().innerText(), /kill\(\)/);
+});
+
+test('log, header and layers count alike, on one clock; what was printed has a verdict', async (t) => {
+  const other = await startStudio(['finger.zip'], folder);
+  t.after(() => other.stop());
+  const { page, wrong } = await openPage(browser, `${other.address}#print`, t);
+  await takeTwin(page, '300');
+  await startPrint(page);
+  await page.waitForFunction(() => document.querySelector('[data-testid=print-state]')?.textContent === 'Printed', null, patience);
+  const layers = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);
+  assert.equal(Number(await text(page, 'print-layer')), layers);
+  const rows = await page.getByTestId('log').locator('li').evaluateAll((list) => list.map((li) => [li.className, li.children[0].textContent, li.children[1].textContent]));
+  const lights = rows.filter(([kind]) => kind === 'light');
+  assert.match(lights.at(-1)[2], new RegExp(`^layer ${layers}, `));
+  const names = await page.evaluate(() => window.pliant.job.value.manifest.materials.map((m) => m.name));
+  for (const [, , line] of lights) assert.ok(names.some((n) => line.includes(`, ${n}, `)), line);
+  for (const [kind, , line] of rows.filter(([k]) => k === 'layer')) assert.match(line, /^layer [1-9]/, kind);
+  // The log ends when the time elapsed does.
+  const seconds = (s) => s.split(':').reduce((sum, v) => 60 * sum + Number(v), 0);
+  const elapsed = seconds(await page.locator('.small-figures div', { hasText: 'elapsed' }).locator('b').textContent());
+  assert.ok(Math.abs(seconds(lights.at(-1)[1]) - elapsed) < 0.25 * elapsed && elapsed > 60, `${lights.at(-1)[1]} and ${elapsed} s`);
+  await page.getByTestId('verdict').waitFor(patience);
+  // Layers of 1 mm are ten times what the light cures: it is printed, and worth nothing.
+  assert.match(await text(page, 'verdict'), /Not as drawn/);
+  assert.deepEqual(wrong, []);
+});
+
+test('text that is not saved is asked about before it goes', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  const area = page.getByTestId('robot-file');
+  await page.waitForFunction(() => document.querySelector('[data-testid=robot-file]').value.includes('youngs_modulus'));
+  const good = await area.inputValue();
+  const mine = `# a night of work\n${good}`;
+  await area.fill(mine);
+  const open = async () => {
+    await page.getByTestId('open').click();
+    await page.locator('.open-list .item', { hasText: 'cable gripper' }).click();
+    await page.getByTestId('discard-question').waitFor();
+  };
+  await open();
+  await page.getByTestId('keep-editing').click();
+  assert.equal(await area.inputValue(), mine);
+  // What comes from the studio meanwhile does not take it either.
+  await page.getByTestId('fine').click();
+  await page.waitForFunction(() => window.pliant.documentState.value.accuracy === 'fine');
+  await page.waitForTimeout(500);
+  assert.equal(await area.inputValue(), mine);
+  const asked = page.waitForEvent('dialog');
+  const left = page.reload().catch(() => {});
+  const dialog = await asked;
+  assert.equal(dialog.type(), 'beforeunload');
+  await dialog.dismiss();
+  await Promise.race([left, page.waitForTimeout(500)]);
+  assert.equal(await area.inputValue(), mine);
+  // Applied, it is in no file yet.
+  await page.getByTestId('apply').click();
+  await page.waitForFunction(() => window.pliant.documentState.value.unsaved);
+  await open();
+  await page.getByTestId('discard').click();
+  await page.waitForFunction(() => !document.querySelector('[data-testid=robot-file]').value.includes('night of work'));
+  await page.waitForFunction(() => /gripper/i.test(window.pliant.scene.value.head.robot), null, patience);
+});
+
+test('linear answers are marked and never green; quadratic ones are', async (t) => {
+  const other = await startStudio(['finger.toml'], folder);
+  t.after(() => other.stop());
+  const { page } = await openPage(browser, other.address, t);
+  await settled(page);
+  const lamp = () => page.getByTestId('status').getAttribute('data-lamp');
+  assert.equal(await lamp(), 'warn');
+  assert.match(await text(page, 'rough'), /1\.3 to 3 times too large/);
+  assert.match(await text(page, 'force-flexor'), /^≈/);
+  await page.getByTestId('refine').click();
+  await page.waitForFunction(() => window.pliant.scene.value.head.order === 2, null, patience);
+  await settled(page);
+  assert.equal(await lamp(), 'good');
+  assert.doesNotMatch(await text(page, 'force-flexor'), /≈/);
+  assert.equal(await page.getByTestId('rough').count(), 0);
+});
+
+test('the program ends at its end, and a change of a material leaves the robot where the program has it', async (t) => {
+  const other = await startStudio(['finger.toml'], folder);
+  t.after(() => other.stop());
+  const { page } = await openPage(browser, other.address, t);
+  await settled(page);
+  const program = page.locator('.track', { has: page.getByTestId('program') }).locator('output');
+  await page.getByTestId('play').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.time > 0.999 && !window.pliant.frame.value.head.playing, null, patience);
+  assert.equal(await program.textContent(), '100 %');
+  await page.getByTestId('program').fill('0.97');
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
+  const { markers } = await head(page);
+  const revision = await page.evaluate(() => window.pliant.scene.value.head.revision);
+  await page.getByTestId('tab-file').click();
+  const modulus = page.locator('[data-testid^="modulus-"]').first();
+  await modulus.fill(String(1.001 * Number(await modulus.inputValue())));
+  await modulus.press('Enter');
+  await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, patience);
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
+  assert.equal(await program.textContent(), '97 %');
+  const after = (await head(page)).markers;
+  // Bent by the length of its cable it hardly moves with a modulus that is a thousandth higher.
+  after[0].forEach((x, k) => assert.ok(Math.abs(x - markers[0][k]) < 0.5, `${after[0]} was ${markers[0]}`));
+  // Another page, and one that is loaded anew, show the same.
+  const second = await openPage(browser, other.address, t);
+  await settled(second.page);
+  assert.equal(await second.page.locator('.track', { has: second.page.getByTestId('program') }).locator('output').textContent(), '97 %');
+});
+
+test('a number that cannot be is said to be out of range, and the last good one comes back', async (t) => {
+  const other = await startStudio(['finger.toml'], folder);
+  t.after(() => other.stop());
+  const { page } = await openPage(browser, other.address, t);
+  await settled(page);
+  await type(page, 'number-flexor', '-3');
+  assert.match(await text(page, 'wrong-number-flexor'), /-3: more than 0 is needed/);
+  await page.getByTestId('number-flexor').blur();
+  assert.equal(await page.getByTestId('number-flexor').inputValue(), '1');
+  await page.getByTestId('tab-file').click();
+  const modulus = page.locator('[data-testid^="modulus-"]').first();
+  const good = await modulus.inputValue();
+  await modulus.fill('-1');
+  await modulus.press('Enter');
+  assert.match(await page.locator('[data-testid^="wrong-modulus-"]').textContent(), /-1: more than 0 MPa is needed/);
+  await modulus.blur();
+  assert.equal(await modulus.inputValue(), good);
+  const poisson = page.locator('[data-testid^="poisson-"]').first();
+  await poisson.fill('0.7');
+  await poisson.blur();
+  assert.match(await page.locator('[data-testid^="wrong-poisson-"]').textContent(), /from 0 to 0\.4999 is needed/);
+  assert.notEqual(await poisson.inputValue(), '0.7');
+});
+
+test('a residual over many decades has lines that can be told apart', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('play').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.time > 0.5, null, patience);
+  await page.getByTestId('tab-plots').click();
+  await page.waitForTimeout(500);
+  // Rows of the plot that are one grid line from side to side: a tenth of them at most.
+  const share = await page.evaluate(() => {
+    const canvas = document.querySelector('.plots .plot:last-child canvas');
+    const { width, height } = canvas;
+    const column = canvas.getContext('2d').getImageData(Math.round(0.7 * width) + 1, 0, 1, height).data;
+    let inked = 0;
+    for (let y = 0; y < height; ++y) inked += column[4 * y + 3] > 40 ? 1 : 0;
+    return inked / height;
+  });
+  assert.ok(share < 0.2, `${share} of a column is ink`);
+});
