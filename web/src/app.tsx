@@ -34,13 +34,13 @@ function Open() {
       </button>
       {project && (
         <div class="popover open-list" onClick={() => setProject(null)}>
-          <h3>Examples</h3>
+          <h2>Examples</h2>
           {project.examples.map((name) => (
             <button class="item" onClick={() => unlessLost(`Opening the example ${name.replace(/_/g, ' ')}`, () => void post('/api/example', { name }))}>
               {name.replace(/_/g, ' ')}
             </button>
           ))}
-          <h3 title={project.folder}>This folder</h3>
+          <h2 title={project.folder}>This folder</h2>
           {project.files.length === 0 && <p class="quiet">no robot files or jobs</p>}
           {project.files.map((name) => (
             <button class="item" onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>

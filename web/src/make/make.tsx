@@ -75,6 +75,7 @@ export function Make() {
   }, [j?.revision]);
   return (
     <main class="make">
+      <h2 class="unseen">Make</h2>
       <aside class="side left">
         <SliceForm />
         {j && (

@@ -555,6 +555,7 @@ export function Print() {
     );
   return (
     <main class="print">
+      <h2 class="unseen">Print</h2>
       <div class="watch">
         <Machine3D />
         <Picture />

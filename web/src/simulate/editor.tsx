@@ -165,13 +165,15 @@ export function Editor() {
         </form>
       )}
       {problems.value.length > 0 && (
-        <ul class="problems" role="alert" data-testid="problems">
-          {problems.value.map((p) => (
-            <li>
-              {p.line > 0 && <b>line {p.line}</b>} {p.text}
-            </li>
-          ))}
-        </ul>
+        <div class="problems" role="alert" data-testid="problems">
+          <ul>
+            {problems.value.map((p) => (
+              <li>
+                {p.line > 0 && <b>line {p.line}</b>} {p.text}
+              </li>
+            ))}
+          </ul>
+        </div>
       )}
       <div class="code">
         <div class="gutter" ref={gutter} aria-hidden="true">

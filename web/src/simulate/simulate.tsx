@@ -506,6 +506,7 @@ export function Simulate() {
   ];
   return (
     <main class="simulate">
+      <h2 class="unseen">Simulate</h2>
       <section class="stage">
         <Canvas />
         <LookBar />
