@@ -11,6 +11,7 @@
 #include "sim/elements.hpp"
 #include "sim/friction_rounds.hpp"
 #include "sim/solver_chain.hpp"
+#include "sim/warnings.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -130,6 +131,16 @@ public:
         step.reason = loose_;
         sim::describe(model_, system_, state_, controls_, evaluation_, step);
         return step;
+    }
+
+    [[nodiscard]] std::vector<std::string> closed_gaps() const {
+        std::vector<std::string> warnings;
+        if (model_.contact() != nullptr && model_.contact()->settings().self) return warnings;
+        for (std::size_t c = 0; c < system_.cable_count(); ++c) {
+            const int segment = system_.actuators()[c].cable().closed_segment(view(state_.x));
+            if (segment >= 0) warnings.push_back(closed_gap_text(model_.description().cables[c].name, segment));
+        }
+        return warnings;
     }
 
     [[nodiscard]] Vec3 pull_force_N() const {
@@ -419,6 +430,11 @@ void Live::return_to_rest() {
 }
 Step Live::describe() const {
     return walk_->describe();
+}
+std::vector<std::string> Live::warnings(const Step& described) const {
+    std::vector<std::string> warnings = warnings_of(described);
+    for (std::string& gap : walk_->closed_gaps()) warnings.push_back(std::move(gap));
+    return warnings;
 }
 Vec3 Live::pull_force_N() const {
     return walk_->pull_force_N();

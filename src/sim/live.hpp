@@ -68,6 +68,8 @@ public:
 
     /// The state at hand as a step of a trajectory.
     [[nodiscard]] Step describe() const;
+    /// What should not be trusted about the state at hand, a sentence each; what warnings_at_rest() says is left out.
+    [[nodiscard]] std::vector<std::string> warnings(const Step& described) const;
     /// Force of the spring on the body; zero without one.
     [[nodiscard]] Vec3 pull_force_N() const;
     /// (cables, then chambers) length or volume at rest.

@@ -136,10 +136,8 @@ public:
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             const int segment = system_.actuators()[c].cable().closed_segment(x);
             if (segment < 0 || !warned_.insert(c).second) continue;
-            warnings.push_back(
-                fmt::format("from step {} on, guide points {} and {} of cable \"{}\" have met: the gap between them is "
-                            "closed; without contact its flanks pass through each other",
-                            step, segment + 1, segment + 2, model_.description().cables[c].name));
+            warnings.push_back(fmt::format("from step {} on, {}", step,
+                                           closed_gap_text(model_.description().cables[c].name, segment)));
         }
     }
 
@@ -476,9 +474,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     Run walk(model, program);
     result.solver = walk.solver_name();
-    result.warnings = model.description().notes;
-    if (const auto crossing = model.surfaces().crossing_at_rest())
-        result.warnings.push_back(warning_at_rest(crossing->point_m, model.contact() != nullptr));
+    result.warnings = warnings_at_rest(model);
     Step rest;
     walk.evaluate_rest();
     walk.describe(rest);

@@ -27,10 +27,21 @@ std::vector<std::string> warnings_of(const Step& step) {
     return warnings;
 }
 
-std::string warning_at_rest(const Vec3& place_m, bool contact) {
+std::vector<std::string> warnings_at_rest(const Model& model) {
+    std::vector<std::string> warnings = model.description().notes;
+    if (const auto crossing = model.surfaces().crossing_at_rest())
+        warnings.push_back(fmt::format(
+            "the robot passes through itself already at rest, {}: {}", near(crossing->point_m),
+            model.contact() != nullptr ? "what crosses there does not touch, and what is next to it may get stuck"
+                                       : "self-contact is off"));
+    return warnings;
+}
+
+std::string closed_gap_text(const std::string& cable, int segment) {
     return fmt::format(
-        "the robot passes through itself already at rest, {}: {}", near(place_m),
-        contact ? "what crosses there does not touch, and what is next to it may get stuck" : "self-contact is off");
+        "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without contact its flanks "
+        "pass through each other",
+        segment + 1, segment + 2, cable);
 }
 
 void add_warnings(Trajectory& trajectory) {

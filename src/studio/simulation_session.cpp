@@ -72,7 +72,8 @@ Built::Built(RobotText source_, robot::Robot robot_, sim::Model model_, int revi
       revision(revision_),
       scene(robot, model),
       attacher(model.mesh()),
-      size_m(diagonal(model.mesh().points)) {}
+      size_m(diagonal(model.mesh().points)),
+      warnings(sim::warnings_at_rest(model)) {}
 
 /// Reports building, and stops it when something else is to be built.
 class SimulationSession::Watch final : public Progress {
@@ -454,6 +455,8 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
             {{"ratio", c.volume_ratio}, {"volume_mm3", 1e9 * c.volume_m3}, {"pressure_kPa", 1e-3 * c.pressure_Pa}});
     for (const auto& m : step.markers) markers.push_back(mm_json(m.position_m));
     for (const auto& s : step.supports) supports.push_back(Json::array({s.force_N.x, s.force_N.y, s.force_N.z}));
+    std::vector<std::string> warnings = live_->warnings(step);
+    warnings.insert(warnings.begin(), built_->warnings.begin(), built_->warnings.end());
     Json json = {{"type", "frame"},
                  {"revision", built_->revision},
                  {"sequence", sequence_++},
@@ -461,7 +464,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
                  {"time", step.time},
                  {"arrived", progress.arrived},
                  {"stuck", progress.reason},
-                 {"warnings", sim::warnings_of(step)},
+                 {"warnings", warnings},
                  {"playing", playing_},
                  {"residual", step.residual},
                  {"min_J", step.min_J},

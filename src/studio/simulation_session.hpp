@@ -45,6 +45,7 @@ struct Built {
     Scene scene;
     sim::Attacher attacher;
     double size_m;
+    std::vector<std::string> warnings;  ///< at rest, see sim::warnings_at_rest()
 };
 
 /// Called from the session's thread.

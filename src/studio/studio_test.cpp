@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -175,6 +176,35 @@ TEST_CASE("a page that comes back hears that there is neither job nor machine") 
     CHECK(studio.make().news() == std::vector<std::string>{R"({"revision":0,"type":"job"})"});
     CHECK(studio.print().news() == std::vector<std::string>{R"({"type":"machine"})"});
     CHECK(ask(studio, "GET", "/api/print/verdict").body == "null");
+}
+
+TEST_CASE("what the command line warns of, the page hears with every frame") {
+    auto opened = Studio::open({"examples/cable_gripper/gripper.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    const auto gaps_closed = [](const Json& head) {
+        const auto& all = head["warnings"];
+        return std::any_of(all.begin(), all.end(), [](const Json& w) {
+            return w.get<std::string>().find("have met: the gap between them is closed") != std::string::npos;
+        });
+    };
+    studio.receive(page, R"({"type":"follow","tag":1,"time":0.2})");
+    CHECK_FALSE(gaps_closed(arrived(studio, page, 1)));
+    // Further than its gaps are wide.
+    studio.receive(page,
+                   R"({"type":"drive","tag":2,"actuators":[{"name":"flexor","kind":"length_ratio","value":0.5}]})");
+    for (;;) {
+        const auto out = page->next();
+        REQUIRE(out);
+        if (!out->binary) continue;
+        const Json head = head_of(*out->bytes);
+        if (gaps_closed(head)) break;
+        REQUIRE(head["stuck"] == "");
+        REQUIRE_FALSE((head["tag"] == 2 && head["arrived"] == true));
+    }
 }
 
 TEST_CASE("a mistake in the file is told with its line, and the robot before stays") {
