@@ -344,33 +344,42 @@ void SimulationSession::set_target(const Wanted& wanted) {
         target_ = live_->target_at(std::min(wanted.followed, end));
         target_.pull = std::move(pull);
     }
-    driven_ = wanted.actuators;
+    driven_.clear();
     if (playing_ || wanted.follow) return;
     target_.time = std::min(wanted.time, end);
-    for (const ActuatorValue& value : wanted.actuators) set_actuator(value);
+    for (const ActuatorValue& value : wanted.actuators) {
+        if (set_actuator(value)) driven_.push_back(value);
+    }
 }
 
-void SimulationSession::set_actuator(const ActuatorValue& value) {
+bool SimulationSession::set_actuator(const ActuatorValue& value) {
     using Kind = sim::Drive::Kind;
     const sim::Description& d = built_->model.description();
     const std::vector<double> rest = live_->rest_measures();
     const double v = value.value;
+    bool possible = false;
+    const auto set = [&](sim::Drive& drive, const char* kind, bool can_be, const sim::Drive& next) {
+        if (value.kind != kind || !can_be) return;
+        drive = next;
+        possible = true;
+    };
     for (std::size_t c = 0; c < d.cables.size(); ++c) {
         if (d.cables[c].name != value.name) continue;
         sim::Drive& drive = target_.drives[c];
-        if (value.kind == "length_ratio" && v > 0) drive = {Kind::measure, v * rest[c]};
-        if (value.kind == "shortening_mm" && v / mm < rest[c]) drive = {Kind::measure, rest[c] - v / mm};
-        if (value.kind == "tension_N") drive = {Kind::multiplier, std::max(v, 0.0)};
+        set(drive, "length_ratio", v > 0, {Kind::measure, v * rest[c]});
+        set(drive, "shortening_mm", v / mm < rest[c], {Kind::measure, rest[c] - v / mm});
+        set(drive, "tension_N", true, {Kind::multiplier, std::max(v, 0.0)});
     }
     for (std::size_t k = 0; k < d.chambers.size(); ++k) {
         if (d.chambers[k].name != value.name) continue;
         const std::size_t a = d.cables.size() + k;
         sim::Drive& drive = target_.drives[a];
-        if (value.kind == "volume_ratio" && v > 0) drive = {Kind::measure, v * rest[a]};
-        if (value.kind == "volume_change_mm3" && rest[a] + 1e-9 * v > 0) drive = {Kind::measure, rest[a] + 1e-9 * v};
-        if (value.kind == "pressure_kPa") drive = {Kind::multiplier, 0 - 1e3 * v};
-        if (value.kind == "gas_ratio" && v > 0) drive = {Kind::gas, v * d.ambient_pressure_Pa * rest[a]};
+        set(drive, "volume_ratio", v > 0, {Kind::measure, v * rest[a]});
+        set(drive, "volume_change_mm3", rest[a] + 1e-9 * v > 0, {Kind::measure, rest[a] + 1e-9 * v});
+        set(drive, "pressure_kPa", true, {Kind::multiplier, 0 - 1e3 * v});
+        set(drive, "gas_ratio", v > 0, {Kind::gas, v * d.ambient_pressure_Pa * rest[a]});
     }
+    return possible;
 }
 
 void SimulationSession::set_pull(const std::optional<PullMessage>& message) {

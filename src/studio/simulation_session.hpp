@@ -107,7 +107,8 @@ private:
     void advance();
     void apply(const Wanted& wanted);
     void set_target(const Wanted& wanted);
-    void set_actuator(const ActuatorValue& value);
+    /// False for what cannot be: a length below nothing, an actuator that is not there.
+    bool set_actuator(const ActuatorValue& value);
     void set_pull(const std::optional<PullMessage>& message);
     void go_on_playing();
     void publish(const sim::LiveProgress& progress);

@@ -166,6 +166,10 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     const Json fresh = arrived_anew(4, 0);
     CHECK(fresh["cables"][0]["length_mm"].get<double>() == doctest::Approx(40));
     CHECK(fresh["wanted"]["time"] == 0);
+    // What cannot be leads the robot nowhere, and no page is told that it does.
+    studio.receive(page,
+                   R"({"type":"drive","tag":3,"actuators":[{"name":"flexor","kind":"length_ratio","value":-3}]})");
+    CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
 }
 
 TEST_CASE("a page that comes back hears that there is neither job nor machine") {
