@@ -65,7 +65,7 @@ TEST_CASE("rollers and planes of symmetry hold single directions: a block thins 
 
 TEST_CASE("directions are named where they are wrong") {
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [\"w\"]"),
-                  "block.toml:8: fixed.directions: is \"normal\" or a list");
+                  "bar.toml:8: fixed[1].directions: is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = []"), "is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [[0, 0, 0]]"), "is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = \"normal\""), "\"normal\" is that of a plane");
