@@ -39,7 +39,7 @@ std::vector<std::string> warnings_at_rest(const Model& model) {
 
 std::string closed_gap_text(const std::string& cable, int segment) {
     return fmt::format(
-        "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without contact its flanks "
+        "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without [contact] its flanks "
         "pass through each other",
         segment + 1, segment + 2, cable);
 }
