@@ -15,6 +15,7 @@
 #include "core/config.hpp"
 #include "core/files.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "job/job.hpp"
 #include "machine/board_report.hpp"
 #include "machine/printer.hpp"
@@ -170,6 +171,7 @@ void add_check(CLI::App& app, int& status) {
         if (options->files.empty()) status = report({Cause::input, "give files to check, or --firmware with --port"});
         for (const std::string& file : options->files) {
             auto progress = terminal_progress(options->output);
+            on_signal(OnSignal::leave);  // it writes nothing
             const Result<std::string> text = check(file, *options, *progress);
             progress.reset();
             if (!text)

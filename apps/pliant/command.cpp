@@ -5,28 +5,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
+
+#include "interrupt.hpp"
 
 namespace pliant::app {
 namespace {
 
-// A signal handler can reach nothing but a global.
-volatile std::sig_atomic_t interrupted = 0;
-
-void on_interrupt(int) {
-    interrupted = 1;
-    std::signal(SIGINT, SIG_DFL);  // a second Ctrl-C ends the program at once
-}
-
 class TerminalProgress final : public Progress {
 public:
     explicit TerminalProgress(bool visible) : visible_(visible), start_(std::chrono::steady_clock::now()) {
-        std::signal(SIGINT, on_interrupt);
+        on_signal(OnSignal::ask);
     }
     ~TerminalProgress() override {
         if (shown_) std::fputs("\r\033[K", stderr);
-        std::signal(SIGINT, SIG_DFL);
+        on_signal(OnSignal::end);
     }
     TerminalProgress(const TerminalProgress&) = delete;
     TerminalProgress& operator=(const TerminalProgress&) = delete;
@@ -42,7 +35,7 @@ public:
                    std::string(static_cast<std::size_t>(filled), '='), 100 * fraction);
         std::fflush(stderr);
     }
-    [[nodiscard]] bool cancelled() const override { return interrupted != 0; }
+    [[nodiscard]] bool cancelled() const override { return interrupted(); }
 
 private:
     bool visible_;

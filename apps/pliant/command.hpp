@@ -56,7 +56,7 @@ void on_call(CLI::App& command, int& status, Work work) {
     });
 }
 
-/// A bar on a terminal's stderr for work that takes over a second; Ctrl-C cancels.
+/// A bar on a terminal's stderr for work that takes over a second; Ctrl-C and SIGTERM cancel (interrupt.hpp).
 [[nodiscard]] std::unique_ptr<Progress> terminal_progress(const Output& output);
 
 }  // namespace pliant::app

@@ -9,6 +9,7 @@
 #include "core/files.hpp"
 #include "core/units.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/tet_file.hpp"
 #include "mesh/tet_writer.hpp"
@@ -99,10 +100,12 @@ Status tell(const Options& options, const mesh::TetMesh& mesh) {
 
 Status build(const Options& options) {
     auto progress = terminal_progress(options.output);
+    on_signal(OnSignal::leave);  // nothing is written while it meshes
     const Result<robot::Robot> robot = load(options);
     if (!robot) return tl::unexpected(robot.error());
     const Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
     if (!mesh) return tl::unexpected(mesh.error());
+    on_signal(OnSignal::ask_twice);
     if (Status status = write_robot(options, *robot, *mesh); !status) return status;
     progress.reset();
     return tell(options, mesh::scaled(*mesh, 1 / robot->unit_m));

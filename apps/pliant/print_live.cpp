@@ -6,10 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
-#include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -18,6 +15,7 @@
 #include "host/control.hpp"
 #include "host/scaled_time.hpp"
 #include "host/steady_clock.hpp"
+#include "interrupt.hpp"
 #include "operate/job_file.hpp"
 #include "operate/layer_command.hpp"
 #include "operate/port_station.hpp"
@@ -32,27 +30,6 @@
 
 namespace pliant::app {
 namespace {
-
-// A signal handler can reach nothing but a global.
-std::atomic<std::int64_t> first_signal_ms = 0;
-std::atomic<bool> pressed_twice = false;
-static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
-
-std::int64_t monotonic_ms() {
-    timespec now{};
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000 + 1;
-}
-
-/// The second Ctrl-C counts, unless it comes so soon that no person has pressed it: some programs pass a signal on that
-/// the terminal has sent already. A request to end (SIGTERM) is never more than that.
-void on_interrupt(int signal) {
-    constexpr std::int64_t passed_on_ms = 30;
-    std::int64_t first = 0;
-    const std::int64_t now = monotonic_ms();
-    if (!first_signal_ms.compare_exchange_strong(first, now) && signal == SIGINT && now - first > passed_on_ms)
-        pressed_twice = true;
-}
 
 /// Keys one by one while it lives, if standard input is a terminal.
 class Keys {
@@ -164,15 +141,15 @@ void press(host::Control& control, char key) {
     if (key == 'e') control.emergency_stop();
 }
 
-/// Until the print has ended. Ctrl-C suspends it; once more is an emergency stop.
+/// Until the print has ended. Ctrl-C and SIGTERM suspend it; Ctrl-C after that is an emergency stop.
 void attend(host::Control& control, const Output& output) {
     const Keys keys;
     Display display(output);
     bool suspended = false, stopped = false;
     do {
         press(control, keys.next(100));
-        if (first_signal_ms != 0 && !std::exchange(suspended, true)) (void)control.suspend();
-        if (pressed_twice && !std::exchange(stopped, true)) control.emergency_stop();
+        if (interrupted() && !std::exchange(suspended, true)) (void)control.suspend();
+        if (pressed_again() && !std::exchange(stopped, true)) control.emergency_stop();
         display.show(control);
     } while (!is_over(control.snapshot()));
     display.show(control);
@@ -201,8 +178,7 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     start.assume.lit_s = options.assume_lit_s;
     start.assume.vats_untouched = options.assume_vats_untouched;
     if (Status status = control.start(start); !status) return tl::unexpected(status.error());
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
+    on_signal(OnSignal::ask_twice);
     std::thread worker([&] { control.serve(); });
     attend(control, options.output);
     Ended ended{exit_failed, control.snapshot()};

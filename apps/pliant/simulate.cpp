@@ -5,15 +5,20 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
 #include "compare_solvers.hpp"
 #include "core/files.hpp"
+#include "core/stopwatch.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "report/results.hpp"
 #include "report/summary.hpp"
 #include "robot/build.hpp"
@@ -26,6 +31,7 @@ struct Options {
     std::string robot;
     std::string folder;
     int steps = 0;
+    std::string pictures = "few";
     std::string picture_size;
     std::string solvers;  ///< one, or several with commas
     bool compare = false;
@@ -123,43 +129,103 @@ Result<std::vector<sim::Solver>> asked_solvers(const Options& options) {
     return read_solvers(options.solvers);
 }
 
-Result<int> simulate(const Options& options) {
-    const Result<report::PictureSize> picture_size = read_picture_size(options.picture_size);
-    if (!picture_size) return tl::unexpected(picture_size.error());
-    const Result<std::vector<sim::Solver>> solvers = asked_solvers(options);
-    if (!solvers) return tl::unexpected(solvers.error());
-    std::vector<std::string> assignments = options.assignments;
-    if (solvers->size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers->front())));
-    if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
-    auto progress = terminal_progress(options.output);
-    Result<robot::Robot> robot = read_robot(options.robot, assignments);
-    if (!robot) return tl::unexpected(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
-    if (!mesh) return tl::unexpected(mesh.error());
-    Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
-    if (!model) return tl::unexpected(model.error());
-    if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
-    const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
-    const report::Simulation simulation = describe(*robot, *model, trajectory);
-    if (!options.folder.empty()) {
-        const Status written = write_folder(options.folder, "summary.json", [&](const std::filesystem::path& folder) {
-            return report::write_results(folder, simulation, *progress, *picture_size);
-        });
+Result<report::PictureChoice> read_pictures(const Options& options) {
+    constexpr std::array<std::pair<std::string_view, report::PictureSet>, 3> sets = {{
+        {"none", report::PictureSet::none},
+        {"few", report::PictureSet::few},
+        {"all", report::PictureSet::all},
+    }};
+    const auto* const set =
+        std::ranges::find(sets, options.pictures, &std::pair<std::string_view, report::PictureSet>::first);
+    if (set == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
+    Result<report::PictureSize> size = read_picture_size(options.picture_size);
+    if (!size) return tl::unexpected(size.error());
+    return report::PictureChoice{set->second, *size};
+}
+
+/// While files are written the first signal leaves the pictures out; only the second cancels.
+class Writing final : public Progress {
+public:
+    explicit Writing(Progress& shown) : shown_(shown) { on_signal(OnSignal::ask_twice); }
+    void advance(std::string_view stage, double fraction) override { shown_.advance(stage, fraction); }
+    [[nodiscard]] bool cancelled() const override { return interrupted_again(); }
+
+private:
+    Progress& shown_;
+};
+
+/// `simulation` is told how long it took. True: without the pictures, because they were cancelled.
+Result<bool> write_results(const std::string& folder, report::Simulation& simulation,
+                           const report::PictureChoice& pictures, Progress& progress) {
+    Writing writing(progress);
+    bool stopped = false;
+    const Status status = write_folder(folder, "summary.json", [&](const std::filesystem::path& path) -> Status {
+        const auto written = report::write_results(path, simulation, pictures, writing, progress);
         if (!written) return tl::unexpected(written.error());
-    }
-    progress.reset();
+        simulation.timing = written->timing;
+        stopped = written->drawing_stopped;
+        return {};
+    });
+    if (!status) return tl::unexpected(status.error());
+    return stopped;
+}
+
+/// Prints what was found, and gives the exit status.
+int tell(const Options& options, const sim::Model& model, const report::Simulation& simulation, bool drawing_stopped) {
+    const sim::Trajectory& trajectory = simulation.result;
     if (options.output.json)
         fmt::print("{}\n", report::summary_json(simulation));
     else if (!options.output.quiet)
-        print_summary(*model, trajectory);
-    if (!options.folder.empty() && !options.output.quiet && !options.output.json) {
+        print_summary(model, trajectory);
+    if (!options.folder.empty() && !options.output.quiet && !options.output.json)
         fmt::print("results: {}, open report.html there\n", options.folder);
-    }
     for (const std::string& warning : trajectory.warnings)
         fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
-    if (trajectory.converged) return exit_done;
-    fmt::print(stderr, "{}: {}\n", options.robot, trajectory.message);
+    if (trajectory.converged && !drawing_stopped) return exit_done;
+    fmt::print(
+        stderr, "{}: {}\n", options.robot,
+        trajectory.converged ? "cancelled while pictures were drawn; all other results are there" : trajectory.message);
     return exit_failed;
+}
+
+/// What the command line changes in the robot file.
+std::vector<std::string> all_assignments(const Options& options, const std::vector<sim::Solver>& solvers) {
+    std::vector<std::string> assignments = options.assignments;
+    if (solvers.size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers.front())));
+    if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
+    return assignments;
+}
+
+Result<int> simulate(const Options& options) {
+    const Result<report::PictureChoice> pictures = read_pictures(options);
+    if (!pictures) return tl::unexpected(pictures.error());
+    const Result<std::vector<sim::Solver>> solvers = asked_solvers(options);
+    if (!solvers) return tl::unexpected(solvers.error());
+    auto progress = terminal_progress(options.output);
+    on_signal(OnSignal::leave);  // nothing is written before there is a step
+    Stopwatch watch;
+    report::Timing timing;
+    Result<robot::Robot> robot = read_robot(options.robot, all_assignments(options, *solvers));
+    if (!robot) return tl::unexpected(robot.error());
+    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
+    if (!mesh) return tl::unexpected(mesh.error());
+    timing.mesh_s = watch.read_s();
+    Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
+    if (!model) return tl::unexpected(model.error());
+    timing.model_s = watch.read_s();
+    on_signal(OnSignal::ask);
+    if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
+    const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
+    report::Simulation simulation = describe(*robot, *model, trajectory);
+    simulation.timing = timing;
+    bool drawing_stopped = false;
+    if (!options.folder.empty()) {
+        const Result<bool> written = write_results(options.folder, simulation, *pictures, *progress);
+        if (!written) return tl::unexpected(written.error());
+        drawing_stopped = *written;
+    }
+    progress.reset();
+    return tell(options, *model, simulation, drawing_stopped);
 }
 
 }  // namespace
@@ -176,6 +242,8 @@ void add_simulate(CLI::App& app, int& status) {
                                        "several with commas are compared");
     command->add_flag("--compare-solvers", options->compare, "runs the program with every solver and compares them")
         ->excludes(solver);
+    command->add_option("--pictures", options->pictures,
+                        "none; few: the end over the rest shape; all: also at rest, on the way and the stress (few)");
     command->add_option("--picture-size", options->picture_size, "WIDTHxHEIGHT of the pictures in pixels (1600x1000)");
     command
         ->add_option("--set", options->assignments,

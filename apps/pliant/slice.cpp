@@ -8,6 +8,7 @@
 #include "core/counted.hpp"
 #include "core/files.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "job/png.hpp"
 #include "operate/job_file.hpp"
 #include "overcure.hpp"
@@ -92,6 +93,7 @@ Status slice(const SliceOptions& options) {
     auto progress = terminal_progress(options.output);
     const Result<prepare::PrinterFile> printer = with_mask(options.printer);
     if (!printer) return tl::unexpected(printer.error());
+    on_signal(OnSignal::leave);  // nothing is written while it reads and meshes
     const prepare::Order& order = options.order;
     for (const std::string& input : order.inputs) {
         if (!input.ends_with(".toml")) continue;
@@ -99,6 +101,7 @@ Status slice(const SliceOptions& options) {
     }
     Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
+    on_signal(OnSignal::ask);
     auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
     Status status;

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "job/png.hpp"
 #include "machine/printer.hpp"
 #include "operate/clock_file.hpp"
@@ -35,8 +35,6 @@ struct Options {
     bool trace = false;
     Output output;
 };
-
-volatile std::sig_atomic_t interrupted = 0;
 
 Result<twin::Options> twin_options(const Options& options) {
     twin::Options result;
@@ -120,11 +118,10 @@ Status run_twin(const Options& options) {
                    options.link.empty() ? pty->device() : options.link, printer->controller.baud_rate);
         std::fflush(stdout);
     }
-    std::signal(SIGINT, [](int) { interrupted = 1; });
-    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    on_signal(OnSignal::ask);
     twin::ServeOptions serve;
     serve.speed = options.speed;
-    serve.stop = [&] { return interrupted != 0 || (options.seconds > 0 && twin.now() > options.seconds); };
+    serve.stop = [&] { return interrupted() || (options.seconds > 0 && twin.now() > options.seconds); };
     FolderProjector projector(std::filesystem::path(options.projector) / "shown.png");
     if (!options.projector.empty()) serve.lights = [&](twin::Twin& t) { return projector.look(t); };
     std::optional<operate::ClockFile> clock;

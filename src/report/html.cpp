@@ -109,6 +109,7 @@ std::string tiles(const Simulation& s) {
 }
 
 std::string pictures_section(const std::vector<Picture>& pictures) {
+    if (pictures.empty()) return "";
     std::vector<const Picture*> order;
     order.reserve(pictures.size());
     for (const auto& p : pictures) order.push_back(&p);
@@ -221,8 +222,11 @@ std::string steps_section(const Simulation& s) {
 
 std::string settings_section(const Simulation& s) {
     std::vector<std::vector<std::string>> rows = {{"tolerance", fmt::format("{:g}", s.tolerance)},
-                                                  {"setup", seconds(s.result.setup_s)},
-                                                  {"solve", seconds(s.result.solve_s)}};
+                                                  {"mesh", seconds(s.timing.mesh_s)},
+                                                  {"setup", seconds(s.timing.model_s + s.result.setup_s)},
+                                                  {"solve", seconds(s.result.solve_s)},
+                                                  {"files", seconds(s.timing.files_s)},
+                                                  {"pictures", seconds(s.timing.pictures_s)}};
     for (const auto& [name, value] : s.settings) rows.push_back({name, value});
     return "<h2>Settings</h2>\n" + table("words", {"setting", "value"}, rows);
 }

@@ -277,15 +277,19 @@ std::string step_line(const Simulation& s, std::size_t step) {
     return step_title(s, s.result.steps[step]) + (actuators.empty() ? "" : " · " + actuators);
 }
 
-Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, const PictureSize& size,
+Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& surface, const PictureChoice& choice,
                                            Progress& progress) {
     using Draw = Result<Picture> (Painter::*)();
     static constexpr std::array<Draw, 4> all = {&Painter::rest, &Painter::final, &Painter::stages, &Painter::von_mises};
-    Painter painter(s, surface, size, progress);
+    static constexpr std::array<Draw, 1> few = {&Painter::final};
     std::vector<Picture> pictures;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        progress.advance("pictures", static_cast<double>(i) / all.size());
-        auto picture = (painter.*all[i])();
+    if (choice.set == PictureSet::none) return pictures;
+    const std::span<const Draw> wanted =
+        choice.set == PictureSet::all ? std::span<const Draw>(all) : std::span<const Draw>(few);
+    Painter painter(s, surface, choice.size, progress);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        progress.advance("pictures", static_cast<double>(i) / static_cast<double>(wanted.size()));
+        auto picture = (painter.*wanted[i])();
         if (!picture) return tl::unexpected(picture.error());
         pictures.push_back(std::move(*picture));
     }

@@ -21,10 +21,18 @@ struct PictureSize {
     int height_px = 1000;
 };
 
-/// rest.png, final.png (rest as a ghost, markers with their paths), stages.png and von_mises.png. Text and lines keep
-/// their proportions to the picture.
+/// Each is ray cast, and that takes most of a short simulation's processor time.
+enum class PictureSet { none, few, all };
+
+struct PictureChoice {
+    PictureSet set = PictureSet::few;
+    PictureSize size{};
+};
+
+/// few: final.png (rest as a ghost, markers with their paths); all: rest.png, final.png, stages.png and von_mises.png.
+/// Text and lines keep their proportions to the picture.
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
-                                                         const PictureSize& size, Progress& progress);
+                                                         const PictureChoice& choice, Progress& progress);
 
 /// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N", or "at rest · ...".
 [[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);

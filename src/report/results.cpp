@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "core/files.hpp"
+#include "core/stopwatch.hpp"
 #include "report/frames.hpp"
 #include "report/gltf.hpp"
 #include "report/html.hpp"
@@ -11,27 +12,53 @@
 #include "report/tables.hpp"
 
 namespace pliant::report {
+namespace fs = std::filesystem;
 
-Status write_results(const std::filesystem::path& folder, const Simulation& s, Progress& progress,
-                     const PictureSize& picture_size) {
-    if (Status status = check(s); !status) return status;
-    if (Status status = write_file(folder / "summary.json", summary_json(s)); !status) return status;
+namespace {
+
+Status write_data(const fs::path& folder, const Simulation& s, const Surface& surface, Progress& progress) {
     if (Status status = write_file(folder / "steps.csv", steps_csv(s.result)); !status) return status;
     if (Status status = write_file(folder / "markers.csv", markers_csv(s.result)); !status) return status;
     if (Status status = write_file(folder / "iterations.csv", iterations_csv(s.result)); !status) return status;
     if (Status status = write_frames(folder, s, progress); !status) return status;
+    return write_file(folder / "robot.glb", robot_glb(s, surface));
+}
 
-    const Surface surface = outer_surface(s.mesh, s.region_material);
-    if (Status status = write_file(folder / "robot.glb", robot_glb(s, surface)); !status) return status;
-    const auto pictures = draw_pictures(s, surface, picture_size, progress);
-    if (!pictures) return tl::unexpected(pictures.error());
+Status write_pictures(const fs::path& folder, const std::vector<Picture>& pictures) {
+    if (pictures.empty()) return {};
     std::error_code code;
-    std::filesystem::create_directories(folder / "pictures", code);
+    fs::create_directories(folder / "pictures", code);
     if (code) return failure("{}: cannot be made: {}", (folder / "pictures").string(), code.message());
-    for (const Picture& picture : *pictures) {
+    for (const Picture& picture : pictures) {
         if (Status status = write_file(folder / "pictures" / picture.file, picture.png); !status) return status;
     }
-    return write_file(folder / "report.html", report_html(s, *pictures));
+    return {};
+}
+
+}  // namespace
+
+Result<Written> write_results(const fs::path& folder, const Simulation& simulation, const PictureChoice& choice,
+                              Progress& writing, Progress& drawing) {
+    if (Status status = check(simulation); !status) return tl::unexpected(status.error());
+    Simulation s = simulation;  // the mesh and the result are not copied
+    Stopwatch watch;
+    const Surface surface = outer_surface(s.mesh, s.region_material);
+    if (Status status = write_data(folder, s, surface, writing); !status) return tl::unexpected(status.error());
+    s.timing.files_s = watch.read_s();
+
+    auto pictures = draw_pictures(s, surface, choice, drawing);
+    const bool stopped = !pictures && pictures.error().cause == Cause::cancelled;
+    if (stopped) pictures = std::vector<Picture>();
+    if (!pictures) return tl::unexpected(pictures.error());
+    if (Status status = write_pictures(folder, *pictures); !status) return tl::unexpected(status.error());
+    s.timing.pictures_s = watch.read_s();
+
+    // Last, because both tell how long the rest took.
+    Status status = write_file(folder / "report.html", report_html(s, *pictures));
+    if (status) status = write_file(folder / "summary.json", summary_json(s));
+    if (status && writing.cancelled()) status = cancelled();
+    if (!status) return tl::unexpected(status.error());
+    return Written{s.timing, stopped};
 }
 
 }  // namespace pliant::report

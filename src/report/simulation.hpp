@@ -26,6 +26,14 @@ struct Material {
     std::optional<Colour> colour;  ///< none: a colour of the palette, by index
 };
 
+/// Wall time beside that of the solver, which `sim::Trajectory` has.
+struct Timing {
+    double mesh_s = 0;      ///< reading the robot file and meshing
+    double model_s = 0;     ///< the model of the mesh, before the solver sets up
+    double files_s = 0;     ///< tables, frames and robot.glb
+    double pictures_s = 0;  ///< drawing and writing them
+};
+
 struct Simulation {
     std::string robot;                   ///< name of the robot
     const mesh::TetMesh& mesh;           ///< at rest
@@ -40,6 +48,7 @@ struct Simulation {
     std::function<std::vector<double>(const sim::Step&)> contact_pressure_Pa{};
     double tolerance = 1e-4;
     double peak_memory_MB = 0;
+    Timing timing{};
     std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
 };
 

@@ -487,10 +487,12 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         step.index = k;
         step.time = program.duration * static_cast<double>(k) / program.steps;
         std::string message;
-        if (!walk.advance(step.time, step, progress, message)) {
+        const bool arrived = !progress.cancelled() && walk.advance(step.time, step, progress, message);
+        if (!arrived) {
             result.converged = false;
-            result.message = fmt::format("stopped at step {} of {}: {}{}", k, program.steps, message,
-                                         walk.advice(step.time, progress));
+            result.message = progress.cancelled() ? fmt::format("cancelled at step {} of {}", k, program.steps)
+                                                  : fmt::format("stopped at step {} of {}: {}{}", k, program.steps,
+                                                                message, walk.advice(step.time, progress));
             break;
         }
         walk.judge(step, result.warnings, progress);
@@ -501,7 +503,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         result.steps.push_back(std::move(step));
     }
     const auto end = std::chrono::steady_clock::now();
-    walk.judge_end(result);
+    if (!progress.cancelled()) walk.judge_end(result);  // which takes as long as a few steps
     result.solve_s += seconds_since(end);
     add_warnings(result);
     result.iterations = walk.take_iterations();

@@ -1,0 +1,79 @@
+#include "interrupt.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <ctime>
+#include <string_view>
+
+namespace pliant::app {
+namespace {
+
+constexpr std::int64_t passed_on_ms = 30;
+
+// A signal handler can reach nothing but globals.
+std::atomic<OnSignal> wanted = OnSignal::end;
+std::atomic<std::int64_t> first_ms = 0;  // 0: there was none
+std::atomic<bool> again = false, key_again = false;
+std::atomic<pid_t> owner = 0;
+std::atomic<bool> on_terminal = false;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<OnSignal>::is_always_lock_free);
+
+std::int64_t monotonic_ms() {
+    timespec now{};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000 + 1;
+}
+
+/// Calls nothing that a signal handler may not call.
+[[noreturn]] void leave() {
+    const std::string_view line = on_terminal ? "\r\033[Kcancelled\n" : "cancelled\n";  // wipes a progress bar away
+    (void)!::write(STDERR_FILENO, line.data(), line.size());
+    ::_exit(1);
+}
+
+void handle(int signal) {
+    const OnSignal what = wanted;
+    if (::getpid() != owner) {  // a child that tries a STEP file: its parent says what is to be said
+        if (what == OnSignal::leave) ::_exit(1);
+        return;
+    }
+    const int error = errno;
+    std::int64_t first = 0;
+    const std::int64_t now = monotonic_ms();
+    const bool is_first = first_ms.compare_exchange_strong(first, now);
+    if (what == OnSignal::leave) leave();
+    if (!is_first && now - first > passed_on_ms) {
+        if (what == OnSignal::ask) leave();
+        again = true;
+        if (signal == SIGINT) key_again = true;
+    }
+    errno = error;
+}
+
+}  // namespace
+
+void on_signal(OnSignal what) {
+    owner = ::getpid();
+    on_terminal = ::isatty(STDERR_FILENO) == 1;
+    wanted = what;
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, what == OnSignal::end ? SIG_DFL : handle);
+    if (what == OnSignal::leave && interrupted()) leave();
+}
+
+bool interrupted() {
+    return first_ms != 0;
+}
+
+bool interrupted_again() {
+    return again;
+}
+
+bool pressed_again() {
+    return key_again;
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,21 @@
+// How long pieces of work take.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+namespace pliant {
+
+class Stopwatch {
+public:
+    /// Seconds of wall time since it was made or last read.
+    double read_s() {
+        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(begin_, now)).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace pliant
