@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "interrupt.hpp"
 #include "report/convergence.hpp"
 
 namespace pliant::app {
@@ -58,6 +59,7 @@ Result<int> compare_solvers(const sim::Model& model, const sim::Program& program
     }
     const std::vector<report::SolverRow> rows = report::compare(runs);
     if (!folder.empty()) {
+        on_signal(OnSignal::ask_twice);
         if (const Status written = write_comparison(folder, runs, rows); !written)
             return tl::unexpected(written.error());
     }

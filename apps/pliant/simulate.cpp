@@ -110,7 +110,6 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
 /// "800x500".
 Result<report::PictureSize> read_picture_size(const std::string& text) {
     report::PictureSize size;
-    if (text.empty()) return size;
     int used = 0;
     const bool read = std::sscanf(text.c_str(), "%5dx%5d%n", &size.width_px, &size.height_px, &used) == 2 &&
                       used == static_cast<int>(text.size());
@@ -135,12 +134,13 @@ Result<report::PictureChoice> read_pictures(const Options& options) {
         {"few", report::PictureSet::few},
         {"all", report::PictureSet::all},
     }};
-    const auto* const set =
-        std::ranges::find(sets, options.pictures, &std::pair<std::string_view, report::PictureSet>::first);
-    if (set == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
-    Result<report::PictureSize> size = read_picture_size(options.picture_size);
-    if (!size) return tl::unexpected(size.error());
-    return report::PictureChoice{set->second, *size};
+    const auto* const named = std::ranges::find(sets, options.pictures, [](const auto& set) { return set.first; });
+    if (named == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
+    const report::PictureSet set = named->second;
+    if (options.picture_size.empty()) return report::PictureChoice{set, report::usual_size(set)};
+    return read_picture_size(options.picture_size).map([set](const report::PictureSize& size) {
+        return report::PictureChoice{set, size};
+    });
 }
 
 /// While files are written the first signal leaves the pictures out; only the second cancels.
@@ -244,7 +244,8 @@ void add_simulate(CLI::App& app, int& status) {
         ->excludes(solver);
     command->add_option("--pictures", options->pictures,
                         "none; few: the end over the rest shape; all: also at rest, on the way and the stress (few)");
-    command->add_option("--picture-size", options->picture_size, "WIDTHxHEIGHT of the pictures in pixels (1600x1000)");
+    command->add_option("--picture-size", options->picture_size,
+                        "WIDTHxHEIGHT of the pictures in pixels (800x500 of few, 1600x1000 of all)");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

@@ -101,7 +101,7 @@ Status slice(const SliceOptions& options) {
     }
     Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);
     if (!drawing) return tl::unexpected(drawing.error());
-    on_signal(OnSignal::ask);
+    on_signal(OnSignal::ask_twice);
     auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
     Status status;

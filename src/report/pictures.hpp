@@ -21,12 +21,16 @@ struct PictureSize {
     int height_px = 1000;
 };
 
-/// Each is ray cast, and that takes most of a short simulation's processor time.
 enum class PictureSet { none, few, all };
+
+/// A few are a glance at the result that takes less processor time than a simulation of seconds: a quarter of the size.
+[[nodiscard]] constexpr PictureSize usual_size(PictureSet set) {
+    return set == PictureSet::few ? PictureSize{800, 500} : PictureSize{};
+}
 
 struct PictureChoice {
     PictureSet set = PictureSet::few;
-    PictureSize size{};
+    PictureSize size = usual_size(set);
 };
 
 /// few: final.png (rest as a ghost, markers with their paths); all: rest.png, final.png, stages.png and von_mises.png.

@@ -134,8 +134,8 @@ TEST_CASE("the pictures are PNG files that hold something, each time the same") 
     const Simulation s = robot.simulation();
     const Surface surface = outer_surface(s.mesh, s.region_material);
     Progress progress;
-    const auto pictures = draw_pictures(s, surface, {240, 150}, progress);
-    const auto again = draw_pictures(s, surface, {240, 150}, progress);
+    const auto pictures = draw_pictures(s, surface, {PictureSet::all, {240, 150}}, progress);
+    const auto again = draw_pictures(s, surface, {PictureSet::all, {240, 150}}, progress);
     REQUIRE(pictures.has_value());
     REQUIRE(again.has_value());
     REQUIRE(pictures->size() == 4);

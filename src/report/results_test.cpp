@@ -2,27 +2,120 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
+#include "core/stopwatch.hpp"
 #include "core/test_folder.hpp"
 #include "report/test_robot.hpp"
 
 using namespace pliant;
 using namespace pliant::report;
 
+namespace {
+
+constexpr PictureChoice all_small = {PictureSet::all, {240, 150}};
+
+/// Names in pictures/, sorted; none if there is no such folder.
+std::vector<std::string> pictures_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    if (!std::filesystem::exists(folder / "pictures")) return names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "pictures"))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+/// Cancelled from the start, or once the stage of this name has been told.
+struct Stop : Progress {
+    std::string stage;
+    bool stopped = true;
+    explicit Stop(std::string from_stage = "") : stage(std::move(from_stage)), stopped(stage.empty()) {}
+    void advance(std::string_view name, double) override { stopped = stopped || name == stage; }
+    [[nodiscard]] bool cancelled() const override { return stopped; }
+};
+
+}  // namespace
+
 TEST_CASE("the folder holds every file that the design names") {
     const auto robot = report::test::bent_bar(3, 1);
     const pliant::test::Folder folder("results");
     Progress progress;
-    const auto status = write_results(folder.path(), robot.simulation(), progress, {240, 150});
-    REQUIRE_MESSAGE(status.has_value(), status.error().message);
+    const auto written = write_results(folder.path(), robot.simulation(), all_small, progress, progress);
+    REQUIRE_MESSAGE(written.has_value(), written.error().message);
+    CHECK_FALSE(written->drawing_stopped);
     for (const char* name : {"summary.json", "steps.csv", "markers.csv", "iterations.csv", "frames.pvd",
                              "frames/frame_0000.vtu", "frames/frame_0003.vtu", "robot.glb", "pictures/rest.png",
                              "pictures/final.png", "pictures/stages.png", "pictures/von_mises.png", "report.html"}) {
         CHECK_MESSAGE(std::filesystem::file_size(folder.path() / name) > 100, name);
+    }
+}
+
+TEST_CASE("none, few or all pictures; the page has those that there are") {
+    const auto robot = report::test::bent_bar(2, 1);
+    Progress progress;
+    const std::vector<std::pair<PictureSet, std::vector<std::string>>> sets = {
+        {PictureSet::none, {}},
+        {PictureSet::few, {"final.png"}},
+        {PictureSet::all, {"final.png", "rest.png", "stages.png", "von_mises.png"}}};
+    for (const auto& [set, names] : sets) {
+        const pliant::test::Folder folder("pictures");
+        const auto written = write_results(folder.path(), robot.simulation(), {set, {240, 150}}, progress, progress);
+        REQUIRE(written.has_value());
+        CHECK(pictures_in(folder.path()) == names);
+        const std::string html = read_file(folder / "report.html").value();
+        std::size_t shown = 0;
+        for (std::size_t at = 0; (at = html.find("<img ", at)) != std::string::npos; ++at) ++shown;
+        CHECK(shown == names.size());
+        CHECK((html.find("class=\"pictures\"") == std::string::npos) == names.empty());
+        CHECK(html.find("<h2>Steps</h2>") != std::string::npos);
+    }
+    CHECK(PictureChoice{}.set == PictureSet::few);
+    CHECK(PictureChoice{}.size.width_px == 800);
+}
+
+TEST_CASE("summary.json tells how long files and pictures took, of the whole") {
+    const auto robot = report::test::bent_bar(2, 1);
+    Simulation s = robot.simulation();
+    s.timing = {1.5, 0.5, 0, 0};
+    Progress progress;
+    const pliant::test::Folder folder("timing");
+    Stopwatch watch;
+    const auto written = write_results(folder.path(), s, {PictureSet::few, {240, 150}}, progress, progress);
+    const double whole_ms = 1e3 * watch.read_s();
+    REQUIRE(written.has_value());
+    const auto timing = nlohmann::json::parse(read_file(folder / "summary.json").value())["timing"];
+    CHECK(timing["mesh_ms"] == 1500);
+    CHECK(timing["files_ms"].get<double>() == doctest::Approx(1e3 * written->timing.files_s));
+    CHECK(timing["pictures_ms"].get<double>() == doctest::Approx(1e3 * written->timing.pictures_s));
+    CHECK(timing["files_ms"].get<double>() > 0);
+    CHECK(timing["pictures_ms"].get<double>() > 0);
+    CHECK(timing["files_ms"].get<double>() + timing["pictures_ms"].get<double>() < whole_ms);
+}
+
+TEST_CASE("cancelled while it draws, only the pictures are missing; cancelled while it writes, it is an error") {
+    const auto robot = report::test::bent_bar(2, 1);
+    Progress progress;
+    for (const char* stage : {"", "pictures"}) {
+        Stop drawing(stage);
+        const pliant::test::Folder folder("drawing_stopped");
+        const auto written = write_results(folder.path(), robot.simulation(), all_small, progress, drawing);
+        REQUIRE(written.has_value());
+        CHECK(written->drawing_stopped);
+        CHECK_FALSE(std::filesystem::exists(folder / "pictures"));
+        for (const char* name : {"summary.json", "steps.csv", "frames/frame_0002.vtu", "robot.glb", "report.html"})
+            CHECK_MESSAGE(std::filesystem::file_size(folder / name) > 100, name);
+    }
+    for (const char* stage : {"", "frames", "pictures"}) {
+        Stop writing(stage);
+        const pliant::test::Folder folder("writing_stopped");
+        const auto written = write_results(folder.path(), robot.simulation(), all_small, writing, writing);
+        REQUIRE_FALSE(written.has_value());
+        CHECK(written.error().cause == Cause::cancelled);
     }
 }
 
@@ -37,7 +130,7 @@ TEST_CASE("a rest state alone, and robots without cables or markers, are reporte
     robot.result.message = "step 1: did not converge";
     const pliant::test::Folder folder("rest_only");
     Progress progress;
-    CHECK(write_results(folder.path(), robot.simulation(), progress, {240, 150}).has_value());
+    CHECK(write_results(folder.path(), robot.simulation(), all_small, progress, progress).has_value());
     const auto html = read_file(folder.path() / "report.html");
     REQUIRE(html.has_value());
     CHECK(html->find("step 1: did not converge") != std::string::npos);
@@ -78,5 +171,5 @@ TEST_CASE("input that does not fit together is refused with the reason") {
 TEST_CASE("a folder that cannot be written is an error") {
     const auto robot = report::test::bent_bar(1, 1);
     Progress progress;
-    CHECK_FALSE(write_results("/proc/no_such_folder", robot.simulation(), progress, {240, 150}).has_value());
+    CHECK_FALSE(write_results("/proc/no_such_folder", robot.simulation(), all_small, progress, progress).has_value());
 }

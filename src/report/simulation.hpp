@@ -48,8 +48,8 @@ struct Simulation {
     std::function<std::vector<double>(const sim::Step&)> contact_pressure_Pa{};
     double tolerance = 1e-4;
     double peak_memory_MB = 0;
-    Timing timing{};
     std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
+    Timing timing{};
 };
 
 /// Sizes and indices agree; otherwise an error that names the field.

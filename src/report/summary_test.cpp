@@ -14,7 +14,9 @@ using nlohmann::json;
 TEST_CASE("summary.json has the keys and values that the design promises") {
     auto robot = test::bent_bar(10, 2);
     robot.result.steps.back().chambers = {{"air", 1.25, 2e-6, 40e3}};
-    const json j = json::parse(summary_json(robot.simulation()));
+    Simulation s = robot.simulation();
+    s.timing = {2, 0.125, 0.75, 1.5};
+    const json j = json::parse(summary_json(s));
     CHECK(j["robot"] == "bent bar");
     CHECK(j["pliant"].get<std::string>().find('.') != std::string::npos);
     CHECK(j["nodes"] == robot.mesh.points.size());
@@ -25,8 +27,11 @@ TEST_CASE("summary.json has the keys and values that the design promises") {
     CHECK(j["message"] == "");
     CHECK(j["warnings"].empty());
     CHECK(j["peak_memory_MB"] == 123.5);
-    CHECK(j["timing"]["setup_ms"] == 250);
+    CHECK(j["timing"]["mesh_ms"] == 2000);
+    CHECK(j["timing"]["setup_ms"] == 250 + 125);
     CHECK(j["timing"]["solve_ms"] == 500);
+    CHECK(j["timing"]["files_ms"] == 750);
+    CHECK(j["timing"]["pictures_ms"] == 1500);
     CHECK(j["timing"]["frames_per_second"] == 20);
     REQUIRE(j["steps"].size() == 10);
     CHECK(j["rest"]["index"] == 0);

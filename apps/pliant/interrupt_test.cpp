@@ -1,0 +1,211 @@
+// Ctrl-C and SIGTERM sent to the real program, at moments that it shows by what it says or writes.
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/files.hpp"
+#include "core/test_folder.hpp"
+
+using namespace pliant;
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto patience = 240s;  // for a machine that does much else
+const std::string finger = "examples/tutorial/finger.toml";
+const std::string linear = "mesh.order=1";
+
+bool wait_for(const std::function<bool()>& sign) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < end) {
+        if (sign()) return true;
+        std::this_thread::sleep_for(2ms);
+    }
+    return false;
+}
+
+/// `pliant` with its standard error on a terminal, so that it shows its bar.
+class Program {
+public:
+    explicit Program(std::vector<std::string> words) {
+        words.insert(words.begin(), PLIANT_PROGRAM);
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        int terminal = -1;
+        REQUIRE(::openpty(&master_, &terminal, nullptr, nullptr, nullptr) == 0);
+        process_ = ::fork();
+        REQUIRE(process_ >= 0);
+        if (process_ == 0) {
+            ::dup2(terminal, STDERR_FILENO);
+            ::dup2(::open("/dev/null", O_WRONLY), STDOUT_FILENO);
+            ::close(master_);
+            ::execv(arguments[0], arguments.data());
+            ::_exit(127);
+        }
+        ::close(terminal);
+    }
+    ~Program() {
+        if (!ended()) ::kill(process_, SIGKILL);
+        (void)exit_status();
+        ::close(master_);
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    void send(int signal) const { ::kill(process_, signal); }
+    bool says(const std::string& text) {
+        listen();
+        return said_.find(text) != std::string::npos;
+    }
+    [[nodiscard]] bool has_loaded(const std::string& library) const {
+        std::FILE* maps = std::fopen(fmt::format("/proc/{}/maps", process_).c_str(), "r");
+        std::string text;
+        for (int c = 0; maps != nullptr && (c = std::fgetc(maps)) != EOF;) text += static_cast<char>(c);
+        if (maps != nullptr) std::fclose(maps);
+        return text.find(library) != std::string::npos;
+    }
+    bool ended() {
+        listen();  // or it waits for somebody to read
+        if (!ended_ && ::waitpid(process_, &status_, WNOHANG) == process_) ended_ = true;
+        return ended_;
+    }
+    /// Waits for the end; -1: killed by a signal, or it never ended.
+    int exit_status() {
+        const bool in_time = wait_for([&] { return ended(); });
+        listen();
+        return in_time && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
+    }
+    /// The last line, without what it wiped away.
+    [[nodiscard]] std::string last_line() const {
+        const std::string text = said_.substr(0, said_.find_last_not_of("\r\n") + 1);
+        return text.substr(text.find_last_of("\nK") + 1);
+    }
+
+private:
+    void listen() {
+        pollfd wait{master_, POLLIN, 0};
+        char buffer[4096];
+        while (::poll(&wait, 1, 0) > 0 && (wait.revents & POLLIN) != 0) {
+            const ssize_t count = ::read(master_, buffer, sizeof buffer);
+            if (count <= 0) return;
+            said_.append(buffer, static_cast<std::size_t>(count));
+        }
+    }
+
+    pid_t process_ = -1;
+    int master_ = -1, status_ = 0;
+    bool ended_ = false;
+    std::string said_;
+};
+
+nlohmann::json summary_in(const fs::path& folder) {
+    return nlohmann::json::parse(read_file(folder / "summary.json").value());
+}
+
+}  // namespace
+
+TEST_CASE("a simulation that is interrupted keeps the steps that converged, whole") {
+    for (const auto& [signal, times] : std::vector<std::pair<int, int>>{{SIGINT, 1}, {SIGTERM, 1}, {SIGTERM, 2}}) {
+        CAPTURE(signal);
+        CAPTURE(times);  // as `timeout` does: at once
+        const test::Folder folder("interrupt");
+        const fs::path out = folder / "out";
+        Program program({"simulate", finger, "-o", out, "--steps", "20000", "--set", linear});
+        REQUIRE(wait_for([&] { return program.says("simulate ["); }));
+        for (int i = 0; i < times; ++i) program.send(signal);
+        CHECK(program.exit_status() == 1);
+        REQUIRE(fs::exists(out / "summary.json"));
+        const auto summary = summary_in(out);
+        const std::size_t kept = summary["steps"].size();
+        CHECK(summary["converged"] == false);
+        CHECK(summary["message"] == fmt::format("cancelled at step {} of 20000", kept + 1));
+        CHECK(program.last_line() == fmt::format("{}: cancelled at step {} of 20000", finger, kept + 1));
+        CHECK(kept > 0);
+        CHECK(fs::exists(out / fmt::format("frames/frame_{:04}.vtu", kept)));
+        CHECK(fs::exists(out / "report.html"));
+        CHECK_FALSE(fs::exists(out / "pictures"));
+        CHECK_FALSE(fs::exists(folder / "out.partial"));
+    }
+}
+
+TEST_CASE("interrupted while it meshes, it writes nothing and says one line") {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        for (const std::string command : {"simulate", "mesh"}) {
+            CAPTURE(signal);
+            CAPTURE(command);
+            const test::Folder folder("interrupt");
+            Program program({command, finger, "-o", folder / "out.vtu", "--set", "mesh.size=0.3 mm"});
+            REQUIRE(wait_for([&] { return program.has_loaded("libgmsh"); }));
+            program.send(signal);
+            CHECK(program.exit_status() == 1);
+            CHECK(program.last_line() == "cancelled");
+            CHECK(fs::is_empty(folder.path()));
+        }
+    }
+}
+
+TEST_CASE("interrupted while it draws, everything but the pictures is there") {
+    const test::Folder folder("interrupt");
+    const fs::path out = folder / "out";
+    Program program({"simulate", finger, "-o", out, "--steps", "2", "--set", linear, "--pictures", "all",
+                     "--picture-size", "8000x5000"});
+    REQUIRE(wait_for([&] { return fs::exists(folder / "out.partial/robot.glb"); }));
+    program.send(SIGTERM);
+    CHECK(program.exit_status() == 1);
+    CHECK(program.last_line() == finger + ": cancelled while pictures were drawn; all other results are there");
+    REQUIRE(fs::exists(out / "summary.json"));
+    CHECK(summary_in(out)["converged"] == true);
+    CHECK(summary_in(out)["steps"].size() == 2);
+    CHECK(fs::exists(out / "report.html"));
+    CHECK_FALSE(fs::exists(out / "pictures"));
+    CHECK_FALSE(fs::exists(folder / "out.partial"));
+}
+
+TEST_CASE("a second signal while files are written leaves nothing behind") {
+    const test::Folder folder("interrupt");
+    const fs::path out = folder / "out";
+    bool put_away = false;
+    for (int attempt = 0; attempt < 5 && !put_away; ++attempt) {  // it may be done before the second comes
+        Program program({"simulate", finger, "-o", out, "--steps", "300", "--set", linear});
+        REQUIRE(wait_for([&] { return fs::exists(folder / "out.partial/frames/frame_0001.vtu"); }));
+        program.send(SIGTERM);
+        std::this_thread::sleep_for(50ms);
+        program.send(SIGTERM);
+        CHECK(program.exit_status() == 1);
+        CHECK_FALSE(fs::exists(folder / "out.partial"));
+        put_away = !fs::exists(out);
+        if (put_away) CHECK(program.last_line() == "cancelled");
+        if (!put_away) CHECK(summary_in(out)["steps"].size() == 300);
+        fs::remove_all(out);
+    }
+    CHECK(put_away);
+}
+
+TEST_CASE("slicing that is interrupted leaves no job and no half of one") {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        CAPTURE(signal);
+        const test::Folder folder("interrupt");
+        Program program(
+            {"slice", "examples/cable_gripper/gripper.toml", "--printer", "tower", "-o", folder / "job.zip"});
+        REQUIRE(wait_for([&] { return fs::exists(folder / "job.zip.partial"); }));
+        program.send(signal);
+        CHECK(program.exit_status() == 1);
+        CHECK(program.last_line() == "cancelled");
+        CHECK(fs::is_empty(folder.path()));
+    }
+}
