@@ -182,9 +182,9 @@ int tell(const Options& options, const sim::Model& model, const report::Simulati
     for (const std::string& warning : trajectory.warnings)
         fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
     if (trajectory.converged && !drawing_stopped) return exit_done;
-    fmt::print(
-        stderr, "{}: {}\n", options.robot,
-        trajectory.converged ? "cancelled while pictures were drawn; all other results are there" : trajectory.message);
+    fmt::print(stderr, "{}: {}\n", options.robot,
+               trajectory.converged ? "cancelled before all pictures were drawn; the other results are there"
+                                    : trajectory.message);
     return exit_failed;
 }
 

@@ -51,7 +51,7 @@ Result<Written> write_results(const fs::path& folder, const Simulation& simulati
     if (stopped) pictures = std::vector<Picture>();
     if (!pictures) return tl::unexpected(pictures.error());
     if (Status status = write_pictures(folder, *pictures); !status) return tl::unexpected(status.error());
-    s.timing.pictures_s = watch.read_s();
+    if (!pictures->empty()) s.timing.pictures_s = watch.read_s();
 
     // Last, because both tell how long the rest took.
     Status status = write_file(folder / "report.html", report_html(s, *pictures));

@@ -67,6 +67,7 @@ TEST_CASE("none, few or all pictures; the page has those that there are") {
         const auto written = write_results(folder.path(), robot.simulation(), {set, {240, 150}}, progress, progress);
         REQUIRE(written.has_value());
         CHECK(pictures_in(folder.path()) == names);
+        CHECK((written->timing.pictures_s > 0) == !names.empty());
         const std::string html = read_file(folder / "report.html").value();
         std::size_t shown = 0;
         for (std::size_t at = 0; (at = html.find("<img ", at)) != std::string::npos; ++at) ++shown;
