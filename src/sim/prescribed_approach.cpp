@@ -5,8 +5,8 @@
 namespace pliant::sim {
 namespace {
 
-constexpr int most_pieces = 100;
-constexpr double least_piece = 1e-4;      // of the way, below which nothing gives way
+constexpr int most_pieces = 30;
+constexpr double least_piece = 0.01;      // of what is left of the way, below which nothing gives way
 constexpr double probe_share = 1e-3;      // of what is free ahead, to see what the motion does
 constexpr double kept_J = 0.3;            // of the smallest det F
 constexpr StepSettings between{1e-2, 8};  // near equilibrium is enough, before the next piece
