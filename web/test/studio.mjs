@@ -53,7 +53,7 @@ export async function openPage(browser, address, t, options = {}) {
   page.setDefaultTimeout(30000);
   const wrong = [];
   page.on('pageerror', (error) => wrong.push(String(error)));
-  page.on('console', (message) => message.type() === 'error' && wrong.push(message.text()));
+  page.on('console', (message) => message.type() === 'error' && wrong.push(`${message.text()} ${message.location().url}`));
   page.on('request', (request) => {
     const url = request.url();
     if (!url.startsWith(new URL(address).origin) && !url.startsWith('blob:') && !url.startsWith('data:')) wrong.push(`asked for ${url}`);
