@@ -13,6 +13,7 @@
 #include "board.hpp"
 #include "command.hpp"
 #include "core/config.hpp"
+#include "core/counted.hpp"
 #include "core/files.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -37,6 +38,10 @@ struct Options {
     Output output;
 };
 
+std::string bodies(std::size_t count) {
+    return count == 1 ? "1 body" : fmt::format("{} bodies", count);
+}
+
 /// A robot is checked as far as a mesh of it: overlaps, cables outside, supports that catch nothing show only then.
 Result<std::string> check_robot(const std::string& file, Progress& progress) {
     const Result<robot::Robot> robot = read_robot(file, {});
@@ -46,9 +51,9 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
     const std::vector<std::string> notes = mesh->notes;
     const Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
     if (!model) return tl::unexpected(model.error());
-    std::string text =
-        fmt::format("robot \"{}\": {} bodies, {} materials, {} cables, {} tets", robot->name, robot->bodies.size(),
-                    robot->materials.size(), robot->cables.size(), model->mesh().tet_count());
+    std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot->name, bodies(robot->bodies.size()),
+                                   counted(robot->materials.size(), "material"), counted(robot->cables.size(), "cable"),
+                                   counted(model->mesh().tet_count(), "tet"));
     for (const std::string& note : notes) text += "\n  note: " + note;
     return text;
 }
@@ -82,9 +87,10 @@ Result<std::string> check_job(const std::string& file, const Options& options) {
     const job::Manifest& manifest = job->archive.manifest();
     std::size_t images = 0;
     for (const job::Layer& layer : manifest.layers) images += layer.images.size();
-    std::string text = fmt::format(
-        "job \"{}\": {} layers, {} images, {} materials; its G-code prints what the manifest says{}", manifest.name,
-        manifest.layers.size(), images, manifest.materials.size(), other ? " on the " + other->name : "");
+    std::string text =
+        fmt::format("job \"{}\": {}, {}, {}; its G-code prints what the manifest says{}", manifest.name,
+                    counted(manifest.layers.size(), "layer"), counted(images, "image"),
+                    counted(manifest.materials.size(), "material"), other ? " on the " + other->name : "");
     for (const std::string& warning : job->warnings) text += "\n  warning: " + warning;
     return text;
 }
@@ -92,7 +98,7 @@ Result<std::string> check_job(const std::string& file, const Options& options) {
 Result<std::string> check_3mf(const std::string& file) {
     const Result<threemf::ThreeMf> read = threemf::read_3mf(file);
     if (!read) return tl::unexpected(read.error());
-    std::string text = fmt::format("3MF file: {} bodies", read->bodies.size());
+    std::string text = "3MF file: " + bodies(read->bodies.size());
     for (const threemf::Body& body : read->bodies) {
         text += body.slices.empty()
                     ? fmt::format("\n  {} ({}): {} triangles, {:.6g} mm^3", body.name, body.material,

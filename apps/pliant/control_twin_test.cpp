@@ -751,7 +751,7 @@ TEST_CASE("a skipped layer gets no light") {
     b.start();
     CHECK(b.snapshot().finished);
     CHECK(b.lights() == 8);
-    CHECK(has_event(b, "log", "the light of layer 3 is left out"));
+    CHECK(has_event(b, "log", "the light of layer 4 is left out"));
     CHECK(b.report().missing_layers == 1);
 }
 

@@ -266,7 +266,9 @@ public:
             fs::remove(folder_ / rest);
         Machine machine(job_.printer, folder_, wanted_.speed, release);
         Host host(wanted_, job_, machine.device(), folder_, false);
-        if (host.ends_within(print_s_ * 0.5)) return "the print ended before it was interrupted: " + said();
+        while (said().find("layer 1") == std::string::npos) {
+            if (host.ends_within(0.005)) return "the print ended before it was interrupted: " + said();
+        }
         host.interrupt();
         if (host.ends_within(between_s)) return "it did not wait to be parked: " + said();
         host.interrupt();

@@ -41,7 +41,6 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
     step.energy_J = system.potential_energy(state, controls);
     describe_actuators(model, system, state, x, step);
     if (model.contact() != nullptr) describe_contact(model, system, state, controls, step);
-    step.crossing_m = system.crossing(state, controls);
     for (std::size_t s = 0; s < d.springs.size(); ++s) {
         const SpringPath& spring = system.springs()[s];
         step.springs.push_back({d.springs[s].name, spring.length(x), spring.force(x)});

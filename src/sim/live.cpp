@@ -130,6 +130,7 @@ public:
         step.converged = loose_.empty();
         step.reason = loose_;
         sim::describe(model_, system_, state_, controls_, evaluation_, step);
+        step.crossing_m = system_.crossing(state_, controls_);
         return step;
     }
 

@@ -164,10 +164,24 @@ public:
         reported_ = {time_, state_};
     }
 
+    /// Whether surfaces have passed through each other: looked for in every 32nd step and the last, as a search takes
+    /// half as long as a step, and from one in which they have back to the last in which they had not.
+    void look_for_crossings(std::vector<Step>& steps, bool last) const {
+        constexpr int interval = 32;
+        const auto look = [&](Step& step) {
+            step.crossing_m = system_.crossing(state_of(step), system_.controls(step.time));
+            return step.crossing_m.has_value();
+        };
+        const std::size_t end = steps.size() - 1;
+        const bool crossed = end > 0 && steps[end - 1].crossing_m;
+        if (!program_.checks || (!last && !crossed && end % interval != 0)) return;
+        for (std::size_t k = end; k > 0 && look(steps[k]) && !steps[k - 1].crossing_m;) --k;
+    }
+
     /// At the end: whether the last state is stable, and those before a jump. Of the first that is not, the first step
     /// that was not is sought by halving; a look at every step would take as long as the steps.
     void judge_end(Trajectory& result) {
-        if (program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
+        if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
         before_jump_.push_back(result.steps.size() - 1);
         for (const std::size_t suspect : before_jump_) {
             if (!is_unstable(result.steps[suspect])) continue;
@@ -189,12 +203,18 @@ public:
     void evaluate_rest() { evaluation_ = system_.evaluate(state_, controls_); }
 
 private:
-    [[nodiscard]] bool is_unstable(const Step& step) {
+    /// What a step has told of its state, without multipliers.
+    [[nodiscard]] State state_of(const Step& step) const {
         State state = system_.rest();
         for (std::size_t n = 0; n < step.positions.size(); ++n) {
             const Vec3& p = step.positions[n];
             state.x.segment<3>(3 * static_cast<Eigen::Index>(n)) << p.x, p.y, p.z;
         }
+        return state;
+    }
+
+    [[nodiscard]] bool is_unstable(const Step& step) {
+        State state = state_of(step);
         Eigen::Index a = 0;
         for (const CableState& cable : step.cables) state.multiplier[a++] = cable.tension_N;
         for (const ChamberState& chamber : step.chambers) state.multiplier[a++] = -chamber.pressure_Pa;
@@ -501,9 +521,11 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
         step.wall_s = seconds_since(begin);
         result.solve_s += step.wall_s;
         result.steps.push_back(std::move(step));
+        walk.look_for_crossings(result.steps, false);
     }
     const auto end = std::chrono::steady_clock::now();
-    if (!progress.cancelled()) walk.judge_end(result);  // which takes as long as a few steps
+    walk.look_for_crossings(result.steps, true);
+    if (!progress.cancelled()) walk.judge_end(result);
     result.solve_s += seconds_since(end);
     add_warnings(result);
     result.iterations = walk.take_iterations();

@@ -27,6 +27,9 @@ struct Program {
     /// Where an equilibrium turns out to be unstable: it is left by this largest motion of a node, for the stable one
     /// that the energy then falls to. 0: only a warning.
     double imperfection_m = 0;
+    /// Whether the results are looked at for instability and for surfaces that cross, which takes as long as a few
+    /// steps. Off only to time the solver.
+    bool checks = true;
 };
 
 /// With dynamics, time is in seconds: the robot starts at rest and undeformed, and its mass and damping take part.
