@@ -110,7 +110,8 @@ TEST_CASE("JSON of another shape is refused with the key") {
     CHECK(refused_json(good.substr(0, good.size() / 2)).find("line") != std::string::npos);
     CHECK(refused_json("[]").find("an object is needed") != std::string::npos);
     CHECK(refused_json("3").find("an object is needed") != std::string::npos);
-    CHECK(refused_json(replaced(good, "\"format\": 1", "\"format\": 3")).find("only formats 1 and 2") != std::string::npos);
+    CHECK(refused_json(replaced(good, "\"format\": 1", "\"format\": 3")).find("only formats 1 and 2") !=
+          std::string::npos);
     CHECK(refused_json(replaced(good, "\"width_px\": 64", "\"width_px\": \"64\"")).find("width_px: a whole number") !=
           std::string::npos);
     CHECK(refused_json(replaced(good, "\"width_px\": 64", "\"width_px\": 6.4")).find("width_px: a whole number") !=
