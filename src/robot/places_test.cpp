@@ -6,6 +6,7 @@
 
 #include "core/files.hpp"
 #include "core/test_folder.hpp"
+#include "core/test_text.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/test_shapes.hpp"
 #include "mesh/tet_writer.hpp"
@@ -13,6 +14,7 @@
 
 using namespace pliant;
 using namespace pliant::robot;
+using pliant::test::replaced;
 using testing::Built;
 using testing::check_problem;
 
@@ -35,12 +37,6 @@ fixed = [
 marker = [{ name = "corner", point = [10, 10, 10] }]
 program = { steps = 2, tolerance = 1e-6 }
 )";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    return text.replace(at, from.size(), to);
-}
 
 Built build(const std::string& text) {
     return testing::build(parse_robot(text, "block.toml"));
