@@ -19,9 +19,10 @@ Response scene(Studio& studio, const Request&) {
 }
 
 Response frame(Studio& studio, const Request&) {
-    const auto packet = studio.simulation().last_frame();
-    if (!packet) return error_response(404, "no robot has been built yet");
-    return {200, "application/octet-stream", *packet};
+    // A robot that has just been built has no state yet: that is no error.
+    if (const auto packet = studio.simulation().last_frame()) return {200, "application/octet-stream", *packet};
+    if (studio.simulation().scene()) return {200, "application/octet-stream", ""};
+    return error_response(404, "no robot has been built yet");
 }
 
 Response nothing_yet() {

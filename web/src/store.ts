@@ -129,12 +129,13 @@ async function loadScene() {
   const response = await api('/api/scene');
   const loaded = readPacket<SceneHead>(await response.arrayBuffer());
   const frameResponse = await api('/api/frame');
-  const first = readPacket<FrameHead>(await frameResponse.arrayBuffer());
+  const bytes = await frameResponse.arrayBuffer();
+  const first = bytes.byteLength > 0 ? readPacket<FrameHead>(bytes) : null;
   batch(() => {
     const same = scene.value !== null && sameActuators(scene.value.head, loaded.head);
     sceneKnown = true;
     scene.value = loaded;
-    frame.value = first.head.revision === loaded.head.revision ? first : null;
+    frame.value = first?.head.revision === loaded.head.revision ? first : null;
     if (!same) wanted.value = Object.fromEntries(loaded.head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
     if (frame.value) adopt(frame.value.head);
   });
