@@ -12,8 +12,7 @@ namespace pliant::plan {
 
 /// Replays `gcode` on the machine's interlocks and fails unless
 ///   - every image of every layer is lit exactly once, layer by layer, as long as the manifest says, under the name
-///   that
-///     it has there, at the layer's height, over a vat that holds its material's resin and has not run dry,
+///     that it has there, at the layer's height, over a vat that holds its material's resin and has not run dry,
 ///   - the part rests before and after each light and is loosened and lifted after it as the printer file asks,
 ///   - between two vats the part is cleaned and dried: as long as asked for, with the strokes that are asked for,
 ///   - during a light no fan runs and no motor may let go,
