@@ -59,6 +59,7 @@ export const page = pageKey();
 let socket: WebSocket | null = null;
 let retry = 250;
 let sceneKnown = false; // frames are of a scene that this line has told of
+let early: Frame | null = null; // the last frame of a scene that is still on its way
 let fields: string[] = [];
 // Tags rise from page to page, so that a frame is never taken for the answer to another page's input.
 let tag = Math.floor(performance.timeOrigin % 5e8);
@@ -130,12 +131,17 @@ async function loadScene() {
   const loaded = readPacket<SceneHead>(await response.arrayBuffer());
   const frameResponse = await api('/api/frame');
   const bytes = await frameResponse.arrayBuffer();
-  const first = bytes.byteLength > 0 ? readPacket<FrameHead>(bytes) : null;
+  const fetched = bytes.byteLength > 0 ? readPacket<FrameHead>(bytes) : null;
+  // A robot that was built anew in the meantime has its own scene under way.
+  if (sceneKnown && scene.value !== null && loaded.head.revision < scene.value.head.revision) return;
+  const known = [fetched, early].filter((f) => f?.head.revision === loaded.head.revision) as Frame[];
+  const first = known.sort((a, b) => b.head.sequence - a.head.sequence)[0] ?? null;
+  early = null;
   batch(() => {
     const same = scene.value !== null && sameActuators(scene.value.head, loaded.head);
     sceneKnown = true;
     scene.value = loaded;
-    frame.value = first?.head.revision === loaded.head.revision ? first : null;
+    frame.value = first;
     if (!same) wanted.value = Object.fromEntries(loaded.head.actuators.map((a) => [a.name, { kind: a.kind, value: restValue(a.kind) }]));
     if (frame.value) adopt(frame.value.head);
   });
@@ -190,7 +196,11 @@ function receiveText(text: string) {
 
 function receiveFrame(buffer: ArrayBuffer) {
   const next = readPacket<FrameHead>(buffer);
-  if (!sceneKnown || scene.value === null || next.head.revision !== scene.value.head.revision) return;
+  // A robot at rest sends one frame and no other: it may be here before its scene is.
+  if (!sceneKnown || scene.value === null || next.head.revision !== scene.value.head.revision) {
+    early = next;
+    return;
+  }
   const now = performance.now();
   frameTimes.push(now);
   while (frameTimes.length > 0 && frameTimes[0] < now - 1000) frameTimes.shift();
@@ -210,6 +220,7 @@ function receiveFrame(buffer: ArrayBuffer) {
 /// again; what is not told is not so any more.
 function forget() {
   sceneKnown = false;
+  early = null;
   sentAt.clear();
   batch(() => {
     building.value = null;
