@@ -1,7 +1,9 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
-//   build/release/bench/pliant_speed [frames|cold|fingers|size [TETS [PNG]]]   all, or one table; sizes up to TETS, and
-//                                                                             a plot of them on one core and on two
+//   build/release/bench/pliant_speed [frames|cold|fingers|contact|size [TETS [PNG]]]   all, or one table; sizes up to
+//   TETS, and
+//                                                                                     a plot of them on one core and on
+//                                                                                     two
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -211,6 +213,69 @@ void fingers() {
     apart([&] { quadratic_finger(folder); });
 }
 
+/// Self-contact as a robot file's default has it.
+ContactRules default_contact(const Description& d) {
+    Box3 box;
+    for (const Vec3& p : d.mesh.points) box.add(p);
+    ContactRules rules{contact::robot_surface(d.mesh), {}, {}};
+    rules.settings.distance_m = 1e-3 * box.diagonal();
+    rules.settings.slip_m = 1e-2 * rules.settings.distance_m;
+    rules.settings.stiffness_Pa = 1e5;
+    return rules;
+}
+
+/// The same program with and without contact, by turns: medians, and the median of the ratios.
+void contact_of(const std::string& name, Description description, const Program& program) {
+    const auto without = Model::create(description);
+    description.contact = default_contact(description);
+    const auto with = Model::create(std::move(description));
+    std::vector<double> off, on, ratio;
+    bool converged = true, same = true;
+    for (int k = 0; k < 3 * repeats; ++k) {
+        const Trajectory a = solve(*without, program), b = solve(*with, program);
+        off.push_back(a.solve_s);
+        on.push_back(b.solve_s);
+        ratio.push_back(b.solve_s / a.solve_s);
+        converged &= a.converged && b.converged;
+        same &= tip(a) == tip(b);
+    }
+    const auto median = [](std::vector<double>& values) {
+        std::sort(values.begin(), values.end());
+        return values[values.size() / 2];
+    };
+    if (!converged) return fmt::print("| {} | did not converge |\n", name);
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {} |\n", name, without->mesh().tet_count(),
+               1e3 * median(off) / program.steps, 1e3 * median(on) / program.steps, median(ratio),
+               same ? "the same bits" : "other");
+}
+
+/// What contact costs where nothing touches.
+void contact_price() {
+    fmt::print(
+        "| frames | tets | without contact, ms | with, ms | ratio | tip |\n"
+        "|---|---|---|---|---|---|\n");
+    const auto row = [](const std::string& name, const std::function<Description()>& describe, double tolerance,
+                        int steps = 20) {
+        apart([&] { contact_of(name, describe(), {.steps = steps, .tolerance = tolerance}); });
+    };
+    row(
+        "bend", [] { return bench::two_material_bend(0.45, 1); }, 1e-3);
+    row(
+        "cable, 1 % each", [] { return bench::cable_bar(1); }, 1e-4);
+    row(
+        "chamber", [] { return bench::air_bar(); }, 1e-4);
+    row(
+        "cable, 1 % each, quadratic", [] { return bench::cable_bar(2); }, 1e-4);
+    const char* folder = std::getenv("PLIANT_REFERENCE_DATA");
+    if (folder == nullptr) return;
+    const auto finger = [&] {
+        Description description = bench::finger_7k(folder);
+        description.cables[0].target.value = 2e-2;
+        return description;
+    };
+    row("finger, 0.5 mm each", finger, 1e-4, 40);
+}
+
 struct Cells {
     int along, across;
     [[nodiscard]] double tets() const { return 6.0 * along * across * across; }
@@ -285,5 +350,6 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "frames") frames();
     if (only.empty() || only == "cold") cold();
     if (only.empty() || only == "fingers") fingers();
+    if (only.empty() || only == "contact") contact_price();
     if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5, argc > 3 ? argv[3] : "");
 }

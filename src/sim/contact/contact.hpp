@@ -26,6 +26,7 @@
 #include "sim/contact/box_tree.hpp"
 #include "sim/contact/ccd.hpp"
 #include "sim/contact/friction.hpp"
+#include "sim/contact/regions.hpp"
 #include "sim/contact/surface.hpp"
 
 namespace pliant::sim::contact {
@@ -123,6 +124,7 @@ private:
         Surface surface;
         SurfaceAreas areas;
         BoxTree points, edges, triangles;
+        std::shared_ptr<const Regions> regions;
     };
     struct Plane {
         int node, obstacle;
@@ -135,6 +137,11 @@ private:
     Contact();
     /// What is near at x and along dx, if the last states suggest that it is worth knowing; else null.
     [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
+    /// True only if nothing is within its reach at x, nor comes too near on the way along dx, and the last states tell.
+    [[nodiscard]] bool is_clear(std::span<const double> x, std::span<const double> dx) const;
+    /// Finds out how far apart everything is at x, where nothing is within its reach, if the last states suggest that
+    /// it is worth knowing.
+    void note_clearance(std::span<const double> x) const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
     void add_obstacles();
     void draw_in_obstacles();
@@ -155,6 +162,7 @@ private:
     std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
     std::vector<double> rest_;
     int robot_nodes_ = 0;
+    double seen_m_ = 0;      ///< how far a look at what is near goes, where it is to hold for many states
     double touching_m_ = 0;  ///< distances up to this are zero but for rounding
     Belonging belonging_;
     Side robot_, others_;

@@ -9,6 +9,11 @@ namespace pliant::sim::contact {
 
 namespace {
 
+// What is told to be clear is told for features this far apart: farther, and every look finds more of them, each point
+// with the triangles around it; nearer, and it holds for fewer states.
+constexpr double seen_edges = 0.5;
+constexpr double seen_distances = 2;
+
 Status check_settings(const Settings& s) {
     if (!(s.distance_m > 0) || !std::isfinite(s.distance_m))
         return input_error("contact: the distance must be a positive length");
@@ -57,6 +62,13 @@ BoxTree tree_of(const std::vector<Nodes>& features, std::span<const double> rest
     return BoxTree(boxes);
 }
 
+/// 0 without edges.
+double mean_edge(const Surface& surface, std::span<const double> rest) {
+    double sum = 0;
+    for (const auto& e : surface.edges) sum += norm(node_at(rest, e[0]) - node_at(rest, e[1]));
+    return sum / std::max(1.0, static_cast<double>(surface.edges.size()));
+}
+
 double diagonal(std::span<const double> rest) {
     Box3 box;
     for (std::size_t i = 0; i < rest.size() / 3; ++i) box.add(node_at(rest, static_cast<int>(i)));
@@ -71,6 +83,7 @@ Contact::Side Contact::make_side(Surface surface, std::span<const double> rest) 
     side.points = tree_of(surface.points, rest);
     side.edges = tree_of(surface.edges, rest);
     side.triangles = tree_of(surface.triangles, rest);
+    side.regions = std::make_shared<const Regions>(surface, rest);
     side.surface = std::move(surface);
     return side;
 }
@@ -91,6 +104,7 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.obstacles_ = std::move(obstacles);
     contact.touching_m_ = 1e-9 * diagonal(rest);
     contact.belonging_ = Belonging(robot, rest, contact.touching_m_);
+    contact.seen_m_ = std::max(seen_edges * mean_edge(robot, rest), seen_distances * settings.distance_m);
     contact.robot_ = make_side(std::move(robot), contact.rest_);
     contact.add_obstacles();
     if (const auto touched = contact.obstacle_touched_at_rest())

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "sim/contact/clearance.hpp"
 #include "sim/contact/contact.hpp"
 #include "sim/contact/intersection.hpp"
 
@@ -257,24 +259,22 @@ struct Contact::Memory {
         std::vector<double> x;
         Pairs pairs;
     } found;  ///< by the last find: a solver asks several times for one state
-    /// A state, and how far each node may be from it on any axis without anything coming within reach.
+
+    /// Where nothing was near, and how useful that was to know.
     struct {
-        std::vector<double> x;
-        double radius_m = 0;
-        [[nodiscard]] bool holds(std::span<const double> at, std::span<const double> dx) const {
-            return x.size() == at.size() && Nearby::are_within(x, at, dx, radius_m);
-        }
+        std::shared_ptr<const Clearance> known;
+        std::vector<double> end;  ///< a state that is known to be clear: where a step ended
+        int served = 0;           ///< calls that it has answered
+        int wait = 0;             ///< searches before it is worth trying again
+        int patience = 1;
     } clear;
 };
 
 namespace {
 
-/// How far a search for the way of a step looks, in distances at which forces act: what it sees tells how far nothing
-/// comes near afterwards.
-constexpr double look_out = 3;
-
-/// Of the least room of any pair: two nodes, each on three axes.
-constexpr double radius_share = 0.5 / 1.75;
+/// A clearance that answers fewer calls than this has cost more than it spared.
+constexpr int worth_knowing = 4;
+constexpr int most_patience = 64;
 
 }  // namespace
 
@@ -295,13 +295,76 @@ std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x
     return memory.nearby = std::make_shared<const Nearby>(*this, x);
 }
 
+bool Contact::is_clear(std::span<const double> x, std::span<const double> dx) const {
+    std::shared_ptr<const Clearance> known;
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (!memory_->clear.known) return false;
+        if (dx.empty() && std::ranges::equal(memory_->clear.end, x)) return true;
+        known = memory_->clear.known;
+    }
+    const bool holds = known->holds(x, dx);
+    const std::lock_guard lock(memory_->mutex);
+    auto& clear = memory_->clear;
+    if (holds) {
+        ++clear.served;
+        clear.end.assign(x.begin(), x.end());
+        for (std::size_t i = 0; i < dx.size(); ++i) clear.end[i] += dx[i];
+        return true;
+    }
+    if (clear.known != known) return false;
+    const bool paid = clear.served >= worth_knowing;
+    clear.patience = paid ? 1 : std::min(2 * clear.patience, most_patience);
+    clear.wait = paid ? 0 : clear.patience;
+    clear.known.reset();
+    clear.end.clear();
+    return false;
+}
+
+void Contact::note_clearance(std::span<const double> x) const {
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (memory_->clear.known || memory_->clear.wait-- > 0) return;
+    }
+    const std::array<Clearance::Side, 2> sides{
+        {{&robot_.surface, robot_.regions}, {&others_.surface, others_.regions}}};
+    const std::array<Clearance::Meeting, 2> meetings{{{0, 1}, {0, 0}}};
+    Clearance clearance(sides, std::span(meetings).first(settings_.self ? 2 : 1), x, seen_m_, settings_.distance_m);
+    struct Seen {
+        Search::Candidate candidate;
+        double now_m, rest_m;  ///< apart
+    };
+    const auto look = [&](const Search::Candidate& c, std::vector<Seen>& seen) {
+        if (c.distance_bound(x) >= seen_m_) return;
+        const double now = std::sqrt(c.squared_distance(x)), rest = std::sqrt(c.squared_distance(rest_));
+        if (now < seen_m_ && !belonging_.together(c.first_nodes(), c.second_nodes(), rest))
+            seen.push_back({c, now, rest});
+    };
+    const Search search(*this, x, {}, seen_m_, Search::What::pairs, settings_.self);
+    for (const std::vector<Seen>& piece : search.run(std::vector<Seen>{}, look)) {
+        for (const Seen& seen : piece) {
+            const int obstacle = obstacle_of(seen.candidate.nodes);
+            const bool robot_first = obstacle_of_node_[seen.candidate.nodes[0]] < 0;
+            const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
+            clearance.offer(obstacle < 0 ? 1 : 0, robot_first ? first : second, robot_first ? second : first,
+                            seen.now_m, reach(obstacle, seen.rest_m));
+        }
+    }
+    const std::lock_guard lock(memory_->mutex);
+    memory_->clear.known = std::make_shared<const Clearance>(std::move(clearance));
+    memory_->clear.end.assign(x.begin(), x.end());
+    memory_->clear.served = 0;
+}
+
 Pairs Contact::find(std::span<const double> x) const {
     {
         const std::lock_guard lock(memory_->mutex);
         if (std::ranges::equal(memory_->found.x, x)) return memory_->found.pairs;
-        if (planes_.empty() && memory_->clear.holds(x, {})) return {};
     }
-    Pairs pairs = search_pairs(x);
+    const bool clear = is_clear(x, {});
+    Pairs pairs = clear ? Pairs{} : search_pairs(x);
+    if (!clear && pairs.empty()) note_clearance(x);
+    find_planes(x, pairs);
     const std::lock_guard lock(memory_->mutex);
     memory_->found.x.assign(x.begin(), x.end());
     memory_->found.pairs = pairs;
@@ -325,7 +388,6 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
               : Search(*this, x, {}, most, Search::What::pairs, settings_.self).run(Pairs{}, consider);
     Pairs pairs;
     for (const Pairs& piece : pieces) pairs.insert(pairs.end(), piece.begin(), piece.end());
-    find_planes(x, pairs);
     return pairs;
 }
 
@@ -369,47 +431,21 @@ void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
 }
 
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    {
-        const std::lock_guard lock(memory_->mutex);
-        if (planes_.empty() && memory_->clear.holds(x, dx)) return 1;
-    }
-    const double margin = kept_share * settings_.distance_m, most = look_out * settings_.distance_m;
-    std::vector<double> end(x.begin(), x.end());
-    for (std::size_t i = 0; i < end.size(); ++i) end[i] += dx[i];
-    // What a pair may lose of its distance at the end without acting, nor ever coming to a tenth of what it was.
-    const auto room = [&](double apart_m, double reach_m) { return std::min(apart_m - reach_m, 0.5 * apart_m); };
-    struct Found {
-        double step;
-        double room_m;  ///< the least of all pairs
-    };
-    const auto measure = [&](const Search::Candidate& c, Found& found) {
-        if (room(c.distance_bound(end), settings_.distance_m) >= found.room_m) return;
-        const double apart = std::sqrt(c.squared_distance(rest_));
-        const double left = room(std::sqrt(c.squared_distance(end)), reach(obstacle_of(c.nodes), apart));
-        if (left < found.room_m && !belonging_.together(c.first_nodes(), c.second_nodes(), apart)) found.room_m = left;
-    };
-    const auto limit = [&](const Search::Candidate& c, Found& found) {
-        if (found.room_m > 0) measure(c, found);
+    const double free = largest_plane_step(x, dx);
+    if (is_clear(x, dx)) return free;
+    const double margin = kept_share * settings_.distance_m;
+    const auto limit = [&](const Search::Candidate& c, double& step) {
         if (!c.comes_near(x, dx, margin)) return;
-        const double t = contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx),
-                                               kept_share, found.step);
-        if (t < found.step &&
-            !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
-            found.step = t;
+        const double t =
+            contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
+        if (t < step && !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
+            step = t;
     };
-    // What is near already is not told further than forces act.
     const auto known = nearby(x, dx);
-    Found all{largest_plane_step(x, dx), known ? 0 : room(most, settings_.distance_m)};
-    const std::vector<Found> pieces =
-        known ? known->run(all, limit)
-              : Search(*this, x, dx, most, Search::What::pairs, settings_.self).run(all, limit);
-    for (const Found& piece : pieces) all = {std::min(all.step, piece.step), std::min(all.room_m, piece.room_m)};
-    if (all.room_m > 0) {
-        const std::lock_guard lock(memory_->mutex);
-        memory_->clear.x = std::move(end);
-        memory_->clear.radius_m = radius_share * all.room_m;
-    }
-    return all.step;
+    const std::vector<double> steps =
+        known ? known->run(free, limit)
+              : Search(*this, x, dx, margin, Search::What::pairs, settings_.self).run(free, limit);
+    return std::accumulate(steps.begin(), steps.end(), free, [](double a, double b) { return std::min(a, b); });
 }
 
 double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {

@@ -208,9 +208,9 @@ TEST_CASE(
     };
     std::mt19937 random(12);
     std::size_t pairs = 0;
-    for (int k = 0; k < 60; ++k) {
-        // Mostly near the last state, at times far from it, and back.
-        const double drop = 1.5e-3 + (k % 9 == 8 ? 4e-4 : 0) + 5e-6 * k;
+    for (int k = 0; k < 90; ++k) {
+        // Clear of each other at first, then mostly near the last state, at times far from it, and back.
+        const double drop = k < 30 ? 4e-5 * k : 1.5e-3 + (k % 9 == 8 ? 4e-4 : 0) + 5e-6 * (k - 30);
         const Vector x = approached(contact, 125, drop, k % 9 == 5 ? 3e-4 : 2e-5, 30 + k);
         pairs += check_pairs(x);
         Vector dx(x.size());
