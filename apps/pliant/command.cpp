@@ -3,20 +3,19 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <string>
 
 #include "interrupt.hpp"
+#include "progress_text.hpp"
 
 namespace pliant::app {
 namespace {
 
 class TerminalProgress final : public Progress {
 public:
-    explicit TerminalProgress(bool visible) : visible_(visible), start_(std::chrono::steady_clock::now()) {
-        on_signal(OnSignal::ask);
-    }
+    explicit TerminalProgress(bool visible) : visible_(visible), start_(Clock::now()) { on_signal(OnSignal::ask); }
     ~TerminalProgress() override {
         if (shown_) std::fputs("\r\033[K", stderr);
         on_signal(OnSignal::end);
@@ -25,23 +24,27 @@ public:
     TerminalProgress& operator=(const TerminalProgress&) = delete;
 
     void advance(std::string_view stage, double fraction) override {
-        using namespace std::chrono;
-        const auto now = steady_clock::now();
-        if (!visible_ || now - start_ < seconds(1) || now - last_ < milliseconds(100)) return;
+        const auto now = Clock::now();
+        if (stage != stage_) {
+            stage_ = stage;
+            stage_start_ = now;
+        }
+        if (!visible_ || now - start_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(100)) return;
         last_ = now;
         shown_ = true;
-        const int filled = static_cast<int>(30 * std::clamp(fraction, 0.0, 1.0));
-        fmt::print(stderr, "\r\033[K{:>9} [{:<30}] {:3.0f} %", stage,
-                   std::string(static_cast<std::size_t>(filled), '='), 100 * fraction);
+        const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
+        fmt::print(stderr, "\r\033[K{}", progress_line(stage_, fraction, elapsed_s));
         std::fflush(stderr);
     }
     [[nodiscard]] bool cancelled() const override { return interrupted(); }
 
 private:
+    using Clock = std::chrono::steady_clock;
+
     bool visible_;
     bool shown_ = false;
-    std::chrono::steady_clock::time_point start_;
-    std::chrono::steady_clock::time_point last_;
+    std::string stage_;
+    Clock::time_point start_, stage_start_, last_;
 };
 
 }  // namespace

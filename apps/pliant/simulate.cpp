@@ -66,7 +66,7 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     simulation.obstacles = report::obstacles_of(model, trajectory);
     if (report::has_contact(trajectory)) {
         simulation.contact_pressure_Pa = [&model](const sim::Step& step) {
-            return sim::contact_pressure(model, step.positions, step.time);
+            return sim::contact_pressure(model, step);
         };
     }
     simulation.tolerance = robot.program.tolerance;
@@ -94,7 +94,7 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
         fmt::print("obstacle {}: presses on the robot with ({:.4f}, {:.4f}, {:.4f}) N\n", c.name, c.force_N.x,
                    c.force_N.y, c.force_N.z);
     }
-    if (model.contact() != nullptr && last.self_contact_N > 0) {
+    if (last.self_contact_N > 0) {
         fmt::print("self-contact: {:.4f} N in all, nearest {:.4f} mm\n", last.self_contact_N,
                    1e3 * last.smallest_distance_m);
     }

@@ -29,13 +29,14 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
 }  // namespace
 
 Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
-    if (!robot.contact || (!robot.contact->self && robot.obstacles.empty())) return std::nullopt;
-    const ContactSpec& spec = *robot.contact;
+    const ContactSpec spec = robot.contact.value_or(ContactSpec{});
+    if (!spec.self && robot.obstacles.empty()) return std::nullopt;
     Box3 box;
     for (const Vec3& p : bodies.points) box.add(p);
     sim::ContactRules rules;
     rules.surface = sim::contact::robot_surface(bodies);
     rules.settings.self = spec.self;
+    rules.self_when_met = !robot.contact;
     rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : distance_share * box.diagonal();
     rules.settings.slip_m = spec.slip > 0 ? spec.slip * robot.unit_m : slip_share * rules.settings.distance_m;
     rules.settings.stiffness_Pa = spec.stiffness_Pa.value_or(stiffness_share * softest_Pa(robot));

@@ -9,8 +9,9 @@
 
 namespace pliant::robot {
 
-/// `bodies`: the tets that carry material, metres. Nothing where the file has neither [contact] nor an obstacle,
-/// or switches contact with itself off and has no obstacle. Errors name the obstacle and its line.
+/// `bodies`: the tets that carry material, metres. Where the file has neither [contact] nor an obstacle, the robot
+/// touches itself from the moment on in which it would pass through itself. Nothing where contact with itself is
+/// switched off and there is no obstacle. Errors name the obstacle and its line.
 [[nodiscard]] Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies);
 
 }  // namespace pliant::robot

@@ -36,7 +36,7 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
     if (robot.program.dynamics) return {};
     const auto motion = sim::free_motion(description);
     if (!motion) return {};
-    if (!description.contact)
+    if (!robot.contact)
         return input_error("{}: {}; cables, chambers, loads and gravity do not count as supports", robot.file.string(),
                            *motion);
     description.notes.push_back(*motion + "; at rest only contact can hold it");

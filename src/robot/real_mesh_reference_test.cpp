@@ -170,10 +170,14 @@ steps = 20
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }
 
-TEST_CASE("pulled by 60 mm the coarse finger passes through itself and says so; with contact it presses on itself") {
+TEST_CASE("pulled by 60 mm the coarse finger presses on itself; without contact it passes through itself and says so") {
     std::string text = finger("finger.vtk", 1, 24);
     text.replace(text.find("50 mm"), 5, "60 mm");
-    const sim::Trajectory touching = simulate(text + "[contact]\n"), through = simulate(text);
+    const sim::Trajectory touching = simulate(text), always = simulate(text + "[contact]\n");
+    const sim::Trajectory through = simulate(text + "[contact]\nself = false\n");
+    REQUIRE_MESSAGE(always.converged, always.message);
+    CHECK(always.steps.back().cables[0].tension_N == doctest::Approx(5.87).scale(0).epsilon(0.01));
+    for (const sim::Step& step : touching.steps) CHECK(step.met == (step.index >= 23));
     REQUIRE_MESSAGE(touching.converged, touching.message);
     REQUIRE_MESSAGE(through.converged, through.message);
     CHECK(touching.warnings.empty());

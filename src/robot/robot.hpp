@@ -213,7 +213,7 @@ struct Robot {
     std::vector<SpringSpec> springs;
     std::vector<ChamberSpec> chambers;
     std::vector<GapSpec> gaps;
-    std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle; else by default
+    std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle
     std::vector<ObstacleSpec> obstacles;
     std::vector<MarkerSpec> markers;
     Vec3 gravity_m_s2;

@@ -113,7 +113,9 @@ private:
     }
 
     Status check() {
-        if (d_.contact) return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
+        // What waits until the robot meets itself is left out: a deck is for robots that do not.
+        if (d_.contact && !(d_.contact->self_when_met && d_.contact->obstacles.empty()))
+            return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
         if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs");

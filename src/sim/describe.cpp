@@ -40,7 +40,8 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
     step.min_J = evaluation.min_J;
     step.energy_J = system.potential_energy(state, controls);
     describe_actuators(model, system, state, x, step);
-    if (model.contact() != nullptr) describe_contact(model, system, state, controls, step);
+    step.met = controls.met;
+    if (model.contact(controls.met) != nullptr) describe_contact(model, system, state, controls, step);
     for (std::size_t s = 0; s < d.springs.size(); ++s) {
         const SpringPath& spring = system.springs()[s];
         step.springs.push_back({d.springs[s].name, spring.length(x), spring.force(x)});

@@ -170,6 +170,7 @@ double Equilibrium::wanted_ratio(std::size_t actuator, double time) const {
 Controls Equilibrium::controls(double time, std::span<const double> stretch) const {
     Controls controls;
     controls.time = time;
+    controls.met = met_;
     controls.external_N = external_at(time);
     controls.laws = laws_at(stretch);
     controls.shares.resize(actuators_.size());
@@ -327,7 +328,7 @@ std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const 
 }
 
 Eigen::VectorXd Equilibrium::obstacles_at(double time) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = model_->contact(true);
     if (contact == nullptr) return {};
     const int first = contact->robot_node_count();
     Eigen::VectorXd positions(3 * (contact->node_count() - first));
@@ -343,7 +344,7 @@ Eigen::VectorXd Equilibrium::obstacles_at(double time) const {
 }
 
 double Equilibrium::contact_energy(const Eigen::VectorXd& x, const Controls& controls) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return 0;
     const std::vector<double> all = with_obstacles(x, controls.obstacles);
     return contact->energy(contact->find(all), all) + (controls.friction ? controls.friction->energy(all) : 0);
@@ -351,7 +352,7 @@ double Equilibrium::contact_energy(const Eigen::VectorXd& x, const Controls& con
 
 void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
                               double& energy) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return;
     const std::vector<double> all = with_obstacles(x, controls.obstacles);
     const contact::Pairs pairs = contact->find(all);
@@ -367,7 +368,7 @@ void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls
 
 double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
                                  const Eigen::VectorXd& obstacle_motion) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return 1;
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(controls.obstacles.size());
     return contact->largest_step(with_obstacles(x, controls.obstacles),
@@ -377,7 +378,7 @@ double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd
 std::shared_ptr<const contact::Friction> Equilibrium::freeze_friction(const State& state, const State& start,
                                                                       const Controls& controls,
                                                                       const Controls& start_controls) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return nullptr;
     const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
     return std::make_shared<const contact::Friction>(
@@ -392,21 +393,34 @@ bool Equilibrium::has_friction() const {
                        [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
 }
 
+bool Equilibrium::meets_itself(const State& state, const Controls& now, const State& next, const Controls& then) const {
+    if (then.met || model_->contact(true) == model_->contact(false)) return false;
+    const contact::Contact& contact = *model_->contact(true);
+    const std::vector<double> x = with_obstacles(state.x, now.obstacles);
+    const std::vector<double> end = with_obstacles(next.x, then.obstacles);
+    std::vector<double> motion(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) motion[i] = end[i] - x[i];
+    if (contact.largest_step(x, motion) < 1) return true;
+    (void)contact.find(end);  // where nothing is near, contact remembers how far everything is
+    return false;
+}
+
 std::optional<Vec3> Equilibrium::crossing(const State& state, const Controls& controls) const {
-    if (model_->contact() != nullptr && model_->contact()->settings().self) return std::nullopt;
+    if (const auto* contact = model_->contact(true); contact != nullptr && contact->settings().self)
+        return std::nullopt;
     const auto found = model_->surfaces().crossing(with_obstacles(state.x, controls.obstacles));
     return found ? std::optional(found->point_m) : std::nullopt;
 }
 
 contact::Forces Equilibrium::contact_forces(const State& state, const Controls& controls) const {
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
     return contact->forces(contact->find(x), x, controls.friction.get());
 }
 
 std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls) const {
     std::vector<std::vector<int>> cliques;
-    const contact::Contact* contact = model_->contact();
+    const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return cliques;
     const auto add = [&](std::span<const int> nodes) {
         std::vector<int> clique;
@@ -446,7 +460,7 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
     for (const SpringPath& spring : springs_)
         spring.add_hessian(view(state.x), model_->free_index(), pattern, values, project);
     if (controls.inertia) controls.inertia->add_hessian(pattern, values);
-    if (const contact::Contact* contact = model_->contact()) {
+    if (const contact::Contact* contact = this->contact(controls)) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
         const auto& free_index = model_->free_index();
         const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {

@@ -29,6 +29,7 @@ struct Controls {
     Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) where the obstacles are
     /// Friction as frozen at some state of this step; none before contact.
     std::shared_ptr<const contact::Friction> friction = nullptr;
+    bool met = false;  ///< the robot has met itself: where its contact with itself waits for that, it acts
     std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
 };
 
@@ -120,6 +121,12 @@ public:
                                                                            const Controls& start_controls) const;
     /// True if something rubs.
     [[nodiscard]] bool has_friction() const;
+    /// Where contact of the robot with itself waits until it is needed: true if on the straight way between two states
+    /// its surfaces come so near each other that it is. `now`: the controls of `state`.
+    [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,
+                                    const Controls& then) const;
+    /// From now on controls() say that the robot has met itself, or has not.
+    void set_met(bool met) { met_ = met; }
     /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
     /// looked for.
     [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
@@ -163,6 +170,9 @@ private:
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
     /// Energy of an actuator whose measure is not driven, at measure g > 0.
     [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
+    [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
+        return model_->contact(controls.met);
+    }
     /// Robot nodes, then those of the obstacles: what contact knows as x.
     [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
@@ -183,6 +193,7 @@ private:
     std::vector<bool> grows_;        ///< (actuators) drives target shapes, and has no force of its own
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
     bool conservative_ = true;
+    bool met_ = false;        ///< the robot has met itself
     double force_floor_ = 0;  ///< forces below this are rounding, not load
     double energy_rounding_ = 0;
     double force_rounding_ = 0;  ///< out of balance by no more than this is in balance

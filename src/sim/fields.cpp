@@ -6,6 +6,7 @@
 #include "core/parallel.hpp"
 #include "sim/elements.hpp"
 #include "sim/model.hpp"
+#include "sim/trajectory.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -41,7 +42,7 @@ Fields compute_fields(const Model& model, std::span<const Vec3> positions) {
 }
 
 std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> positions, double time) {
-    const contact::Contact* contact = model.contact();
+    const contact::Contact* contact = model.contact(true);
     std::vector<double> x = contact->rest();
     for (std::size_t n = 0; n < positions.size(); ++n) {
         for (std::size_t c = 0; c < 3; ++c) x[3 * n + c] = positions[n][c];
@@ -56,10 +57,11 @@ std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> posi
     return x;
 }
 
-std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time) {
-    const contact::Contact* contact = model.contact();
-    if (contact == nullptr) return {};
-    const std::vector<double> x = contact_nodes(model, positions, time);
+std::vector<double> contact_pressure(const Model& model, const Step& step) {
+    if (model.contact(true) == nullptr) return {};
+    const contact::Contact* contact = model.contact(step.met);
+    if (contact == nullptr) return std::vector<double>(step.positions.size(), 0.0);
+    const std::vector<double> x = contact_nodes(model, step.positions, step.time);
     return contact->forces(contact->find(x), x, nullptr).pressure_Pa;
 }
 

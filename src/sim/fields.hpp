@@ -9,6 +9,7 @@
 namespace pliant::sim {
 
 class Model;
+struct Step;
 
 struct Fields {
     std::vector<double> J;                  ///< (m), det F
@@ -24,8 +25,8 @@ struct Fields {
 /// of the program. Precondition: something can touch.
 [[nodiscard]] std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> positions, double time);
 
-/// Normal pressure of all contacts at the nodes, (n) Pa: 0 inside and where nothing is near. Empty where nothing can
-/// touch.
-[[nodiscard]] std::vector<double> contact_pressure(const Model& model, std::span<const Vec3> positions, double time);
+/// Normal pressure of all contacts at the nodes after a step, (n) Pa: 0 inside and where nothing is near. Empty where
+/// nothing can touch.
+[[nodiscard]] std::vector<double> contact_pressure(const Model& model, const Step& step);
 
 }  // namespace pliant::sim

@@ -77,6 +77,7 @@ public:
 
     void return_to_rest() {
         state_ = system_.rest();
+        system_.set_met(false);
         place_ = {0, target_at(0).drives, Eigen::Vector3d::Zero()};
         controls_ = system_.controls(0);
         evaluation_ = system_.evaluate(state_, controls_);
@@ -136,7 +137,7 @@ public:
 
     [[nodiscard]] std::vector<std::string> closed_gaps() const {
         std::vector<std::string> warnings;
-        if (model_.contact() != nullptr && model_.contact()->settings().self) return warnings;
+        if (const auto* contact = model_.contact(true); contact != nullptr && contact->settings().self) return warnings;
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             const int segment = system_.actuators()[c].cable().closed_segment(view(state_.x));
             if (segment >= 0) warnings.push_back(closed_gap_text(model_.description().cables[c].name, segment));
@@ -224,6 +225,11 @@ private:
                 outcome = solve(controls, state, progress, std::move(known));
                 result.iterations += outcome.iterations;
                 reason = outcome.converged ? "" : outcome.reason;
+            }
+            if (reason.empty() && system_.meets_itself(state_, controls_, state, controls)) {
+                system_.set_met(true);
+                controls_.met = true;
+                continue;
             }
             if (reason.empty()) {
                 accept(next, std::move(controls), std::move(state), std::move(outcome));

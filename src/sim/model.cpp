@@ -225,11 +225,15 @@ Result<contact::Contact> surfaces_without_contact(const Description& d) {
                                     numbers_of(d.mesh.points));
 }
 
-Result<contact::Contact> create_contact(const Description& d) {
+Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, bool self) {
     const std::vector<double> rest = numbers_of(d.mesh.points);
     std::vector<contact::Obstacle> obstacles;
     for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
-    return contact::Contact::create(d.contact->surface, std::move(obstacles), d.contact->settings, rest);
+    contact::Settings settings = d.contact->settings;
+    settings.self = self;
+    auto contact = contact::Contact::create(d.contact->surface, std::move(obstacles), settings, rest);
+    if (!contact) return tl::unexpected(contact.error());
+    return std::make_unique<contact::Contact>(std::move(*contact));
 }
 
 }  // namespace
@@ -262,16 +266,29 @@ Result<Model> Model::create(Description description) {
     Result<Elements> elements = Elements::create(model.description_);
     if (!elements) return tl::unexpected(elements.error());
     model.elements_ = std::make_unique<Elements>(std::move(*elements));
-    if (model.description_.contact) {
-        Result<contact::Contact> contact = create_contact(model.description_);
-        if (!contact) return tl::unexpected(contact.error());
-        model.contact_ = std::make_unique<contact::Contact>(std::move(*contact));
-    } else {
-        Result<contact::Contact> surfaces = surfaces_without_contact(model.description_);
-        if (!surfaces) return tl::unexpected(surfaces.error());
-        model.surfaces_ = std::make_unique<contact::Contact>(std::move(*surfaces));
-    }
+    if (status = model.make_contact(); !status) return tl::unexpected(status.error());
     return model;
+}
+
+Status Model::make_contact() {
+    const auto& rules = description_.contact;
+    const bool waits = rules && rules->settings.self && rules->self_when_met;
+    if (rules && (!waits || !rules->obstacles.empty())) {
+        auto contact = create_contact(description_, rules->settings.self && !waits);
+        if (!contact) return tl::unexpected(contact.error());
+        contact_ = std::move(*contact);
+    }
+    if (waits) {
+        auto contact = create_contact(description_, true);
+        if (!contact) return tl::unexpected(contact.error());
+        // What crosses at rest can never be told from what meets.
+        if (!(*contact)->crossing_at_rest()) met_ = std::move(*contact);
+    }
+    if (contact_ || met_) return {};
+    Result<contact::Contact> surfaces = surfaces_without_contact(description_);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    surfaces_ = std::make_unique<contact::Contact>(std::move(*surfaces));
+    return {};
 }
 
 double CableTarget::at(double time) const {

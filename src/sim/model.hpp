@@ -154,6 +154,9 @@ struct Obstacle {
 struct ContactRules {
     contact::Surface surface;    ///< of the robot's bodies
     contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
+    /// With settings.self: the robot touches itself only from the first step on in which its surfaces would pass
+    /// through each other. Until then its contact with itself costs next to nothing and exerts no force.
+    bool self_when_met = false;
     std::vector<Obstacle> obstacles;
 };
 
@@ -195,11 +198,11 @@ public:
     [[nodiscard]] const Description& description() const { return description_; }
     [[nodiscard]] const mesh::TetMesh& mesh() const { return description_.mesh; }
     [[nodiscard]] const Elements& elements() const { return *elements_; }
-    /// Nothing where nothing can touch.
-    [[nodiscard]] const contact::Contact* contact() const { return contact_.get(); }
+    /// What touches, null if nothing can; `met`: after the robot has met itself, where contact waits for that.
+    [[nodiscard]] const contact::Contact* contact(bool met) const { return met && met_ ? met_.get() : contact_.get(); }
     /// The surfaces of the bodies, to see whether they have passed through each other; those of contact() where there
     /// is one.
-    [[nodiscard]] const contact::Contact& surfaces() const { return contact_ ? *contact_ : *surfaces_; }
+    [[nodiscard]] const contact::Contact& surfaces() const { return surfaces_ ? *surfaces_ : *contact(true); }
     [[nodiscard]] int node_count() const { return static_cast<int>(description_.mesh.points.size()); }
     [[nodiscard]] int free_count() const { return free_count_; }
     /// (n), index among the free nodes, or -1 for nodes that supports hold in all directions. Rollers count as free.
@@ -208,9 +211,11 @@ public:
 
 private:
     Model();
+    [[nodiscard]] Status make_contact();
     Description description_;
     std::unique_ptr<Elements> elements_;
     std::unique_ptr<contact::Contact> contact_;
+    std::unique_ptr<contact::Contact> met_;       ///< where contact of the robot with itself waits until it is needed
     std::unique_ptr<contact::Contact> surfaces_;  ///< where there is no contact
     std::unique_ptr<HeldNodes> held_;
     std::vector<int> free_index_;

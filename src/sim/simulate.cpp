@@ -80,6 +80,12 @@ public:
             if (!outcome.converged) stretch_ = stretch;
             step.iterations += outcome.iterations;
             note(outcome.history, step.index, target);
+            if (outcome.converged && system_.meets_itself(state_, controls_, next, solved_controls_)) {
+                system_.set_met(true);
+                controls_.met = true;
+                stretch_ = stretch;
+                continue;
+            }
             if (outcome.converged) {
                 if (program_.dynamics) remember(next, target - time_);
                 past_.push_back({time_, std::move(state_)});
@@ -131,7 +137,7 @@ public:
 
     /// A gap that has closed between two guide points: from here on the flanks would touch.
     void warn_of_closed_gaps(int step, std::vector<std::string>& warnings) {
-        if (model_.contact() != nullptr && model_.contact()->settings().self) return;
+        if (const auto* contact = model_.contact(true); contact != nullptr && contact->settings().self) return;
         const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             const int segment = system_.actuators()[c].cable().closed_segment(x);
@@ -379,7 +385,8 @@ private:
         if (possible && passes(next, controls)) return {};
         const std::string flaw(name(known.flaw));
         next = state_;
-        if (model_.contact() != nullptr && approach(system_, laplacian_, controls_, controls, next, progress)) {
+        if (model_.contact(controls.met) != nullptr &&
+            approach(system_, laplacian_, controls_, controls, next, progress)) {
             known = system_.evaluate(next, controls);
             if (known.possible()) return {};
         }

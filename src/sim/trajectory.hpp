@@ -81,6 +81,7 @@ struct Step {
     std::vector<ContactState> contacts;  ///< (obstacles)
     double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
     double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of what is near enough to act
+    bool met = false;                ///< the robot has met itself, where contact with itself waits for that
     std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
     std::vector<MarkerState> markers;
     std::vector<Vec3> positions;  ///< (n, 3)

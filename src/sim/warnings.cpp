@@ -32,8 +32,8 @@ std::vector<std::string> warnings_at_rest(const Model& model) {
     if (const auto crossing = model.surfaces().crossing_at_rest())
         warnings.push_back(fmt::format(
             "the robot passes through itself already at rest, {}: {}", near(crossing->point_m),
-            model.contact() != nullptr ? "what crosses there does not touch, and what is next to it may get stuck"
-                                       : "self-contact is off"));
+            model.contact(true) != nullptr ? "what crosses there does not touch, and what is next to it may get stuck"
+                                           : "self-contact is off"));
     return warnings;
 }
 
