@@ -35,6 +35,7 @@ constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
 constexpr double sudden = 5;         // times as far as in the step before
 constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
+constexpr double long_first = 0.03;  // likewise: no step before tells whether the first one is sudden
 constexpr int most_pushes = 5;
 constexpr double growth_tolerance = 1e-4;
 constexpr int growth_rounds = 1000;
@@ -229,13 +230,15 @@ private:
         return stability_.falling_motion(state, controls).has_value();
     }
 
-    /// A step that is much quicker than the one before it is looked at closely.
+    /// A step that is much quicker than the one before it, or a long first one, is looked at closely.
     [[nodiscard]] bool jumped(const Progress& progress) {
         const double way = (state_.x - reported_.state.x).norm();
         const double before = std::exchange(last_way_, way);
         if (!stability_.can_judge() || system_.has_cable_friction() || system_.has_friction()) return false;
         const double reach = std::sqrt(static_cast<double>(state_.x.size() / 3)) * size_;
-        if (!(before > 0) || way < sudden * before || way < noticeable * reach) return false;
+        const bool first = !(before > 0);
+        if (first ? !program_.checks || way < long_first * reach : way < sudden * before || way < noticeable * reach)
+            return false;
         return is_jump(reported_, {time_, state_}, [&](double time, State& state) {
             Controls controls = system_.controls(time);
             state = follow_supports(state, controls);

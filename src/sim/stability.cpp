@@ -229,8 +229,9 @@ bool is_jump(Moment before, Moment after, const std::function<bool(double time, 
         Moment middle{0.5 * (before.time + after.time), before.state};
         if (!solve(middle.time, middle.state)) return false;
         (distance(before, middle) > distance(middle, after) ? after : before) = std::move(middle);
+        if (!(distance(before, after) > most_of_it * whole)) return false;
     }
-    return distance(before, after) > most_of_it * whole;
+    return true;
 }
 
 }  // namespace pliant::sim
