@@ -4,19 +4,76 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
+
 #include "board.hpp"
 #include "command.hpp"
 #include "core/files.hpp"
 #include "host/serial.hpp"
 #include "host/steady_clock.hpp"
 #include "inputs.hpp"
+#include "machine/marlin_files.hpp"
 
 namespace pliant::app {
 namespace {
 
 struct Options {
-    std::string printer, release, save;
+    std::string printer, release, save, marlin, write;
 };
+
+/// A configuration file of Marlin in the folder of its source, or in that folder's Marlin.
+Result<machine::MarlinFile> read_marlin_file(const std::string& folder, const char* name) {
+    const std::filesystem::path root = folder;
+    for (const std::filesystem::path& path : {root / name, root / "Marlin" / name}) {
+        if (!std::filesystem::exists(path)) continue;
+        constexpr std::uintmax_t limit_bytes = 4 << 20;
+        Result<std::string> text = read_file(path, limit_bytes);
+        if (!text) return tl::unexpected(text.error());
+        return machine::MarlinFile{path.string(), std::move(*text)};
+    }
+    return input_error("--marlin {}: has neither {} nor Marlin/{}; give the folder of Marlin's source", folder, name,
+                       name);
+}
+
+constexpr const char* record_name = "pliant_settings.txt";
+
+/// Only a folder of an earlier run may be replaced: never Marlin's own, into which its files may have been copied.
+Status check_target(const std::filesystem::path& folder) {
+    std::error_code code;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+        const std::string name = entry.path().filename().string();
+        if (name != "Configuration.h" && name != "Configuration_adv.h" && name != record_name)
+            return input_error("--write {}: holds {} and is not overwritten; name a new folder", folder.string(), name);
+    }
+    return {};
+}
+
+Status write_marlin(const Options& options, const machine::Printer& printer) {
+    const auto settings = machine::firmware_settings(printer);
+    if (!settings) return input_error("{}: {}", options.printer, settings.error().message);
+    const auto configuration = read_marlin_file(options.marlin, "Configuration.h");
+    if (!configuration) return tl::unexpected(configuration.error());
+    const auto configuration_adv = read_marlin_file(options.marlin, "Configuration_adv.h");
+    if (!configuration_adv) return tl::unexpected(configuration_adv.error());
+    const auto files =
+        machine::configure_marlin(*settings, printer.controller.firmware, *configuration, *configuration_adv);
+    if (!files) return tl::unexpected(files.error());
+    if (Status status = check_target(options.write); !status) return status;
+    const Status status = write_folder(options.write, record_name, [&](const std::filesystem::path& folder) -> Status {
+        if (Status s = write_file(folder / "Configuration.h", files->configuration); !s) return s;
+        if (Status s = write_file(folder / "Configuration_adv.h", files->configuration_adv); !s) return s;
+        return write_file(folder / record_name, files->record);
+    });
+    if (!status) return status;
+    fmt::print(
+        "{}: Configuration.h and Configuration_adv.h of Marlin {} for {}: {} of {} settings changed, {} pins added\n",
+        options.write, machine::name_of(printer.controller.firmware), printer.name, files->changed, settings->size(),
+        files->added);
+    if (!files->author.empty())
+        fmt::print("note: {} is the work of {}; what the list does not name stays as it is there\n",
+                   configuration->path, files->author);
+    return {};
+}
 
 Status run_firmware(const Options& options) {
     Result<machine::Printer> printer = read_printer(options.printer);
@@ -28,6 +85,9 @@ Status run_firmware(const Options& options) {
                                fmt::join(machine::marlin_release_names, ", "));
         printer->controller.firmware = *release;
     }
+    if (options.write.empty() != options.marlin.empty())
+        return input_error("--write and --marlin go together: Marlin's own files in, files for the machine out");
+    if (!options.write.empty()) return write_marlin(options, *printer);
     const Result<std::string> ini = machine::firmware_ini(*printer);
     if (!ini) return input_error("{}: {}", options.printer, ini.error().message);
     if (!options.save.empty()) return write_file(options.save, *ini);
@@ -78,7 +138,11 @@ void add_firmware(CLI::App& app, int& status) {
     command->add_option("--release", options->release,
                         "release of Marlin: 2.1.1, 2.1.2 or 2.1.3 (default: controller.firmware of the printer file)");
     command->add_option("-o,--output", options->save, "file for the list (config.ini of Marlin)");
-    command->footer("Example: pliant firmware examples/printers/tower8.toml -o config.ini");
+    command->add_option("--marlin", options->marlin, "folder of that release's source, as downloaded");
+    command->add_option("--write", options->write, "folder for complete configuration files, ready to be compiled");
+    command->footer(
+        "Examples: pliant firmware examples/printers/tower8.toml -o config.ini\n"
+        "          pliant firmware examples/printers/tower8.toml --marlin Marlin-2.1.2.4 --write configured");
     on_call(*command, status, [options] { return run_firmware(*options); });
 }
 
