@@ -1,14 +1,17 @@
-// pliant calibrate: constants of materials from tests. `ratio` is the thesis' bar, `tensile` a measured curve.
+// pliant calibrate: constants of materials from tests. `tensile` is a measured curve, `elongation` a bar of two
+// materials, `ratio` that bar simulated.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <map>
 #include <vector>
 
+#include "calibrate/elongation.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/ratio.hpp"
 #include "command.hpp"
 #include "core/files.hpp"
+#include "core/units.hpp"
 #include "report/plot.hpp"
 
 namespace pliant::app {
@@ -141,6 +144,70 @@ Status run_tensile(TensileCommand& command) {
     return write_results(command, json, tensile_csv(test, *fit), tensile_plot(command, test, *fit));
 }
 
+struct ElongationCommand : Files {
+    std::string file;
+    std::string length, interface, elongation, joint;  ///< of one test, with units
+    bool match = false;
+
+    [[nodiscard]] bool one_test() const {
+        return !(length.empty() && interface.empty() && elongation.empty() && joint.empty());
+    }
+};
+
+Result<std::vector<calibrate::ElongationRow>> one_test(const ElongationCommand& command) {
+    calibrate::ElongationTest test;
+    const std::pair<const char*, std::pair<const std::string*, double*>> options[] = {
+        {"--length", {&command.length, &test.length_m}},
+        {"--interface", {&command.interface, &test.interface_m}},
+        {"--elongation", {&command.elongation, &test.elongation_m}},
+        {"--joint", {&command.joint, &test.joint_m}}};
+    for (const auto& [name, option] : options) {
+        if (option.first->empty()) return input_error("{} is missing; a test has four lengths", name);
+        const Result<double> value = parse_quantity(*option.first, Dimension::length);
+        if (!value) return input_error("{}: {}", name, value.error().message);
+        *option.second = *value;
+    }
+    const auto row = calibrate::evaluate(test);
+    if (!row) return input_error("--{}", row.error().message);
+    return std::vector<calibrate::ElongationRow>{*row};
+}
+
+Result<std::vector<calibrate::ElongationRow>> read_tests(const ElongationCommand& command) {
+    if (command.one_test() == !command.file.empty())
+        return input_error("give a table of tests, or --length, --interface, --elongation and --joint of one");
+    if (command.one_test()) return one_test(command);
+    const Result<std::string> text = read_file(command.file);
+    if (!text) return tl::unexpected(text.error());
+    return calibrate::parse_elongation_csv(*text, command.file);
+}
+
+report::Plot elongation_plot(const std::vector<calibrate::ElongationRow>& rows) {
+    report::Plot plot{"Ratio of moduli from elongation tests", "strain (%)", "R_m = E_A / E_B", {}};
+    report::Series linear{"T3.7: linear springs", {}, true}, true_one{"neo-Hookean parts", {}, true};
+    for (const calibrate::ElongationRow& row : rows) {
+        linear.points.push_back({100 * row.strain(), row.linear});
+        true_one.points.push_back({100 * row.strain(), row.neo_hookean});
+    }
+    plot.series = {linear, true_one};
+    return plot;
+}
+
+Status run_elongation(const ElongationCommand& command) {
+    auto rows = read_tests(command);
+    if (!rows) return tl::unexpected(rows.error());
+    const auto progress = terminal_progress(command.output);
+    for (std::size_t i = 0; command.match && i < rows->size(); ++i) {
+        if (progress->cancelled()) return cancelled();
+        progress->advance("match", static_cast<double>(i) / static_cast<double>(rows->size()));
+        const Result<double> match = calibrate::match_shape_parameter((*rows)[i].test);
+        if (!match) return tl::unexpected(match.error());
+        (*rows)[i].shape_parameter = *match;
+    }
+    const std::string json = calibrate::elongation_json(*rows);
+    print(command, calibrate::elongation_text(*rows), json);
+    return write_results(command, json, calibrate::elongation_csv(*rows), elongation_plot(*rows));
+}
+
 void add_files(CLI::App& command, Files& files) {
     command.add_option("-o,--output", files.folder, "folder for calibration.json, .csv and .png");
     add_output_options(command, files.output, true);
@@ -161,6 +228,21 @@ void add_ratio(CLI::App& parent, int& status) {
     add_files(*command, *c);
     command->footer("Example: pliant calibrate ratio --ratios 1,2,3.75,6,8 -o ratio");
     on_call(*command, status, [c] { return run_ratio(*c); });
+}
+
+void add_elongation(CLI::App& parent, int& status) {
+    auto c = std::make_shared<ElongationCommand>();
+    CLI::App* command = parent.add_subcommand("elongation", "ratio of two moduli from a bar of two materials (T3.7)");
+    command->add_option("data", c->file, "CSV: length, interface, elongation and joint, each with its unit");
+    command->add_option("--length", c->length, "of the bar at rest, as \"100 mm\"");
+    command->add_option("--interface", c->interface, "from the held end to the joint, at rest");
+    command->add_option("--elongation", c->elongation, "of the bar");
+    command->add_option("--joint", c->joint, "how far the joint moves");
+    command->add_flag("--match", c->match, "also the shape parameter with which the simulated bar does the same");
+    add_files(*command, *c);
+    command->footer(
+        "Example: pliant calibrate elongation --length 100mm --interface 50mm --elongation 30mm --joint 5.14mm");
+    on_call(*command, status, [c] { return run_elongation(*c); });
 }
 
 void add_tensile(CLI::App& parent, int& status) {
@@ -190,6 +272,7 @@ void add_calibrate(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("calibrate", "constants of materials from tests");
     command->require_subcommand(1);
     command->footer("Example: pliant calibrate tensile pull.csv --law yeoh");
+    add_elongation(*command, status);
     add_ratio(*command, status);
     add_tensile(*command, status);
 }

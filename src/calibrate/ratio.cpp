@@ -15,11 +15,30 @@ constexpr double length_m = 0.1;
 constexpr double width_m = 0.01;
 constexpr double soft_Pa = 12e6;  // only the ratio matters: no force is prescribed
 
+/// The cell boundary nearest to the interface, of those between the ends, as a share of the length.
+double interface_of_cells(const RatioOptions& options) {
+    const int cells = options.cells[0];
+    return std::clamp(static_cast<int>(std::lround(options.interface * cells)), 1, cells - 1) /
+           static_cast<double>(cells);
+}
+
+/// Cells end where the materials do: both parts of the bar are stretched so that a boundary of cells is the interface.
+void move_interface(mesh::TetMesh& mesh, const RatioOptions& options) {
+    const double from = interface_of_cells(options), to = options.interface;
+    if (std::fabs(from - to) < 1e-9) return;
+    for (Vec3& p : mesh.points) {
+        const double x = p.x / length_m;
+        p.x = length_m * (x <= from + 1e-9 ? x * to / from : 1 - (1 - x) * (1 - to) / (1 - from));
+    }
+}
+
 sim::Description bar(const RatioOptions& options, int order, material::Law stiff, material::Law soft) {
     const double interface = options.interface * length_m;
+    const double boundary = interface_of_cells(options) * length_m;
     sim::Description d;
     d.mesh = sim::reference::kuhn_box({length_m, width_m, width_m}, options.cells[0], options.cells[1],
-                                      options.cells[2], [&](Vec3 c) { return c.x < interface ? 0 : 1; });
+                                      options.cells[2], [&](Vec3 c) { return c.x < boundary ? 0 : 1; });
+    move_interface(d.mesh, options);
     if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
     d.materials = {{"stiff", stiff, 0}, {"soft", soft, 0}};
     d.material_of_region = {0, 1};
@@ -49,15 +68,7 @@ Status check(const RatioOptions& o) {
         if (!(ratio >= 1 && ratio <= 100))
             return input_error("--ratios: {} is not possible; a ratio is stiff over soft, 1 to 100", ratio);
     }
-    if (!(o.strain >= 1e-3 && o.strain <= 1)) return input_error("--strain: {} is not between 0.001 and 1", o.strain);
-    if (!(o.poisson_ratio >= 0 && o.poisson_ratio <= 0.495))
-        return input_error("--poisson: {} is not between 0 and 0.495", o.poisson_ratio);
-    if (std::any_of(o.cells.begin(), o.cells.end(), [](int n) { return n < 1 || n > 200; }))
-        return input_error("--cells: each number is between 1 and 200");
-    const double cells = o.interface * o.cells[0];
-    if (!(o.interface > 0 && o.interface < 1) || std::fabs(cells - std::round(cells)) > 1e-9)
-        return input_error("--interface: {} does not fall between two of {} cells", o.interface, o.cells[0]);
-    return {};
+    return check_bar(o);
 }
 
 std::optional<std::array<double, 3>> quadratic(const std::vector<RatioRow>& rows) {
@@ -76,6 +87,17 @@ std::optional<std::array<double, 3>> quadratic(const std::vector<RatioRow>& rows
 }
 
 }  // namespace
+
+Status check_bar(const RatioOptions& o) {
+    if (!(o.strain >= 1e-3 && o.strain <= 1)) return input_error("--strain: {} is not between 0.001 and 1", o.strain);
+    if (!(o.poisson_ratio >= 0 && o.poisson_ratio <= 0.495))
+        return input_error("--poisson: {} is not between 0 and 0.495", o.poisson_ratio);
+    if (std::any_of(o.cells.begin(), o.cells.end(), [](int n) { return n < 1 || n > 200; }) || o.cells[0] < 2)
+        return input_error("--cells: each number is between 1 and 200, the first above 1");
+    if (!(o.interface >= 0.02 && o.interface <= 0.98))
+        return input_error("--interface: {} is not between 0.02 and 0.98", o.interface);
+    return {};
+}
 
 Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio) {
     return interface_mm(options, bar(options, 2, material::neo_hookean(soft_Pa * material_ratio, options.poisson_ratio),

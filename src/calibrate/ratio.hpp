@@ -19,7 +19,7 @@ struct RatioOptions {
     std::vector<double> ratios;  ///< R_m = E_stiff / E_soft, each 1 or more
     double strain = 0.3;
     double poisson_ratio = 0.45;            ///< of the reference
-    double interface = 0.5;                 ///< where the stiff part ends, as a share of the length
+    double interface = 0.5;                 ///< where the stiff part ends, as a share of the length: 0.02 to 0.98
     std::array<int, 3> cells = {48, 5, 5};  ///< of the bar, six linear tets each; the reference has quadratic ones
 };
 
@@ -36,6 +36,9 @@ struct RatioResult {
     /// R_omega = c[0] R_m^2 + c[1] R_m + c[2], by least squares; where there are three ratios or more.
     std::optional<std::array<double, 3>> curve;
 };
+
+/// What a bar can be: strain, Poisson ratio, cells and interface, but no ratios.
+[[nodiscard]] Status check_bar(const RatioOptions& options);
 
 [[nodiscard]] Result<RatioResult> calibrate_ratio(const RatioOptions& options, Progress& progress);
 

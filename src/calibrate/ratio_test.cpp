@@ -47,6 +47,24 @@ TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio
     CHECK(*u == doctest::Approx(0.1 * soft / (1 + soft)).scale(0).epsilon(0.04));
 }
 
+TEST_CASE("the interface may lie anywhere: cells are stretched so that they end there") {
+    RatioOptions options = coarse();
+    for (const double interface : {0.3, 0.7}) {
+        options.interface = interface;
+        options.cells[0] = 20;  // a boundary of cells is there
+        const auto exact = reference_displacement_mm(options, 4);
+        REQUIRE(exact);
+        options.cells[0] = 24;  // 7.2 and 16.8 cells
+        CHECK(*reference_displacement_mm(options, 4) / *exact == doctest::Approx(1).epsilon(1e-2));
+    }
+    // Without stretched cells it would jump from one boundary to the next.
+    options.interface = 0.26;
+    const double a = *reference_displacement_mm(options, 4);
+    options.interface = 0.28;
+    const double b = *reference_displacement_mm(options, 4);
+    CHECK(b / a > 1.04);
+}
+
 TEST_CASE("three ratios make a curve through them") {
     RatioOptions options = coarse();
     options.ratios = {1, 2, 4};
@@ -75,6 +93,9 @@ TEST_CASE("bad options are refused") {
     options.poisson_ratio = 0.5;
     CHECK_FALSE(calibrate_ratio(options, silent));
     options.poisson_ratio = 0.45;
-    options.interface = 0.3;  // 3.6 of 12 cells
+    options.interface = 1;
+    CHECK_FALSE(calibrate_ratio(options, silent));
+    options.interface = 0.5;
+    options.cells[0] = 1;  // no boundary between the ends
     CHECK_FALSE(calibrate_ratio(options, silent));
 }

@@ -1,5 +1,6 @@
 #include "robot/material_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -34,10 +35,54 @@ bool check_poisson_ratio(Reader& reader, double nu) {
     return false;
 }
 
-material::Law read_shape_blend(Reader& reader, double E, double nu) {
+/// R_omega of a ratio of moduli, R_m >= 1, by the name of a map.
+double shape_parameter_by(Reader& reader, const std::string& map, double R_m) {
+    if (map == "calibrated") {
+        const std::vector<double> c = reader.numbers("shape_curve", 3);
+        if (c.size() != 3) return 1;
+        const double R = (c[0] * R_m + c[1]) * R_m + c[2];
+        if (!(R >= 1))
+            reader.problem("shape_curve", fmt::format("gives R_omega {:.4g} for R_m {:.4g}; it is 1 or more", R, R_m));
+        return std::max(1.0, R);
+    }
+    return map == "thesis" ? material::shape_parameter_of_thesis(R_m) : material::shape_parameter_small_strain(R_m);
+}
+
+/// R_omega from two moduli: that of the material, and that of the stiffest, whose target is rigid and whose modulus is
+/// then the weight of all.
+material::ShapeBlend read_named_blend(Reader& reader, double E) {
+    const std::string map = reader.choice("shape_parameter", {"thesis", "small-strain", "calibrated"});
+    if (map != "calibrated" && reader.has("shape_curve"))
+        reader.problem("shape_curve", "goes with shape_parameter = \"calibrated\"");
+    if (!reader.has("stiffest")) {
+        reader.problem("stiffest", "is missing; Young's modulus of the material that counts as rigid, as \"45 MPa\"");
+        return {1, 1};
+    }
+    const double stiffest = reader.quantity("stiffest", Dimension::pressure, E);
+    if (!(stiffest >= E)) {
+        reader.problem("stiffest", "is below youngs_modulus; the stiffest material counts as rigid");
+        return {1, 1};
+    }
+    return {stiffest, stiffest == E ? 1 : 1 / shape_parameter_by(reader, map, stiffest / E)};
+}
+
+material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
+    const double nu = material.poisson_ratio;
     if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
-    material::ShapeBlend blend = material::shape_blend(E, nu);
-    if (reader.has("shape_parameter")) {
+    const config::Value* given = reader.raw("shape_parameter");
+    if (given != nullptr && std::holds_alternative<std::string>(given->data)) {
+        const material::ShapeBlend blend = read_named_blend(reader, material.youngs_modulus_Pa);
+        material.poisson_ratio = material::poisson_ratio(material::moduli(blend));
+        return blend;
+    }
+    if (reader.has("stiffest")) {
+        (void)reader.raw("stiffest");
+        reader.problem("stiffest",
+                       "goes with a shape_parameter by name: \"thesis\", \"small-strain\" or "
+                       "\"calibrated\"");
+    }
+    material::ShapeBlend blend = material::shape_blend(material.youngs_modulus_Pa, nu);
+    if (given != nullptr) {
         // The thesis' way: one weight for all materials, R_omega tells them apart.
         const double R = reader.number("shape_parameter");
         if (!(R >= 1))
@@ -59,7 +104,7 @@ void read_two_moduli(Reader& reader, const std::string& law, MaterialSpec& mater
     if (law == "neo-hookean") material.law = material::neo_hookean(E, nu);
     if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
     if (law == "corotated") material.law = material::corotated(E, nu);
-    if (law == "shape-blend") material.law = read_shape_blend(reader, E, nu);
+    if (law == "shape-blend") material.law = read_shape_blend(reader, material);
 }
 
 /// Bulk modulus as given, or from the Poisson ratio at small strains. Precondition: shear_Pa > 0.

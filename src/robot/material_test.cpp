@@ -65,6 +65,37 @@ TEST_CASE("ogden, and corotated") {
     CHECK(std::holds_alternative<material::Corotated>(c.law));
 }
 
+TEST_CASE("shape-blend takes R_omega from two moduli, by the name of a map") {
+    const std::string soft = "[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = \"12 MPa\"\n";
+    const auto by = [&](const std::string& name) {
+        return std::get<material::ShapeBlend>(
+            material_of(soft + "stiffest = \"45 MPa\"\nshape_parameter = \"" + name + "\"").law);
+    };
+    CHECK(1 / by("thesis").a == doctest::Approx(0.114 * 3.75 * 3.75 + 1.665 * 3.75 - 0.766));
+    CHECK(1 / by("small-strain").a == doctest::Approx(5.125));
+    CHECK(1 / by("calibrated\"\nshape_curve = [0.1, 2, -1]#").a == doctest::Approx(0.1 * 3.75 * 3.75 + 2 * 3.75 - 1));
+    CHECK(by("thesis").weight_Pa == doctest::Approx(45e6));
+    // Of small strains its own modulus comes out again: the weight is the stiffest one's.
+    const material::Law law = by("small-strain");
+    CHECK(material::youngs_modulus(material::moduli(law)) == doctest::Approx(12e6));
+    const auto stiff = material_of(
+        "[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = \"45 MPa\"\nstiffest = \"45 MPa\"\n"
+        "shape_parameter = \"thesis\"");
+    CHECK(std::get<material::ShapeBlend>(stiff.law).a == 1);
+    CHECK(std::get<material::ShapeBlend>(stiff.law).weight_Pa == doctest::Approx(45e6));
+    CHECK(stiff.poisson_ratio == doctest::Approx(0));  // a rigid target keeps no volume
+    check_problem(soft + "shape_parameter = \"thesis\"", "stiffest: is missing");
+    check_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"10 MPa\"", "is below youngs_modulus");
+    check_problem(soft + "shape_parameter = \"T3.9\"\nstiffest = \"45 MPa\"", "small-strain");
+    check_problem(soft + "shape_parameter = 7\nstiffest = \"45 MPa\"", "goes with a shape_parameter by name");
+    check_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"", "shape_curve");
+    check_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 0.5]",
+                  "gives R_omega 0.5");
+    check_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 1]",
+                  "goes with shape_parameter = \"calibrated\"");
+    check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"", "nobody reads this key");
+}
+
 TEST_CASE("constants that do not fit their law") {
     check_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nyoungs_modulus = \"1 MPa\"",
                   "does not determine the constants of \"mooney-rivlin\"");
