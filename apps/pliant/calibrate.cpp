@@ -45,39 +45,86 @@ void print(const Files& files, const std::string& text, const std::string& json)
 struct RatioCommand : Files {
     calibrate::RatioOptions options;
     std::vector<int> cells = {48, 5, 5};
+    std::vector<double> interfaces = {0.5};
 };
 
-report::Plot ratio_plot(const calibrate::RatioResult& result) {
-    report::Plot plot{"Shape parameter of the soft half", "material ratio R_m", "R_omega", {}};
-    report::Series found{"found", {}, true};
+using RatioRuns = std::vector<std::pair<calibrate::RatioOptions, calibrate::RatioResult>>;
+
+/// Points of every interface beside the two formulas; of one interface its own curve too.
+report::Plot ratio_plot(const RatioRuns& runs) {
+    report::Plot plot{"Shape parameter of the soft part", "material ratio R_m", "R_omega", {}};
+    double most = 1;
+    for (const auto& [options, result] : runs) {
+        report::Series found{fmt::format("interface at {:g}", options.interface), {}, true};
+        for (const auto& row : result.rows) {
+            found.points.push_back({row.material_ratio, row.shape_parameter});
+            most = std::max(most, row.material_ratio);
+        }
+        plot.series.push_back(std::move(found));
+    }
     report::Series curve{"quadratic through them", {}, false};
     report::Series thesis{"T3.8", {}, false};
     report::Series small{"small strains, (3 R_m - 1) / 2", {}, false};
-    double most = 1;
-    for (const auto& row : result.rows) {
-        found.points.push_back({row.material_ratio, row.shape_parameter});
-        most = std::max(most, row.material_ratio);
-    }
+    const auto& c = runs.front().second.curve;
     for (int i = 0; i <= 100; ++i) {
         const double R = 1 + (most - 1) * i / 100;
-        if (result.curve)
-            curve.points.push_back({R, ((*result.curve)[0] * R + (*result.curve)[1]) * R + (*result.curve)[2]});
+        if (c) curve.points.push_back({R, ((*c)[0] * R + (*c)[1]) * R + (*c)[2]});
         thesis.points.push_back({R, material::shape_parameter_of_thesis(R)});
         small.points.push_back({R, material::shape_parameter_small_strain(R)});
     }
-    plot.series = {found, thesis, small};
-    if (result.curve) plot.series.insert(plot.series.begin() + 1, curve);
+    if (runs.size() == 1 && c) plot.series.push_back(curve);
+    plot.series.push_back(thesis);
+    plot.series.push_back(small);
     return plot;
+}
+
+/// The texts of one run as they are; of several one after the other, with the interface of each.
+std::string ratio_texts(const RatioRuns& runs) {
+    if (runs.size() == 1) return calibrate::ratio_text(runs.front().second);
+    std::string text;
+    for (const auto& [options, result] : runs)
+        text += fmt::format("interface at {:g} of the length\n{}", options.interface, calibrate::ratio_text(result));
+    return text;
+}
+
+std::string ratio_jsons(const RatioRuns& runs) {
+    if (runs.size() == 1) return calibrate::ratio_json(runs.front().second, runs.front().first);
+    std::string text;
+    for (const auto& [options, result] : runs)
+        text += (text.empty() ? "[" : ",\n") + calibrate::ratio_json(result, options);
+    return text + "]";
+}
+
+/// Of several a column in front says which interface.
+std::string ratio_csvs(const RatioRuns& runs) {
+    if (runs.size() == 1) return calibrate::ratio_csv(runs.front().second);
+    std::string text;
+    for (const auto& [options, result] : runs) {
+        const std::string table = calibrate::ratio_csv(result);
+        for (std::size_t at = 0; at < table.size();) {
+            const std::size_t end = table.find('\n', at) + 1;
+            const std::string line = table.substr(at, end - at);
+            if (at > 0) text += fmt::format("{:g},{}", options.interface, line);
+            if (at == 0 && text.empty()) text = "interface," + line;
+            at = end;
+        }
+    }
+    return text;
 }
 
 Status run_ratio(RatioCommand& command) {
     std::copy(command.cells.begin(), command.cells.end(), command.options.cells.begin());
     const auto progress = terminal_progress(command.output);
-    const auto result = calibrate::calibrate_ratio(command.options, *progress);
-    if (!result) return tl::unexpected(result.error());
-    const std::string json = calibrate::ratio_json(*result, command.options);
-    print(command, calibrate::ratio_text(*result), json);
-    return write_results(command, json, calibrate::ratio_csv(*result), ratio_plot(*result));
+    RatioRuns runs;
+    for (const double interface : command.interfaces) {
+        command.options.interface = interface;
+        auto result = calibrate::calibrate_ratio(command.options, *progress);
+        if (!result) return tl::unexpected(result.error());
+        runs.emplace_back(command.options, std::move(*result));
+    }
+    const std::string json = ratio_jsons(runs);
+    print(command, ratio_texts(runs), json);
+    return write_results(command, json, ratio_csvs(runs), ratio_plot(runs));
 }
 
 struct TensileCommand : Files {
@@ -219,7 +266,8 @@ void add_ratio(CLI::App& parent, int& status) {
     command->add_option("--ratios", c->options.ratios, "material ratios, stiff over soft")->delimiter(',')->required();
     command->add_option("--strain", c->options.strain, "of the whole bar")->capture_default_str();
     command->add_option("--poisson", c->options.poisson_ratio, "of the neo-Hookean reference")->capture_default_str();
-    command->add_option("--interface", c->options.interface, "where the stiff part ends, 0 to 1")
+    command->add_option("--interface", c->interfaces, "where the stiff part ends, 0 to 1; several are put side by side")
+        ->delimiter(',')
         ->capture_default_str();
     command->add_option("--cells", c->cells, "of the 100 x 10 x 10 mm bar, six tets each")
         ->delimiter(',')

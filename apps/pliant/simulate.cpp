@@ -33,8 +33,10 @@ struct Options {
     int steps = 0;
     std::string pictures = "few";
     std::string picture_size;
+    std::string view;     ///< "x,y,z" from the robot to the eye; empty: chosen
     std::string solvers;  ///< one, or several with commas
     bool compare = false;
+    std::string measured;  ///< CSV of markers; empty: none
     std::vector<std::string> assignments;
     Output output;
 };
@@ -63,6 +65,8 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));
+    simulation.region_actuates = report::regions_that_actuate(model);
+    simulation.without_force = report::actuators_without_force(model);
     simulation.obstacles = report::obstacles_of(model, trajectory);
     if (report::has_contact(trajectory)) {
         simulation.contact_pressure_Pa = [&model](const sim::Step& step) {
@@ -74,19 +78,23 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     return simulation;
 }
 
-void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
+void print_summary(const sim::Model& model, const report::Simulation& simulation) {
+    const sim::Trajectory& trajectory = simulation.result;
     const sim::Step& last = trajectory.steps.back();
     fmt::print("{} nodes, {} {} tets, solver {}\n", model.node_count(), model.mesh().tet_count(),
                model.mesh().order == 2 ? "quadratic" : "linear", trajectory.solver);
     fmt::print("{} steps in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", trajectory.steps.size() - 1,
                trajectory.solve_s, last.residual, last.min_J);
-    for (const auto& c : last.cables) {
-        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
-                   1e3 * c.length_m, c.tension_N);
+    for (std::size_t i = 0; i < last.cables.size(); ++i) {
+        const auto& c = last.cables[i];
+        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm{}\n", c.name, c.length_ratio, 1e3 * c.length_m,
+                   report::has_tension(simulation, i) ? fmt::format(", tension {:.3f} N", c.tension_N) : "");
     }
-    for (const auto& c : last.chambers) {
-        fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
-                   1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
+    for (std::size_t i = 0; i < last.chambers.size(); ++i) {
+        const auto& c = last.chambers[i];
+        fmt::print(
+            "chamber {}: volume ratio {:.4f}, {:.1f} mm^3{}\n", c.name, c.volume_ratio, 1e9 * c.volume_m3,
+            report::has_pressure(simulation, i) ? fmt::format(", pressure {:.3f} kPa", 1e-3 * c.pressure_Pa) : "");
     }
     for (const auto& s : last.springs)
         fmt::print("spring {}: {:.2f} mm, force {:.4f} N\n", s.name, 1e3 * s.length_m, s.force_N);
@@ -105,6 +113,8 @@ void print_summary(const sim::Model& model, const sim::Trajectory& trajectory) {
         fmt::print("marker {}: ({:.3f}, {:.3f}, {:.3f}) mm\n", m.name, 1e3 * m.position_m.x, 1e3 * m.position_m.y,
                    1e3 * m.position_m.z);
     }
+    for (const report::Deviation& d : report::deviations(simulation.measured, trajectory))
+        fmt::print("{}\n", report::deviation_line(d));
 }
 
 /// "800x500".
@@ -119,6 +129,17 @@ Result<report::PictureSize> read_picture_size(const std::string& text) {
             "800x500",
             text);
     return size;
+}
+
+/// "1,-1,0.5".
+Result<Vec3> read_view(const std::string& text) {
+    Vec3 v;
+    int used = 0;
+    const bool read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v.x, &v.y, &v.z, &used) == 3 &&
+                      used == static_cast<int>(text.size());
+    if (!read || !is_finite(v) || !(norm(v) > 1e-6 && norm(v) < 1e6))
+        return input_error("--view: \"{}\" is not possible; write the direction to the eye, as in 1,-1,0.5", text);
+    return v;
 }
 
 /// None: the robot file's. More than one: a comparison.
@@ -136,11 +157,31 @@ Result<report::PictureChoice> read_pictures(const Options& options) {
     }};
     const auto* const named = std::ranges::find(sets, options.pictures, [](const auto& set) { return set.first; });
     if (named == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
-    const report::PictureSet set = named->second;
-    if (options.picture_size.empty()) return report::PictureChoice{set, report::usual_size(set)};
-    return read_picture_size(options.picture_size).map([set](const report::PictureSize& size) {
-        return report::PictureChoice{set, size};
-    });
+    report::PictureChoice choice{named->second, report::usual_size(named->second)};
+    if (!options.picture_size.empty()) {
+        const auto size = read_picture_size(options.picture_size);
+        if (!size) return tl::unexpected(size.error());
+        choice.size = *size;
+    }
+    if (!options.view.empty()) {
+        const auto view = read_view(options.view);
+        if (!view) return tl::unexpected(view.error());
+        choice.towards_eye = *view;
+    }
+    return choice;
+}
+
+/// Before anything is solved: a slip in the table is told at once.
+Result<std::vector<report::MeasuredPath>> read_measured(const std::string& file, const sim::Model& model) {
+    if (file.empty()) return std::vector<report::MeasuredPath>{};
+    const Result<std::string> text = read_file(file);
+    if (!text) return tl::unexpected(text.error());
+    std::vector<double> rest;
+    for (const Vec3& p : model.mesh().points) rest.insert(rest.end(), {p.x, p.y, p.z});
+    sim::Step step;
+    for (const sim::Marker& marker : model.description().markers)
+        step.markers.push_back({marker.name, sim::position(marker.point, rest)});
+    return report::parse_measured(*text, file, step);
 }
 
 /// While files are written the first signal leaves the pictures out; only the second cancels.
@@ -176,7 +217,7 @@ int tell(const Options& options, const sim::Model& model, const report::Simulati
     if (options.output.json)
         fmt::print("{}\n", report::summary_json(simulation));
     else if (!options.output.quiet)
-        print_summary(model, trajectory);
+        print_summary(model, simulation);
     if (!options.folder.empty() && !options.output.quiet && !options.output.json)
         fmt::print("results: {}, open report.html there\n", options.folder);
     for (const std::string& warning : trajectory.warnings)
@@ -213,11 +254,14 @@ Result<int> simulate(const Options& options) {
     Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
     if (!model) return tl::unexpected(model.error());
     timing.model_s = watch.read_s();
+    const auto measured = read_measured(options.measured, *model);
+    if (!measured) return tl::unexpected(measured.error());
     on_signal(OnSignal::ask);
     if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
     const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
     report::Simulation simulation = describe(*robot, *model, trajectory);
     simulation.timing = timing;
+    simulation.measured = *measured;
     bool drawing_stopped = false;
     if (!options.folder.empty()) {
         const Result<bool> written = write_results(options.folder, simulation, *pictures, *progress);
@@ -246,6 +290,10 @@ void add_simulate(CLI::App& app, int& status) {
                         "none; few: the end over the rest shape; all: also at rest, on the way and the stress (few)");
     command->add_option("--picture-size", options->picture_size,
                         "WIDTHxHEIGHT of the pictures in pixels (800x500 of few, 1600x1000 of all)");
+    command->add_option("--view", options->view,
+                        "X,Y,Z: pictures are seen from this direction (default: where the motion is seen best)");
+    command->add_option("--measured", options->measured,
+                        "CSV of measured markers, columns as in markers.csv, laid over the simulated ones");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

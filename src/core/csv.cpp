@@ -6,33 +6,51 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/letters.hpp"
+
 namespace pliant {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-std::string_view trim(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r\"";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+/// One cell, and what follows it: in quotes a separator is a letter as others are, and "" is a quote (RFC 4180).
+std::string take_cell(std::string_view& line, char separator, bool& more) {
+    std::string cell;
+    bool quoted = false;
+    std::size_t at = 0;
+    for (; at < line.size() && (quoted || line[at] != separator); ++at) {
+        if (line[at] != '"')
+            cell += line[at];
+        else if (quoted && at + 1 < line.size() && line[at + 1] == '"')
+            cell += line[++at];
+        else
+            quoted = !quoted;
+    }
+    more = at < line.size();
+    line.remove_prefix(more ? at + 1 : at);
+    return std::string(trimmed(cell));
 }
 
 std::vector<std::string> split(std::string_view line, char separator) {
     std::vector<std::string> cells;
-    while (true) {
-        const std::size_t end = line.find(separator);
-        cells.emplace_back(trim(line.substr(0, end)));
-        if (end == std::string_view::npos) return cells;
-        line.remove_prefix(end + 1);
-    }
+    for (bool more = true; more;) cells.push_back(take_cell(line, separator, more));
+    return cells;
 }
 
+/// The first tab or semicolon outside quotes, else a comma.
 char separator_of(std::string_view line) {
-    for (const char separator : {'\t', ';'}) {
-        if (line.find(separator) != std::string_view::npos) return separator;
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted && (c == '\t' || c == ';')) return c;
     }
     return ',';
+}
+
+/// Empty, or a comment, which a spreadsheet may have put in quotes.
+bool is_passed_over(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r\"");
+    return first == std::string_view::npos || line[first] == '#';
 }
 
 }  // namespace
@@ -72,8 +90,7 @@ Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-        const std::string_view content = trim(line);
-        if (content.empty() || content.front() == '#') continue;
+        if (is_passed_over(line)) continue;
         if (table.columns.empty()) {
             separator = separator_of(line);
             table.columns = split(line, separator);
@@ -91,7 +108,7 @@ std::string_view csv_unit(std::string_view column) {
     const std::size_t open = column.find_first_of("([");
     const std::size_t close = column.find_last_of(")]");
     if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
-    return trim(column.substr(open + 1, close - open - 1));
+    return trimmed(column.substr(open + 1, close - open - 1));
 }
 
 }  // namespace pliant

@@ -16,7 +16,7 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("separators, quotes, comments and the lines that messages name") {
-    const auto table = parse_csv("\xEF\xBB\xBF# made\n\n\"x, or so\"; y (mm)\r\n1;+2.5\r\n\n3;4\r\n", "a.csv", "");
+    const auto table = parse_csv("\xEF\xBB\xBF\"# made\"\n\n\"x, or so\"; y (mm)\r\n1;+2.5\r\n\n3;4\r\n", "a.csv", "");
     REQUIRE(table);
     CHECK(table->columns == std::vector<std::string>{"x, or so", "y (mm)"});
     REQUIRE(table->rows.size() == 2);
@@ -26,7 +26,11 @@ TEST_CASE("separators, quotes, comments and the lines that messages name") {
     CHECK(csv_unit("force [N]") == "N");
     CHECK(csv_unit("force )N(").empty());
     CHECK(csv_unit("force").empty());
-    CHECK(parse_csv("a\tb;c\n1\t2", "a.csv", "")->columns.size() == 2);
+    const auto quoted = parse_csv("\"tip, or \"\"end\"\"_x_mm\",y\n1,\"2\"\n\"3,4\n", "a.csv", "");
+    CHECK(quoted->columns == std::vector<std::string>{"tip, or \"end\"_x_mm", "y"});
+    CHECK(quoted->number(quoted->rows[0], 1, "y").value() == 2);
+    CHECK(quoted->rows[1].cells.size() == 1);  // a quote that never closes
+    CHECK(parse_csv("a\tb,c\n1\t2", "a.csv", "")->columns.size() == 2);
 }
 
 TEST_CASE("what is wrong is said with the line") {

@@ -116,6 +116,11 @@ Corotated corotated(double youngs_modulus_Pa, double poisson_ratio) {
     return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
 }
 
+Linear linear(double youngs_modulus_Pa, double poisson_ratio) {
+    const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
+    return {m.shear_Pa, m.bulk_Pa - 2 * m.shear_Pa / 3};
+}
+
 ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio) {
     const Moduli m = moduli(youngs_modulus_Pa, poisson_ratio);
     return {3 * m.bulk_Pa, (1 - 2 * poisson_ratio) / (1 + poisson_ratio)};
@@ -158,6 +163,10 @@ bool has_energy(const Law& law) {
     return blend == nullptr || blend->a == 1;
 }
 
+bool is_objective(const Law& law) {
+    return !std::holds_alternative<Linear>(law);
+}
+
 Moduli moduli(const Law& law) {
     struct Of {
         Moduli operator()(const NeoHookean& l) const { return {l.shear_Pa, l.bulk_Pa}; }
@@ -171,6 +180,7 @@ Moduli moduli(const Law& law) {
             return {shear, l.bulk_Pa};
         }
         Moduli operator()(const Corotated& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
+        Moduli operator()(const Linear& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
         Moduli operator()(const ScaledTarget& l) const { return {l.weight_Pa / 2, l.weight_Pa / 3}; }
     };
     return std::visit(Of{}, law);
@@ -190,6 +200,7 @@ std::string_view name(const Law& law) {
         std::string_view operator()(const Yeoh&) const { return "yeoh"; }
         std::string_view operator()(const Ogden&) const { return "ogden"; }
         std::string_view operator()(const Corotated&) const { return "corotated"; }
+        std::string_view operator()(const Linear&) const { return "linear"; }
         std::string_view operator()(const ScaledTarget&) const { return "scaled-target"; }
     };
     return std::visit(Name{}, law);

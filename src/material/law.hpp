@@ -89,6 +89,14 @@ struct Corotated {
     double lame_Pa;  ///< lambda = K - 2 mu / 3
 };
 
+/// psi = mu eps:eps + lambda/2 (tr eps)^2 with eps = (F + F^T) / 2 - I: Hooke's law of small displacements, the model
+/// without rotation (Fig. 3.2 b). It takes a rotation for a strain: a body that turns by an angle t seems to grow by
+/// 1 / cos t, so what has turned by more than a few degrees looks unreal. To show that, and for small displacements.
+struct Linear {
+    double shear_Pa;
+    double lame_Pa;  ///< lambda = K - 2 mu / 3
+};
+
 /// The thesis' actuators (T3.5, T3.6): empty space that is meshed, whose target shape is its rest shape scaled by G.
 /// psi = w/2 |F - R G|^2, where R is the rotation that aligns the two best: that nearest to F G^T. The unstressed shape
 /// is F = G. Small strains from G = I: mu = w/2, lambda = 0. Preconditions: w > 0, G symmetric and positive definite.
@@ -97,11 +105,13 @@ struct ScaledTarget {
     Matrix3 target = Matrix3::Identity();  ///< G
 };
 
-using Law = std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, Corotated, ScaledTarget>;
+using Law =
+    std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, Corotated, ScaledTarget, Linear>;
 
 [[nodiscard]] NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio);
 [[nodiscard]] StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio);
 [[nodiscard]] Corotated corotated(double youngs_modulus_Pa, double poisson_ratio);
+[[nodiscard]] Linear linear(double youngs_modulus_Pa, double poisson_ratio);
 /// The blend with the same small-strain moduli: w = 3K, a = (1 - 2 nu) / (1 + nu).
 [[nodiscard]] ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio);
 
@@ -127,6 +137,8 @@ struct InvariantForm {
 [[nodiscard]] std::optional<InvariantForm> invariant_form(const Law& law);
 
 [[nodiscard]] bool has_energy(const Law& law);
+/// Whether a rotation of the body leaves its energy: of all laws but Linear.
+[[nodiscard]] bool is_objective(const Law& law);
 /// Of small strains from rest.
 [[nodiscard]] Moduli moduli(const Law& law);
 /// Largest eigenvalue of the tangent at rest (3K for the isotropic laws): the weight of the local-global iteration.

@@ -18,6 +18,9 @@ struct Mean {
     Law operator()(const Corotated& a, const Corotated& b) const {
         return Corotated{of(a.shear_Pa, b.shear_Pa), of(a.lame_Pa, b.lame_Pa)};
     }
+    Law operator()(const Linear& a, const Linear& b) const {
+        return Linear{of(a.shear_Pa, b.shear_Pa), of(a.lame_Pa, b.lame_Pa)};
+    }
     Law operator()(const MooneyRivlin& a, const MooneyRivlin& b) const {
         return MooneyRivlin{of(a.c10_Pa, b.c10_Pa), of(a.c01_Pa, b.c01_Pa), of(a.bulk_Pa, b.bulk_Pa)};
     }

@@ -55,6 +55,10 @@ std::optional<double> psi(const Corotated& law, const Matrix3& F);
 Matrix3 first_piola(const Corotated& law, const Matrix3& F);
 Matrix9 first_piola_gradient(const Corotated& law, const Matrix3& F);
 
+std::optional<double> psi(const Linear& law, const Matrix3& F);
+Matrix3 first_piola(const Linear& law, const Matrix3& F);
+Matrix9 first_piola_gradient(const Linear& law, const Matrix3& F);
+
 std::optional<double> psi(const ScaledTarget& law, const Matrix3& F);
 Matrix3 first_piola(const ScaledTarget& law, const Matrix3& F);
 Matrix9 first_piola_gradient(const ScaledTarget& law, const Matrix3& F);

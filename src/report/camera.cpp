@@ -60,6 +60,11 @@ Camera choose_view(std::span<const Vec3> rest, std::span<const std::span<const V
     }
 }
 
+Camera view_from(const Vec3& towards_eye) {
+    const Vec3 u = unit(towards_eye);
+    return looking_from(u, std::abs(u.z) > 0.99 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+}
+
 Camera fitted(Camera camera, std::span<const Vec3> points, double aspect, const std::array<double, 4>& margins) {
     camera.half_height = half_field * std::min(1.0, 1.6 / aspect);
     camera.half_width = camera.half_height * aspect;

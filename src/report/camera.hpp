@@ -27,6 +27,10 @@ struct Camera {
 /// `others` are positions of the same points.
 [[nodiscard]] Camera choose_view(std::span<const Vec3> rest, std::span<const std::span<const Vec3>> others);
 
+/// From where the user wants: `towards_eye` points from the robot to the eye. Z is up, or Y where that is nearly the
+/// direction itself. Precondition: not zero.
+[[nodiscard]] Camera view_from(const Vec3& towards_eye);
+
 /// The same view moved so that all points just fit into a picture of `aspect` (width over height), keeping `margins`
 /// (left, right, bottom, top, as shares of the picture) free.
 [[nodiscard]] Camera fitted(Camera camera, std::span<const Vec3> points, double aspect,

@@ -49,6 +49,16 @@ TEST_CASE("the axes of a view are orthonormal and right-handed") {
     }
 }
 
+TEST_CASE("a view may be asked for") {
+    const Camera front = view_from({0, -2, 0});
+    CHECK(norm(front.forward - Vec3{0, 1, 0}) < 1e-12);
+    CHECK(norm(front.up - Vec3{0, 0, 1}) < 1e-12);
+    const Camera top = view_from({0, 0, 5});
+    CHECK(norm(top.forward - Vec3{0, 0, -1}) < 1e-12);
+    CHECK(norm(top.up - Vec3{0, 1, 0}) < 1e-12);
+    CHECK(norm(view_from({1, -1, 1}).forward - unit(Vec3{-1, 1, -1})) < 1e-12);
+}
+
 TEST_CASE("a fitted camera holds every point and wastes nothing") {
     const auto points = box_corners({0.1, 0.02, 0.3});
     for (const double aspect : {0.5, 1.0, 1.6, 4.0}) {

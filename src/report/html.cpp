@@ -78,13 +78,17 @@ std::string tiles(const Simulation& s) {
     std::string out = "<section class=\"tiles\">\n";
     for (std::size_t i = 0; i < std::min(shown, last.cables.size()); ++i) {
         const auto& c = last.cables[i];
-        out += html_tile(fmt::format("{:.4g} N", c.tension_N),
-                         fmt::format("{} at {:.1f} % length", c.name, 100 * c.length_ratio));
+        const std::string length = fmt::format("{:.1f} %", 100 * c.length_ratio);
+        out += has_tension(s, i)
+                   ? html_tile(fmt::format("{:.4g} N", c.tension_N), fmt::format("{} at {} length", c.name, length))
+                   : html_tile(length, fmt::format("length of {}", c.name));
     }
     for (std::size_t i = 0; i < std::min(shown, last.chambers.size()); ++i) {
         const auto& c = last.chambers[i];
-        out += html_tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
-                         fmt::format("{} at {:.1f} % volume", c.name, 100 * c.volume_ratio));
+        const std::string volume = fmt::format("{:.1f} %", 100 * c.volume_ratio);
+        out += has_pressure(s, i) ? html_tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
+                                              fmt::format("{} at {} volume", c.name, volume))
+                                  : html_tile(volume, fmt::format("volume of {}", c.name));
     }
     for (std::size_t i = 0; i < std::min(shown, last.contacts.size()); ++i) {
         const auto& c = last.contacts[i];
@@ -159,13 +163,13 @@ std::string actuators_section(const Simulation& s) {
         const auto& c = last.cables[i];
         rows.push_back({c.name, "cable", fmt::format("{:.2f} mm", 1e3 * rest.cables[i].length_m),
                         fmt::format("{:.2f} mm", 1e3 * c.length_m), fmt::format("{:.4f}", c.length_ratio),
-                        fmt::format("{:.4g} N", c.tension_N)});
+                        has_tension(s, i) ? fmt::format("{:.4g} N", c.tension_N) : "–"});
     }
     for (std::size_t i = 0; i < last.chambers.size(); ++i) {
         const auto& c = last.chambers[i];
         rows.push_back({c.name, "chamber", fmt::format("{:.1f} mm³", 1e9 * rest.chambers[i].volume_m3),
                         fmt::format("{:.1f} mm³", 1e9 * c.volume_m3), fmt::format("{:.4f}", c.volume_ratio),
-                        fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa)});
+                        has_pressure(s, i) ? fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa) : "–"});
     }
     if (rows.empty()) return "";
     return "<h2>Actuators</h2>\n" +
@@ -202,6 +206,17 @@ std::string contact_section(const Simulation& s) {
     return out;
 }
 
+std::string measured_section(const Simulation& s) {
+    if (s.measured.empty()) return "";
+    std::vector<std::vector<std::string>> rows;
+    for (const Deviation& d : deviations(s.measured, s.result)) {
+        rows.push_back({d.marker, fmt::format("{}", d.points), fmt::format("{:.3g} mm", 1e3 * d.mean_m),
+                        fmt::format("{:.3g} mm", 1e3 * d.largest_m), fmt::format("{:.3g} mm", 1e3 * d.way_m)});
+    }
+    return "<h2>Measured markers</h2>\n" +
+           table("", {"marker", "points", "mean distance", "largest", "simulated way"}, rows);
+}
+
 std::string steps_section(const Simulation& s) {
     std::vector<std::string> header = {"step", "time", "solver", "iterations", "residual", "wall time", "min J"};
     for (const auto& c : s.result.steps.front().cables) header.push_back(c.name + ", N");
@@ -212,8 +227,11 @@ std::string steps_section(const Simulation& s) {
         rows.push_back({fmt::format("{}", step.index), fmt::format("{:.4g}", step.time),
                         step.index == 0 ? "–" : std::string(sim::name(step.solver)), fmt::format("{}", step.iterations),
                         fmt::format("{:.2e}", step.residual), seconds(step.wall_s), fmt::format("{:.4f}", step.min_J)});
-        for (const auto& c : step.cables) rows.back().push_back(fmt::format("{:.4g}", c.tension_N));
-        for (const auto& c : step.chambers) rows.back().push_back(fmt::format("{:.4g}", 1e-3 * c.pressure_Pa));
+        for (std::size_t i = 0; i < step.cables.size(); ++i)
+            rows.back().push_back(has_tension(s, i) ? fmt::format("{:.4g}", step.cables[i].tension_N) : "–");
+        for (std::size_t i = 0; i < step.chambers.size(); ++i)
+            rows.back().push_back(has_pressure(s, i) ? fmt::format("{:.4g}", 1e-3 * step.chambers[i].pressure_Pa)
+                                                     : "–");
         for (const auto& o : step.contacts) rows.back().push_back(vector_text(o.force_N));
     }
     return "<h2>Steps</h2>\n<details><summary>Every step in numbers</summary>\n" + table("", header, rows) +
@@ -302,7 +320,8 @@ std::string report_html(const Simulation& s, const std::vector<Picture>& picture
     out +=
         "<h2>Plots</h2>\n<section class=\"plots\" id=\"plots\"><noscript>The plots need JavaScript; the numbers are "
         "in the tables below.</noscript></section>\n";
-    out += actuators_section(s) + contact_section(s) + materials_section(s) + steps_section(s) + settings_section(s);
+    out += actuators_section(s) + measured_section(s) + contact_section(s) + materials_section(s) + steps_section(s) +
+           settings_section(s);
     out += "<footer><p>Made by Pliant " PLIANT_VERSION
            ". Nothing on this page is loaded from a network.</p>\n"
            "<details><summary>Licence of the plotting library</summary><pre>" +

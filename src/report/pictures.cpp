@@ -28,16 +28,18 @@ std::string step_title(const Simulation& s, const sim::Step& step) {
 }
 
 /// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
-std::string actuators_line(const sim::Step& step) {
+std::string actuators_line(const Simulation& s, const sim::Step& step) {
     constexpr std::size_t named = 2;
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(named, step.cables.size()); ++i) {
         const auto& c = step.cables[i];
-        parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, c.tension_N));
+        const std::string tension = has_tension(s, i) ? fmt::format(", {:.3g} N", c.tension_N) : "";
+        parts.push_back(fmt::format("{} {:.3g} %{}", c.name, 100 * c.length_ratio, tension));
     }
     for (std::size_t i = 0; i < std::min(named, step.chambers.size()); ++i) {
         const auto& c = step.chambers[i];
-        parts.push_back(fmt::format("{} {:.4g} %, {:.3g} kPa", c.name, 100 * c.volume_ratio, 1e-3 * c.pressure_Pa));
+        const std::string pressure = has_pressure(s, i) ? fmt::format(", {:.3g} kPa", 1e-3 * c.pressure_Pa) : "";
+        parts.push_back(fmt::format("{} {:.4g} %{}", c.name, 100 * c.volume_ratio, pressure));
     }
     return fmt::format("{}", fmt::join(parts, " · "));
 }
@@ -45,19 +47,21 @@ std::string actuators_line(const sim::Step& step) {
 /// What all pictures share.
 class Painter {
 public:
-    Painter(const Simulation& s, const Surface& surface, const PictureSize& size, Progress& progress)
-        : s_(s), surface_(surface), size_(size), progress_(progress) {
+    Painter(const Simulation& s, const Surface& surface, const PictureChoice& choice, Progress& progress)
+        : s_(s), surface_(surface), size_(choice.size), progress_(progress) {
         std::vector<std::size_t> steps = thinned_steps(s.result.steps.size(), fitted_steps);
         steps.insert(steps.begin(), 0);
         std::vector<std::vector<Vec3>> clouds;
         clouds.reserve(steps.size());
         for (const std::size_t step : steps) clouds.push_back(pose(surface, s.result.steps[step].positions).positions);
         const std::vector<std::span<const Vec3>> moved(clouds.begin() + 1, clouds.end());
-        view_ = choose_view(clouds.front(), moved);
+        view_ = choice.towards_eye ? view_from(*choice.towards_eye) : choose_view(clouds.front(), moved);
         for (const auto& cloud : clouds) points_.insert(points_.end(), cloud.begin(), cloud.end());
         for (const Vec3& p : points_) box_.add(p);
         floor_z_m_ = box_.low.z;
         for (const std::size_t step : steps) add_cable_points(step);
+        for (const MeasuredPath& path : s.measured)
+            points_.insert(points_.end(), path.points.begin(), path.points.end());
         for (const Obstacle& obstacle : s.obstacles) add_obstacle(obstacle, steps);
     }
 
@@ -65,6 +69,7 @@ public:
     Result<Picture> final();
     Result<Picture> stages();
     Result<Picture> von_mises();
+    Result<Picture> measured();
 
 private:
     void add_cable_points(std::size_t step) {
@@ -153,6 +158,14 @@ std::vector<std::pair<Colour, std::string>> Painter::legend() const {
         entries.emplace_back(colour_of(s_, m), s_.materials[static_cast<std::size_t>(m)].name);
     }
     if (!s_.cable_points.empty() && !s_.cable_points.front().empty()) entries.emplace_back(cable_colour, "cable");
+    const auto& actuates = s_.region_actuates;
+    const auto first = std::find(actuates.begin(), actuates.end(), true);
+    if (std::count(actuates.begin(), actuates.end(), true) > 1)
+        entries.emplace_back(element_colour, "elements");
+    else if (first != actuates.end())
+        entries.emplace_back(element_colour,
+                             "elements of " + s_.mesh.region_names[static_cast<std::size_t>(first - actuates.begin())]);
+    if (!s_.measured.empty()) entries.emplace_back(measured_colour, "measured");
     if (!s_.obstacles.empty())
         entries.emplace_back(obstacle_colour, s_.obstacles.size() == 1 ? "obstacle" : "obstacles");
     return entries;
@@ -188,6 +201,7 @@ Result<Picture> Painter::rest() {
     const Camera camera = whole_camera(plain_margins);
     auto canvas = drawn(scene_of(0), camera);
     if (!canvas) return tl::unexpected(canvas.error());
+    draw_elements(*canvas, camera, s_, 0);
     draw_heading(*canvas, s_.robot, step_line(s_, 0));
     draw_legend(*canvas, legend());
     draw_scale_bar(*canvas, camera, box_.center());
@@ -200,7 +214,9 @@ Result<Picture> Painter::final() {
     if (last() > 0) scene.ghost = pose(surface_, s_.result.steps.front().positions);
     auto canvas = drawn(scene, camera);
     if (!canvas) return tl::unexpected(canvas.error());
+    draw_elements(*canvas, camera, s_, last());
     draw_heading(*canvas, s_.robot, step_line(s_, last()));
+    draw_measured(*canvas, camera, s_.measured);
     draw_marker_paths(*canvas, camera, s_.result);
     draw_legend(*canvas, legend());
     draw_scale_bar(*canvas, camera, box_.center());
@@ -223,10 +239,16 @@ Result<Picture> Painter::stages() {
         canvas.image(*image, x, y);
         const sim::Step& step = s_.result.steps[layout.steps[i]];
         draw_panel_caption(canvas, {x / unit_px, y / unit_px}, layout.panel_width_px / unit_px, step_title(s_, step),
-                           actuators_line(step));
+                           actuators_line(s_, step));
     }
     draw_heading(canvas, s_.robot, "");
     return finished(canvas, "stages.png", "On the way");
+}
+
+Result<Picture> Painter::measured() {
+    auto png = plot_png(measured_plot(s_.measured, s_.result));
+    if (!png) return tl::unexpected(png.error());
+    return Picture{"measured.png", "Markers, simulated and measured", std::move(*png)};
 }
 
 /// Unit and factor that keep the numbers short.
@@ -273,7 +295,7 @@ double nice_ceiling(double value) {
 }
 
 std::string step_line(const Simulation& s, std::size_t step) {
-    const std::string actuators = actuators_line(s.result.steps[step]);
+    const std::string actuators = actuators_line(s, s.result.steps[step]);
     return step_title(s, s.result.steps[step]) + (actuators.empty() ? "" : " · " + actuators);
 }
 
@@ -286,12 +308,17 @@ Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& s
     if (choice.set == PictureSet::none) return pictures;
     const std::span<const Draw> wanted =
         choice.set == PictureSet::all ? std::span<const Draw>(all) : std::span<const Draw>(few);
-    Painter painter(s, surface, choice.size, progress);
+    Painter painter(s, surface, choice, progress);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         progress.advance("pictures", static_cast<double>(i) / static_cast<double>(wanted.size()));
         auto picture = (painter.*wanted[i])();
         if (!picture) return tl::unexpected(picture.error());
         pictures.push_back(std::move(*picture));
+    }
+    if (!s.measured.empty()) {
+        auto plot = painter.measured();
+        if (!plot) return tl::unexpected(plot.error());
+        pictures.push_back(std::move(*plot));
     }
     return pictures;
 }

@@ -1,6 +1,7 @@
 // pictures/*.png: the robot at rest, at the end, on its way, and under stress, all from one point of view.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,11 @@ enum class PictureSet { none, few, all };
 struct PictureChoice {
     PictureSet set = PictureSet::few;
     PictureSize size = usual_size(set);
+    std::optional<Vec3> towards_eye{};  ///< none: chosen by how the robot moves
 };
 
 /// few: final.png (rest as a ghost, markers with their paths); all: rest.png, final.png, stages.png and von_mises.png.
-/// Text and lines keep their proportions to the picture.
+/// Where markers were measured, measured.png too. Text and lines keep their proportions to the picture.
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
                                                          const PictureChoice& choice, Progress& progress);
 

@@ -129,6 +129,39 @@ TEST_CASE("an obstacle hides the body, is grey and throws a shadow; a plane is s
     CHECK(brightness(shaded, below) < brightness(lit, below) - 20);
 }
 
+namespace {
+
+/// 0xAARRGGBB, row by row.
+std::vector<std::uint32_t> pixels_of(const std::string& png) {
+    std::pair<const std::string*, std::size_t> source{&png, 0};
+    const auto read = [](void* from, unsigned char* to, unsigned length) {
+        auto& [bytes, at] = *static_cast<std::pair<const std::string*, std::size_t>*>(from);
+        if (at + length > bytes->size()) return CAIRO_STATUS_READ_ERROR;
+        std::memcpy(to, bytes->data() + at, length);
+        at += length;
+        return CAIRO_STATUS_SUCCESS;
+    };
+    cairo_surface_t* image = cairo_image_surface_create_from_png_stream(read, &source);
+    REQUIRE(cairo_surface_status(image) == CAIRO_STATUS_SUCCESS);
+    const auto* first = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(image));
+    const std::vector<std::uint32_t> pixels(
+        first, first + cairo_image_surface_get_width(image) * cairo_image_surface_get_height(image));
+    cairo_surface_destroy(image);
+    return pixels;
+}
+
+/// How many pixels are of nearly this colour.
+int count_of(const std::vector<std::uint32_t>& pixels, const Colour& colour) {
+    return static_cast<int>(std::count_if(pixels.begin(), pixels.end(), [&](std::uint32_t p) {
+        const double most =
+            std::max({std::abs(((p >> 16) & 255) / 255.0 - colour.r), std::abs(((p >> 8) & 255) / 255.0 - colour.g),
+                      std::abs((p & 255) / 255.0 - colour.b)});
+        return most < 0.08;
+    }));
+}
+
+}  // namespace
+
 TEST_CASE("the pictures are PNG files that hold something, each time the same") {
     const auto robot = test::bent_bar(4, 1);
     const Simulation s = robot.simulation();
@@ -144,22 +177,47 @@ TEST_CASE("the pictures are PNG files that hold something, each time the same") 
         const Picture& picture = (*pictures)[i];
         CHECK(picture.file == names[i]);
         CHECK(picture.png == (*again)[i].png);
-        std::pair<const std::string*, std::size_t> source{&picture.png, 0};
-        const auto read = [](void* from, unsigned char* to, unsigned length) {
-            auto& [bytes, at] = *static_cast<std::pair<const std::string*, std::size_t>*>(from);
-            if (at + length > bytes->size()) return CAIRO_STATUS_READ_ERROR;
-            std::memcpy(to, bytes->data() + at, length);
-            at += length;
-            return CAIRO_STATUS_SUCCESS;
-        };
-        cairo_surface_t* image = cairo_image_surface_create_from_png_stream(read, &source);
-        REQUIRE(cairo_surface_status(image) == CAIRO_STATUS_SUCCESS);
-        CHECK(cairo_image_surface_get_width(image) == 240);
-        CHECK(cairo_image_surface_get_height(image) == 150);
-        const auto* pixels = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(image));
-        CHECK(std::set<std::uint32_t>(pixels, pixels + 240 * 150).size() > 500);
-        cairo_surface_destroy(image);
+        const auto pixels = pixels_of(picture.png);
+        REQUIRE(pixels.size() == 240 * 150);
+        CHECK(std::set<std::uint32_t>(pixels.begin(), pixels.end()).size() > 500);
     }
+}
+
+TEST_CASE("elements of empty space are drawn as edges, measured points as rings, and the markers have a plot") {
+    const auto robot = test::bent_bar(4, 1);
+    Simulation s = robot.simulation();
+    const auto drawn = [&] {
+        Progress progress;
+        auto pictures =
+            draw_pictures(s, outer_surface(s.mesh, s.region_material), {PictureSet::few, {480, 300}}, progress);
+        REQUIRE(pictures.has_value());
+        return *pictures;
+    };
+    const auto plain = pixels_of(drawn().front().png);
+    CHECK(count_of(plain, element_colour) == 0);
+    CHECK(count_of(plain, measured_colour) == 0);
+    s.region_actuates.assign(s.mesh.region_names.size(), false);
+    s.region_actuates.back() = true;
+    CHECK(count_of(pixels_of(drawn().front().png), element_colour) > 20);
+    s.region_actuates.clear();
+    s.measured = {{"tip", {s.result.steps.back().markers.front().position_m + Vec3{0, 0, 0.02}}}};
+    const auto pictures = drawn();
+    REQUIRE(pictures.size() == 2);
+    CHECK(pictures[1].file == "measured.png");
+    CHECK(count_of(pixels_of(pictures[0].png), measured_colour) > 20);
+}
+
+TEST_CASE("a picture may be seen from where it is wanted") {
+    const auto robot = test::bent_bar(4, 1);
+    const Simulation s = robot.simulation();
+    const Surface surface = outer_surface(s.mesh, s.region_material);
+    Progress progress;
+    PictureChoice choice{PictureSet::few, {240, 150}};
+    const auto chosen = draw_pictures(s, surface, choice, progress);
+    choice.towards_eye = Vec3{0, 0, 1};
+    const auto above = draw_pictures(s, surface, choice, progress);
+    REQUIRE(above.has_value());
+    CHECK(above->front().png != chosen->front().png);
 }
 
 TEST_CASE("cancelling stops a picture") {
@@ -175,6 +233,9 @@ TEST_CASE("cancelling stops a picture") {
 TEST_CASE("captions and round numbers") {
     const auto robot = test::bent_bar(10, 1);
     CHECK(step_line(robot.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 35.5 N");
+    Simulation elements = robot.simulation();
+    elements.without_force = {true};
+    CHECK(step_line(elements, 5) == "step 5 of 10 · flexor 96.7 %");
     CHECK(nice_ceiling(557) == doctest::Approx(600));
     CHECK(nice_ceiling(600) == doctest::Approx(600));
     CHECK(nice_ceiling(0.081) == doctest::Approx(0.1));

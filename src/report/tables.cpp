@@ -52,7 +52,9 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     return row.line();
 }
 
-std::string steps_row(const sim::Step& step, bool contact) {
+/// `without_force` as in Simulation.
+std::string steps_row(const sim::Step& step, const std::vector<bool>& without_force, bool contact) {
+    const auto has_force = [&](std::size_t i) { return without_force.empty() || !without_force[i]; };
     Row row;
     row.number(step.index);
     row.number(step.time);
@@ -63,15 +65,17 @@ std::string steps_row(const sim::Step& step, bool contact) {
     row.number(1e3 * step.wall_s);
     row.number(step.min_J);
     row.text(step.index == 0 ? "" : sim::name(step.solver));
-    for (const auto& c : step.cables) {
+    for (std::size_t i = 0; i < step.cables.size(); ++i) {
+        const auto& c = step.cables[i];
         row.number(c.length_ratio);
         row.number(1e3 * c.length_m);
-        row.number(c.tension_N);
+        has_force(i) ? row.number(c.tension_N) : row.text("");
     }
-    for (const auto& c : step.chambers) {
+    for (std::size_t i = 0; i < step.chambers.size(); ++i) {
+        const auto& c = step.chambers[i];
         row.number(c.volume_ratio);
         row.number(1e9 * c.volume_m3);
-        row.number(1e-3 * c.pressure_Pa);
+        has_force(step.cables.size() + i) ? row.number(1e-3 * c.pressure_Pa) : row.text("");
     }
     for (const auto& s : step.springs) {
         row.number(1e3 * s.length_m);
@@ -89,6 +93,13 @@ std::string steps_row(const sim::Step& step, bool contact) {
     return row.line();
 }
 
+std::string all_steps(const sim::Trajectory& result, const std::vector<bool>& without_force) {
+    const bool contact = has_contact(result);
+    std::string out = steps_header(result.steps.front(), contact);
+    for (const sim::Step& step : result.steps) out += steps_row(step, without_force, contact);
+    return out;
+}
+
 }  // namespace
 
 std::string csv_field(std::string_view text) {
@@ -103,11 +114,12 @@ std::string csv_field(std::string_view text) {
     return quoted + "\"";
 }
 
+std::string steps_csv(const Simulation& simulation) {
+    return all_steps(simulation.result, simulation.without_force);
+}
+
 std::string steps_csv(const sim::Trajectory& result) {
-    const bool contact = has_contact(result);
-    std::string out = steps_header(result.steps.front(), contact);
-    for (const sim::Step& step : result.steps) out += steps_row(step, contact);
-    return out;
+    return all_steps(result, {});
 }
 
 std::string markers_csv(const sim::Trajectory& result) {

@@ -104,6 +104,7 @@ void read_two_moduli(Reader& reader, const std::string& law, MaterialSpec& mater
     if (law == "neo-hookean") material.law = material::neo_hookean(E, nu);
     if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
     if (law == "corotated") material.law = material::corotated(E, nu);
+    if (law == "linear") material.law = material::linear(E, nu);
     if (law == "shape-blend") material.law = read_shape_blend(reader, material);
 }
 
@@ -207,7 +208,7 @@ MaterialSpec read_material(Reader& reader, const std::string& name) {
     MaterialSpec material;
     material.name = name;
     const std::string law = reader.choice(
-        "law", {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "shape-blend"},
+        "law", {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "linear", "shape-blend"},
         "neo-hookean");
     if (law == "mooney-rivlin" || law == "yeoh" || law == "ogden")
         read_hyperelastic(reader, law, material);

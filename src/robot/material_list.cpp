@@ -19,6 +19,7 @@ struct ConstantsOf {
     Constants operator()(const material::ScaledTarget&) const { return two_moduli(); }  // of actuators, never listed
     Constants operator()(const material::StVenantKirchhoff&) const { return two_moduli(); }
     Constants operator()(const material::Corotated&) const { return two_moduli(); }
+    Constants operator()(const material::Linear&) const { return two_moduli(); }
     Constants operator()(const material::MooneyRivlin& l) const {
         return {{"c10", l.c10_Pa}, {"c01", l.c01_Pa}, {"bulk_modulus", l.bulk_Pa}};
     }

@@ -54,7 +54,7 @@ TEST_CASE("yeoh, with a bulk modulus; c20 and c30 may be missing") {
     CHECK(law.bulk_Pa == doctest::Approx(1e7));
 }
 
-TEST_CASE("ogden, and corotated") {
+TEST_CASE("ogden, corotated and linear") {
     const auto m = material_of("[material.soft]\nlaw = \"ogden\"\nmu = [\"0.6 MPa\", \"-10 kPa\"]\nalpha = [1.3, -2]");
     const auto law = std::get<material::Ogden>(m.law);
     CHECK(law.terms == 2);
@@ -63,6 +63,8 @@ TEST_CASE("ogden, and corotated") {
     CHECK(law.bulk_Pa == doctest::Approx(material::bulk_modulus(5.9e5, 0.45)));
     const auto c = material_of("[material.soft]\nlaw = \"corotated\"\nyoungs_modulus = \"1 MPa\"");
     CHECK(std::holds_alternative<material::Corotated>(c.law));
+    const auto l = material_of("[material.soft]\nlaw = \"linear\"\nyoungs_modulus = \"1 MPa\"");
+    CHECK(std::holds_alternative<material::Linear>(l.law));
 }
 
 TEST_CASE("shape-blend takes R_omega from two moduli, by the name of a map") {

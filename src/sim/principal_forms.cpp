@@ -106,6 +106,19 @@ PrincipalForm blend_form(const material::ShapeBlend& m) {
     return form;
 }
 
+/// Linear in the stretches; simple shear has the strain g/2, and no shear stress but mu g.
+PrincipalForm linear_form(const material::Linear& m) {
+    PrincipalForm form;
+    form.law = m;
+    form.stress = [m](Vec3 l) {
+        const double pressure = m.lame_Pa * (l.x + l.y + l.z - 3);
+        const auto P = [&](double s) { return 2 * m.shear_Pa * (s - 1) + pressure; };
+        return Vec3{P(l.x), P(l.y), P(l.z)};
+    };
+    form.shear_stress = [m](double g) { return m.shear_Pa * g; };
+    return form;
+}
+
 }  // namespace
 
 PrincipalForm principal_form(const material::Law& law) {
@@ -114,6 +127,8 @@ PrincipalForm principal_form(const material::Law& law) {
             using L = std::decay_t<decltype(m)>;
             if constexpr (std::is_same_v<L, material::ShapeBlend>) {
                 return blend_form(m);
+            } else if constexpr (std::is_same_v<L, material::Linear>) {
+                return linear_form(m);
             } else if constexpr (std::is_same_v<L, material::ScaledTarget>) {
                 return {law, {}, {}};  // empty space, not a body
             } else {
@@ -125,11 +140,15 @@ PrincipalForm principal_form(const material::Law& law) {
 
 std::vector<PrincipalForm> principal_forms() {
     const double K = 2e6;
-    const std::vector<material::Law> laws = {
-        material::neo_hookean(1e6, 0.3),         material::neo_hookean(1e6, 0.45),
-        material::st_venant_kirchhoff(1e6, 0.3), material::corotated(1e6, 0.4),
-        material::shape_blend(1e6, 0.3),         material::MooneyRivlin{1e5, 0.7e5, K},
-        material::Yeoh{1.7e5, -1e4, 2e3, K},     material::Ogden{2, {2.5e5, 0.9e5}, {1.8, -2.5}, K}};
+    const std::vector<material::Law> laws = {material::neo_hookean(1e6, 0.3),
+                                             material::neo_hookean(1e6, 0.45),
+                                             material::st_venant_kirchhoff(1e6, 0.3),
+                                             material::corotated(1e6, 0.4),
+                                             material::shape_blend(1e6, 0.3),
+                                             material::linear(1e6, 0.4),
+                                             material::MooneyRivlin{1e5, 0.7e5, K},
+                                             material::Yeoh{1.7e5, -1e4, 2e3, K},
+                                             material::Ogden{2, {2.5e5, 0.9e5}, {1.8, -2.5}, K}};
     std::vector<PrincipalForm> forms;
     forms.reserve(laws.size());
     for (const material::Law& law : laws) forms.push_back(principal_form(law));
