@@ -208,7 +208,8 @@ MaterialSpec read_material(Reader& reader, const std::string& name) {
     MaterialSpec material;
     material.name = name;
     const std::string law = reader.choice(
-        "law", {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "linear", "shape-blend"},
+        "law",
+        {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "linear", "shape-blend"},
         "neo-hookean");
     if (law == "mooney-rivlin" || law == "yeoh" || law == "ogden")
         read_hyperelastic(reader, law, material);
