@@ -140,13 +140,23 @@ Status Interlock::check_platform(const Position& to) const {
         return beside ? Status(failure("the carriage moves before the platform is homed")) : Status{};
     }
     const int lowest = std::min(to[Axis::platform], position_[Axis::platform]);
-    if (lowest >= printer_->clear_um(part_height_um_)) return {};
+    if (lowest >= printer_->clear_um(part_height_um_) || brushes(to, lowest)) return {};
     if (Status status = check_carriage_in_vat(to); !status) return status;
     if (to[Axis::platform] < part_height_um_) {
         return failure("the platform at {:.3f} mm would press a part of {:.3f} mm on the vat's floor",
                        mm(to[Axis::platform]), mm(part_height_um_));
     }
     return {};
+}
+
+/// The part hangs as low as the brush wipes it, over the rims of the vats: only the vat in use may pass under it, on
+/// its way into the tower.
+bool Interlock::brushes(const Position& to, int lowest_um) const {
+    if (!printer_->has_brush() || lowest_um < printer_->push_um(part_height_um_)) return false;
+    if (to[Axis::table] != position_[Axis::table]) return false;
+    const int way_um = to[Axis::carriage] - position_[Axis::carriage];
+    if (way_um != 0) return way_um > 0 && hooked_vat_;
+    return to[Axis::platform] >= position_[Axis::platform] || to[Axis::carriage] == printer_->carriage.tower_um;
 }
 
 /// Platform and part hang in the vat below the clear height: then the carriage may only shear, the table not move.

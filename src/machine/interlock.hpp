@@ -2,7 +2,9 @@
 // before anyone prints it, and the virtual printer refuses what it forbids.
 //
 //   - move or light anything before the axis is homed; move beyond an axis' travel
-//   - move the carriage while the platform or the part hangs in the vat (but for the shear stroke)
+//   - move the carriage while the platform or the part hangs in the vat (but for the shear stroke, and to push a vat
+//   away
+//     with the part at the height of its brush)
 //   - lower the platform into anything but the vat under it, or press the part on the vat's floor
 //   - move the tower while a vat is hooked or half in (but for the stroke of the hooks, carriage at the tower; and
 //   while
@@ -77,6 +79,7 @@ private:
     [[nodiscard]] Status check_platform(const Position& to) const;
     [[nodiscard]] Status check_tower(const Position& to) const;
     [[nodiscard]] Status check_carriage(const Position& to) const;
+    [[nodiscard]] bool brushes(const Position& to, int lowest_um) const;
     [[nodiscard]] bool in_print_window(int carriage_um) const;
     [[nodiscard]] Status check_carriage_in_vat(const Position& to) const;
     [[nodiscard]] Status check_table(const Position& to) const;

@@ -118,8 +118,29 @@ TEST_CASE("the vat stays while the platform is down in it, but for the shear str
     CHECK(b.refused(Axis::platform, 84549, "the platform is down"));
 }
 
+TEST_CASE("with a brush the vat goes into the tower under a part that it wipes, and nothing else passes there") {
+    Bench b;
+    b.home();
+    b.load();
+    b.must(Axis::platform, 1000);
+    REQUIRE(b.lock.light_on(false));
+    b.lock.light_off();
+    // A part of 1 mm over the wall of 82.55 mm, 1 mm above its rim.
+    b.must(Axis::platform, 84549);
+    CHECK(b.refused(Axis::carriage, 355600, "the platform is down"));
+    b.must(Axis::platform, 84550);
+    b.must(Axis::carriage, 355600);
+    CHECK(b.refused(Axis::carriage, 300000, "the platform is down"));  // not back under the brush
+    b.must(Axis::tower, 500);
+    CHECK(b.refused(Axis::carriage, 340600, "the platform is down"));
+    b.must(Axis::platform, 85550);
+    b.must(Axis::carriage, 340600);
+    CHECK(b.refused(Axis::platform, 85549, "the platform is down"));
+}
+
 TEST_CASE("a part hangs below the platform: clear height grows with it, and it is not pressed on the floor") {
     Bench b;
+    b.printer.cleaning.brush = false;
     b.home();
     b.load();
     b.must(Axis::platform, 1000);

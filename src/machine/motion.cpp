@@ -33,6 +33,19 @@ double Profile::share_at(double t_s) const {
     return std::clamp(done / length_mm, 0.0, 1.0);
 }
 
+double Profile::seconds_to(double share) const {
+    const double total = seconds();
+    if (share <= 0 || total <= 0) return 0;
+    if (share >= 1) return total;
+    double low = 0, high = total;
+    constexpr int halvings = 60;  // to the last bit of any time that a move takes
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = (low + high) / 2;
+        (share_at(middle) < share ? low : high) = middle;
+    }
+    return high;
+}
+
 Profile profile(const Printer& printer, const Position& from, const Position& to, double feed_mm_s) {
     Profile p;
     for (const Axis axis : all_axes) {

@@ -20,6 +20,8 @@ struct Profile {
     [[nodiscard]] double seconds() const;
     /// Share of the way done after `t_s` seconds, 0 to 1.
     [[nodiscard]] double share_at(double t_s) const;
+    /// After how many seconds that share of the way, 0 to 1, is done.
+    [[nodiscard]] double seconds_to(double share) const;
 };
 
 /// `feed_mm_s` along the path; 0: as fast as the axes go.

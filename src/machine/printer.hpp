@@ -86,6 +86,7 @@ struct Carriage {
     int back_off_um = 0;  ///< how far the empty carriage must stand back before the tower may travel
     int shear_um = 0;     ///< sideways stroke from `print_um` that loosens a layer
     double shear_speed_mm_s = 0;
+    bool along_y = false;  ///< it moves along the depth of the platform (y of the part), not along its width
 };
 
 struct Platform {
@@ -176,11 +177,13 @@ struct Cleaning {
     int stroke_x_um = 0, stroke_z_um = 0;  ///< oscillation of the carriage and of the platform
     double speed_mm_s = 0;                 ///< of the carriage (with a table: of the platform) while it oscillates
     double dry_s = 0;                      ///< all fans after the new vat is in; 0: only while it is pulled in
-    bool brush = false;                    ///< wipes the part while the vat is pushed away
+    bool brush = false;                    ///< in every vat: wipes the part while its vat is pushed into the tower
     int film_um = 0;                       ///< thickness of the resin that clings to the part's cross-section
     double solvent_ml_s = 0;               ///< solution that a second of cleaning takes
     double most_contamination = 0;         ///< share of foreign resin in a vat above which a print does not pass
     std::vector<CleaningPair> pairs;
+    int brush_um = 0;        ///< the part's lowest point above the vat's rim while the brush wipes it
+    double brush_share = 0;  ///< of the film on the part that the brush returns to its vat
 };
 
 /// The commands of something that hangs on an auxiliary pin; "" if the machine has none.
@@ -274,6 +277,13 @@ struct Printer {
     [[nodiscard]] int clear_um(int part_height_um) const {
         return part_height_um + vat_shape.wall_um + platform.clearance_um;
     }
+    [[nodiscard]] bool has_brush() const { return cleaning.brush && store() == Store::tower; }
+    /// Platform position at which a vat is put away: the brush reaches the part; without one it is clear_um().
+    [[nodiscard]] int push_um(int part_height_um) const {
+        return has_brush() ? part_height_um + vat_shape.wall_um + cleaning.brush_um : clear_um(part_height_um);
+    }
+    /// Share of the film on the part that goes back into a vat which is put away.
+    [[nodiscard]] double brushed_share() const { return has_brush() ? cleaning.brush_share : 0; }
     /// Where the carriage must be for the part to hang over the cleaning vat's drain, from `drain_begin_um` to
     /// `tower_um`.
     [[nodiscard]] int drain_begin_um() const { return carriage.tower_um - carriage.back_off_um - cleaning.stroke_x_um; }

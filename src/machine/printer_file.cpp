@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/config.hpp"
+#include "machine/cleaning_data.hpp"
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
 #include "machine/switches.hpp"
@@ -153,6 +154,7 @@ Carriage read_carriage(Reader r) {
     c.back_off_um = length_um(r, "back_off", 1);
     c.shear_um = length_um(r, "shear");
     c.shear_speed_mm_s = speed(r, "shear_speed");
+    c.along_y = r.choice("along", {"x", "y"}, "x") == "y";
     r.finish();
     return c;
 }
@@ -332,8 +334,29 @@ CleaningPair read_pair(Reader& r, double spray_s) {
     return pair;
 }
 
+/// What the brush takes off if the file does not say: what the thesis measured for wiping with a cloth.
+double cloth_share() {
+    for (const CleaningTest& test : cleaning_tests()) {
+        if (test.method == "cloth") return test.mean();
+    }
+    return 0;
+}
+
+/// The brush stands in the vats of a tower. On a table the part would pass over the brushes of other resins.
+void read_brush(Reader& r, Store store, int clearance_um, Cleaning& c) {
+    c.brush = r.boolean("brush", false);
+    if (c.brush && store != Store::tower)
+        r.problem("brush", "needs a [tower]: on a table the brushes of other vats would wipe the part too");
+    c.brush_um = r.has("brush_height") ? length_um(r, "brush_height") : clearance_um / 2;
+    if (c.brush_um > clearance_um)
+        r.problem("brush_height", fmt::format("is above platform.clearance, {:g} mm: there the part is out of reach",
+                                              clearance_um / 1000.0));
+    c.brush_share = r.number("brush_share", cloth_share());
+    if (!(c.brush_share >= 0 && c.brush_share <= 1)) r.problem("brush_share", "must be a share from 0 to 1");
+}
+
 /// `spray` is the older name of `duration`.
-Cleaning read_cleaning(Reader r, Store store) {
+Cleaning read_cleaning(Reader r, Store store, int clearance_um) {
     Cleaning c;
     if (store == Store::none) {
         r.finish();
@@ -345,7 +368,7 @@ Cleaning read_cleaning(Reader r, Store store) {
     c.stroke_z_um = length_um(r, "stroke_z");
     c.speed_mm_s = speed(r, "speed");
     c.dry_s = not_negative(r, "dry", Dimension::time);
-    c.brush = r.boolean("brush", false);
+    read_brush(r, store, clearance_um, c);
     if (r.has("film")) c.film_um = length_um(r, "film");
     c.solvent_ml_s = not_negative(r, "solvent", Dimension::volume, 1e6) / std::max(1e-9, c.spray_s > 0 ? c.spray_s : 1);
     c.most_contamination = r.number("most_contamination", 0.05);
@@ -590,7 +613,7 @@ Printer read_printer(Reader& root) {
     for (auto& [name, r] : root.named_tables("resin")) p.resins.push_back(read_resin(name, r));
     read_vats(root, p);
     p.projector = read_projector(root.table("projector"));
-    p.cleaning = read_cleaning(root.table("cleaning", p.store() != Store::none), p.store());
+    p.cleaning = read_cleaning(root.table("cleaning", p.store() != Store::none), p.store(), p.platform.clearance_um);
     p.pump = read_switch(root.table("pump", false));
     read_fans(root, p);
     read_limit_switches(root, p);

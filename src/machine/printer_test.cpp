@@ -130,3 +130,24 @@ TEST_CASE("the firmware of a board is one of the known releases, whatever its la
         CHECK(holds(with(unknown).error().message, "must be 2.1.1, 2.1.2 or 2.1.3"));
     }
 }
+
+TEST_CASE("a brush: its height, its share, what they are without being said, and what cannot be") {
+    const Printer tower = load_printer(tower_file).value();
+    CHECK(tower.has_brush());
+    CHECK(tower.carriage.along_y);
+    CHECK(tower.push_um(10000) == 10000 + 82550 + 1000);
+    CHECK(tower.brushed_share() == 0.29);
+    const std::string keys = "brush_share = 0.29 ";
+    const Printer plain = parse_printer(replaced(tower_text(), keys, "#"), "p.toml").value();
+    CHECK(plain.brushed_share() == doctest::Approx((0.12 + 0.07 + 0.69 + 0.27) / 4));  // a cloth, table 4.2
+    const Printer bare = parse_printer(replaced(tower_text(), "brush = true", "brush = false"), "p.toml").value();
+    CHECK_FALSE(bare.has_brush());
+    CHECK(bare.push_um(10000) == bare.clear_um(10000));
+    CHECK(bare.brushed_share() == 0);
+    CHECK(holds(message_with(keys, "brush_share = 1.2 "), "cleaning.brush_share: must be a share from 0 to 1"));
+    CHECK(holds(message_with("brush_height = \"1 mm\"", "brush_height = \"2.5 mm\""), "is above platform.clearance"));
+    const std::string rotary = read_file("examples/printers/rotary.toml").value();
+    const auto on_table = parse_printer(replaced(rotary, "[cleaning]", "[cleaning]\nbrush = true"), "p.toml");
+    REQUIRE_FALSE(on_table);
+    CHECK(holds(on_table.error().message, "cleaning.brush: needs a [tower]"));
+}

@@ -167,8 +167,15 @@ TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, ch
 }
 
 TEST_CASE("resin that is washed off and solution that is used follow from the number of cleanings") {
-    const machine::Printer printer = plan::test::tower();
-    const Plan plan = make_plan(plan::test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"}), printer).value();
+    machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"});
+    const Plan brushed = make_plan(job, printer).value();
+    CHECK(brushed.brushed_ml / brushed.waste_ml == doctest::Approx(0.29 / 0.71));
+    CHECK(brushed.vats[0].brushed_ml + brushed.vats[1].brushed_ml == doctest::Approx(brushed.brushed_ml));
+    printer.cleaning.brush = false;
+    const Plan plan = make_plan(job, printer).value();
+    CHECK((brushed.brushed_ml + brushed.waste_ml) / plan.waste_ml == doctest::Approx(1));
+    CHECK(plan.brushed_ml == 0);
     // Two swaps and the cleaning at the end: 20 ml each; 200 mm^2 under a film of 60 um each.
     CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
     CHECK(plan.waste_ml == doctest::Approx(3 * 200 * 0.06 / 1000));

@@ -83,6 +83,7 @@ void Passage::add_move(const Step& step) {
     top_um_ = std::max(top_um_, step.to[Axis::platform]);
     if (step.from[Axis::platform] == light_um_ && step.to[Axis::platform] == light_um_)
         sheared_um_ = std::max(sheared_um_, step.to[Axis::carriage] - printer_->carriage.print_um);
+    brush_.move(step.from, step.to, step.machine->part_height_um());
     if (step.machine->vat_under_platform() && step.from[Axis::platform] != step.to[Axis::platform])
         add_vat_move(step,
                      axis_mm_s(machine::profile(*printer_, step.from, step.to, step.feed_mm_s), step, Axis::platform));
@@ -169,6 +170,12 @@ Status Passage::check_strokes() const {
     return input_error(
         "the part hangs still for {:.1f} of {:.1f} s of cleaning, {} asks for strokes of {:g} and {:g} mm", still_s_,
         cleaned_s_, printer_->name, printer_->cleaning.stroke_x_um / 1000.0, printer_->cleaning.stroke_z_um / 1000.0);
+}
+
+Status Passage::check_brush() const {
+    if (!printer_->has_brush() || brush_.wiped()) return {};
+    return input_error("the vat is put away with the part {:g} mm above its rim, its brush reaches {:g} mm",
+                       brush_.highest_um() / 1000.0, printer_->cleaning.brush_um / 1000.0);
 }
 
 Status Passage::check_cleaning(double seconds) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "machine/brush.hpp"
 #include "machine/printer.hpp"
 #include "plan/check.hpp"
 
@@ -13,7 +14,8 @@ namespace pliant::plan {
 /// Measures steps of a program against what the printer file asks for. The printer must outlive it.
 class Passage {
 public:
-    explicit Passage(const machine::Printer& printer) : printer_(&printer), fan_on_(printer.fans.size()) {}
+    explicit Passage(const machine::Printer& printer)
+        : printer_(&printer), fan_on_(printer.fans.size()), brush_(printer) {}
 
     /// Begins anew at a light at `z_um`; fans keep running.
     void restart(int z_um);
@@ -25,6 +27,8 @@ public:
     [[nodiscard]] Status check_peel(int z_um) const;
     /// The part was cleaned for `seconds` with the motion that the file asks for, and dried.
     [[nodiscard]] Status check_cleaning(double seconds) const;
+    /// Whether a brush, where there is one, has wiped the part while its vat was put away.
+    [[nodiscard]] Status check_brush() const;
     [[nodiscard]] bool fans_run() const;
 
 private:
@@ -51,6 +55,7 @@ private:
     double stroke_s_ = 0;   ///< of it: strokes as far and as fast as asked for
     int strokes_ = 0;
     double dried_s_ = 0;
+    machine::BrushWatch brush_;
 };
 
 }  // namespace pliant::plan

@@ -133,13 +133,16 @@ double section_mm2(const job::Layer& layer) {
     return area;
 }
 
-/// What every cleaning washes off, and takes of solution.
+/// What the brush returns to its vat at every change, what is washed off, and the solution for it.
 void add_waste(Plan& plan, const job::Manifest& job, const Printer& printer) {
     const auto clean = [&](int vat, std::size_t layer, double seconds) {
         const auto use = std::find_if(plan.vats.begin(), plan.vats.end(), [vat](auto& u) { return u.vat == vat; });
-        const double ml = section_mm2(job.layers[layer]) * printer.cleaning.film_um / 1e6;
-        use->waste_ml += ml;
-        plan.waste_ml += ml;
+        const double film_ml = section_mm2(job.layers[layer]) * printer.cleaning.film_um / 1e6;
+        const double brushed_ml = film_ml * printer.brushed_share();
+        use->brushed_ml += brushed_ml;
+        plan.brushed_ml += brushed_ml;
+        use->waste_ml += film_ml - brushed_ml;
+        plan.waste_ml += film_ml - brushed_ml;
         plan.solvent_ml += printer.cleaning.solvent_ml_s * seconds;
     };
     int loaded = -1;

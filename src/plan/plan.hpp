@@ -22,7 +22,8 @@ struct VatUse {
     double resin_ml = 0;
     bool refill = false;  ///< the printer file names another resin, or none, for it
     int first_layer = 0, last_layer = 0;
-    double waste_ml = 0;  ///< resin that clings to the part when this vat leaves it, and is washed off
+    double waste_ml = 0;    ///< resin that clings to the part when this vat leaves it, and is washed off
+    double brushed_ml = 0;  ///< of it, before that: what the brush wipes back into the vat
 };
 
 /// A vat that is empty before a layer.
@@ -58,6 +59,7 @@ struct Plan {
     double solvent_ml = 0;                       ///< cleaning solution used
     std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;
+    double brushed_ml = 0;  ///< resin that brushes wipe off the part, back into its vats
 };
 
 /// Plans `job` for `printer`. Each resin takes the vat that holds it. One that no vat holds is an error, or, where the

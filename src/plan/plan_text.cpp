@@ -73,7 +73,8 @@ Json vat_json(const VatUse& use) {
             {"refill", use.refill},
             {"first_layer", use.first_layer},
             {"last_layer", use.last_layer},
-            {"waste_ml", rounded(use.waste_ml)}};
+            {"waste_ml", rounded(use.waste_ml)},
+            {"brushed_ml", rounded(use.brushed_ml)}};
 }
 
 std::string orders_text(const Plan& plan) {
@@ -84,6 +85,13 @@ std::string orders_text(const Plan& plan) {
                             c.swaps == 1 ? "swap" : "swaps", clock_text(c.change_s), chosen ? "   (planned)" : "");
     }
     return text;
+}
+
+/// ", 2.4 ml brushed back and 3.6 ml washed off"
+std::string waste_text(const VatUse& use) {
+    if (use.brushed_ml <= 0)
+        return use.waste_ml > 0 ? fmt::format(", and {:.1f} ml washed off", use.waste_ml) : std::string();
+    return fmt::format(", {:.1f} ml brushed back and {:.1f} ml washed off", use.brushed_ml, use.waste_ml);
 }
 
 }  // namespace
@@ -106,6 +114,7 @@ std::string plan_json(const Plan& plan) {
                        {"layer_seconds", layers_json(plan)},
                        {"resin_ml", std::move(resin)},
                        {"waste_ml", rounded(plan.waste_ml)},
+                       {"brushed_ml", rounded(plan.brushed_ml)},
                        {"solvent_ml", rounded(plan.solvent_ml)},
                        {"vats", std::move(vats)},
                        {"order", order_json(plan)},
@@ -144,7 +153,7 @@ std::string plan_text(const Plan& plan) {
     }
     for (const VatUse& use : plan.vats) {
         text += fmt::format("  {:<10}{:>7.1f} ml   {}{}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin,
-                            use.waste_ml > 0 ? fmt::format(", and {:.1f} ml washed off", use.waste_ml) : "");
+                            waste_text(use));
     }
     if (plan.solvent_ml > 0) text += fmt::format("  {:<10}{:>7.0f} ml\n", "solution", plan.solvent_ml);
     for (const std::string& warning : plan.warnings) text += fmt::format("  warning: {}\n", warning);

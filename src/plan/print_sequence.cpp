@@ -91,7 +91,7 @@ struct Writing {
     }
     void swap(int from, int to, int part_um) const {
         s.comment(fmt::format("swap slot {} for {}", from, to));
-        s.move(Axis::platform, s.printer().clear_um(part_um));
+        s.move(Axis::platform, s.printer().push_um(part_um));
         swap_vat(s, from, to);
     }
     void print(int index, int vat) const {
@@ -110,7 +110,7 @@ struct Writing {
     void layer_done() const {}
     void store(int slot, int part_um) const {
         s.comment(fmt::format("store slot {}", slot));
-        s.move(Axis::platform, s.printer().clear_um(part_um));
+        s.move(Axis::platform, s.printer().push_um(part_um));
         store_vat(s, slot);
     }
 };
@@ -133,11 +133,12 @@ public:
             Sequence s = muted();
             swap_vat(s, from, to);
             known = {true, s.seconds(), s.position()};
+            known.end[Axis::platform] -= at_[Axis::platform];
         }
         times_.all += known.seconds;
         const int platform_um = at_[Axis::platform];
         at_ = known.end;
-        at_[Axis::platform] = platform_um;
+        at_[Axis::platform] += platform_um;
     }
     void print(int index, int vat) {
         const job::Layer& layer = job_.layers[static_cast<std::size_t>(index)];
@@ -173,7 +174,7 @@ private:
     struct Known {
         bool valid = false;
         Seconds seconds;
-        machine::Position end;
+        machine::Position end;  ///< of a swap the platform's is by how much it rises
     };
 
     Sequence muted() const {
@@ -190,15 +191,15 @@ private:
         at_ = s.position();
     }
     void rise_over(int part_um) {
-        const int clear_um = p_.clear_um(part_um);
-        Known& known = rises_[clear_um - at_[Axis::platform]];
+        const int push_um = p_.push_um(part_um);
+        Known& known = rises_[push_um - at_[Axis::platform]];
         if (!known.valid) {
             Sequence s = muted();
-            s.move(Axis::platform, clear_um);
+            s.move(Axis::platform, push_um);
             known = {true, s.seconds(), s.position()};
         }
         times_.all += known.seconds;
-        at_[Axis::platform] = clear_um;
+        at_[Axis::platform] = push_um;
     }
 
     const Printer& p_;

@@ -106,6 +106,7 @@ public:
             if (Status status = passage_.check_peel(job_.layers[last_->layer].z_um); !status)
                 return in_layer(last_->layer, status);
             if (printer_.store() != machine::Store::none) {
+                if (Status status = passage_.check_brush(); !status) return status;
                 if (Status status = passage_.check_cleaning(printer_.cleaning.spray_s); !status) return status;
             }
         }
@@ -215,6 +216,7 @@ private:
             if (Status status = passage_.check_peel(job_.layers[last_->layer].z_um); !status)
                 return in_layer(last_->layer, status);
             if (last_->vat != vat) {
+                if (Status status = passage_.check_brush(); !status) return in_layer(layer, status);
                 if (Status status = passage_.check_cleaning(printer_.cleaning_s(last_->vat, vat)); !status)
                     return in_layer(layer, status);
             }

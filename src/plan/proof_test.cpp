@@ -120,6 +120,17 @@ TEST_CASE("a light that is missing, doubled, longer, shorter, of another image i
     CHECK(changed(with("layer=2", "layer=1")).starts_with("G-code line "));
 }
 
+TEST_CASE("a vat that is put away without its brush reaching the part is found") {
+    Case c = two_materials();
+    // The way up for the first swap, with two layers of part: a brush reaches the part 1 mm above the rim, at 82.55 mm.
+    change_line(c.gcode, "G1 Z83.650", 0, [](std::string line) { return line.replace(4, 6, "84.650"); });
+    CHECK(holds(c.error(), "is put away with the part 2 mm above its rim, its brush reaches 1 mm"));
+    CHECK(holds(c.error(), "layer 1: "));
+    Case bare = two_materials();
+    bare.printer.cleaning.brush = false;
+    CHECK(holds(bare.error(), "the platform is down"));  // without a brush nothing may pass so low
+}
+
 TEST_CASE("a wrong height, a missing lift, rest, stroke or approach is found") {
     const machine::Printer tower = plan::test::tower();
     const Case good = case_of(tower, {{0}, {0}, {0}}, {tower.vats[0].resin});

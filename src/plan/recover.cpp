@@ -63,13 +63,14 @@ Status home_all(Sequence& s, const Interlock& state) {
     return {};
 }
 
-/// From a machine that is homed, with the platform over everything: the right vat under a clean part.
-void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wanted) {
+/// From a machine that is homed, with the platform clear of a part of `part_um`: the right vat under a clean part.
+void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wanted, int part_um) {
     const Printer& p = s.printer();
     const std::optional<int> hooked = p.store() == Store::tower ? from.state.hooked_vat() : std::nullopt;
     const bool stained = from.last_lit_vat >= 0 && from.last_lit_vat != wanted.value_or(-1);
     if (hooked) {
         meet_vat(s, slot_of(p, *hooked));
+        if (hooked != wanted) s.move(Axis::platform, p.push_um(part_um));
         if (!wanted) return store_vat(s, slot_of(p, *hooked));
         if (*hooked != *wanted) swap_vat(s, slot_of(p, *hooked), slot_of(p, *wanted));
         return;
@@ -120,7 +121,7 @@ Result<std::string> resume_program(const Interrupted& from, const Printer& print
     const int part_um = std::max(from.state.part_height_um(), from.finished ? 0 : from.target.part_height_um());
     s.comment("the right vat, and down");
     s.move(Axis::platform, printer.clear_um(part_um));
-    bring_right_vat(s, from, wanted);
+    bring_right_vat(s, from, wanted, part_um);
     if (from.finished)
         s.move(Axis::platform, printer.axis(Axis::platform).home_um());
     else
@@ -138,10 +139,12 @@ Result<std::string> vat_program(const Interlock& state, const Printer& printer, 
     if (here == slot) return s->text();
     if (here == 0 || printer.store() == Store::table) {
         if (slot != 0) load_vat(*s, slot);
-    } else if (slot == 0) {
-        store_vat(*s, here);
     } else {
-        swap_vat(*s, here, slot);
+        if (printer.has_brush()) s->move(Axis::platform, printer.push_um(state.part_height_um()));
+        if (slot == 0)
+            store_vat(*s, here);
+        else
+            swap_vat(*s, here, slot);
     }
     s->fence();
     return s->text();

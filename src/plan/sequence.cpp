@@ -47,19 +47,19 @@ void Sequence::record(std::vector<Stretch>* stretches) {
 }
 
 /// Moves that follow each other at once are one stretch.
-void Sequence::note(Device device, double begin_s) {
+void Sequence::note(Device device, double begin_s, double end_s) {
     if (stretches_ == nullptr) return;
     std::size_t& last = last_stretch_[static_cast<std::size_t>(device)];
     if (last < stretches_->size() && (*stretches_)[last].end_s == begin_s) {
-        (*stretches_)[last].end_s = seconds_.total;
+        (*stretches_)[last].end_s = end_s;
         return;
     }
     last = stretches_->size();
-    stretches_->push_back({device, begin_s, seconds_.total});
+    stretches_->push_back({device, begin_s, end_s});
 }
 
 void Sequence::note_switch(Device device, bool on, double& on_s) {
-    if (!on && on_s >= 0) note(device, on_s);
+    if (!on && on_s >= 0) note(device, on_s, seconds_.total);
     on_s = on ? seconds_.total : -1;
 }
 
@@ -98,7 +98,7 @@ void Sequence::move_to(const Position& to, double feed_mm_s) {
                                        {Axis::carriage, Device::carriage},
                                        {Axis::tower, Device::tower},
                                        {Axis::table, Device::table}}) {
-        if (to[axis] != position_[axis]) note(device, begin_s);
+        if (to[axis] != position_[axis]) note(device, begin_s, seconds_.total);
     }
     if (!muted_) command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
     position_ = to;
@@ -137,7 +137,7 @@ void Sequence::expose(const machine::Expose& expose) {
     activity(Activity::expose);
     const double begin_s = seconds_.total;
     spend(expose.seconds);
-    note(Device::light, begin_s);
+    note(Device::light, begin_s, seconds_.total);
     activity(before);
 }
 

@@ -58,9 +58,11 @@ public:
     [[nodiscard]] const Seconds& seconds() const { return seconds_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
+    /// Of a device that has no command of its own, while others are recorded: it works from `begin_s` to `end_s`.
+    void note(Device device, double begin_s, double end_s);
+
 private:
     void spend(double seconds);
-    void note(Device device, double begin_s);
     void note_switch(Device device, bool on, double& on_s);
 
     const machine::Printer* printer_;

@@ -1,7 +1,9 @@
 #include "plan/swap.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "machine/motion.hpp"
 
@@ -95,17 +97,51 @@ void dry_while(Sequence& s, Bring bring) {
 
 // --- towers --------------------------------------------------------------------------------------------------------
 
-/// Steps 1 and 2, up to the carriage standing back with the pump running.
-void push_away(Sequence& s, int slot) {
+/// When, in seconds of a push, the brush comes under the platform and has passed it. It stands on the far wall of a vat
+/// that is as long as the way into the tower, in the middle of which the platform is.
+std::pair<double, double> brush_seconds(const Printer& p, const machine::Profile& push) {
+    const double bed_mm = (p.carriage.along_y ? p.platform.depth_um : p.platform.width_um) / 1000.0;
+    const double reach = std::min(1.0, bed_mm / push.length_mm);
+    return {push.seconds_to((1 - reach) / 2), push.seconds_to((1 + reach) / 2)};
+}
+
+/// The vat goes into the tower; its brush, if it has one, wipes the part on the way.
+void push_vat(Sequence& s) {
+    const Printer& p = s.printer();
+    Position in = s.position();
+    in[Axis::carriage] = p.carriage.tower_um;
+    if (p.has_brush()) {
+        const machine::Profile push = machine::profile(p, s.position(), in, 0);
+        const auto [begin_s, end_s] = brush_seconds(p, push);
+        s.note(Device::brush, s.seconds().total + begin_s, s.seconds().total + end_s);
+    }
+    s.move_to(in);
+}
+
+/// The tower lowers the vat off the hooks; meanwhile the platform rises from the brush to where it is clear.
+void lower_off_hooks(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    Position to = s.position();
+    const int way_um = std::abs(lowered_um(p, slot) - to[Axis::tower]);
+    const int rise_um = p.clear_um(0) - p.push_um(0);
+    to[Axis::tower] = lowered_um(p, slot);
+    to[Axis::platform] += rise_um;
+    s.move_to(to, way_um > 0 ? p.hooks.speed_mm_s * std::hypot(way_um, rise_um) / way_um : 0);
+}
+
+/// Steps 1 and 2, up to the carriage standing back with the pump running. Since when it runs, by the sequence's clock.
+double push_away(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.activity(Activity::swap);
-    s.comment(p.cleaning.brush ? "1 push the vat away, the brush wipes the part" : "1 push the vat away");
-    s.move(Axis::carriage, p.carriage.tower_um);
+    s.comment(p.has_brush() ? "1 push the vat away, the brush wipes the part" : "1 push the vat away");
+    push_vat(s);
     s.comment("2 spray, lower the vat off the hooks");
     s.pump(true);
     s.activity(Activity::clean);
-    s.move(Axis::tower, lowered_um(p, slot), p.hooks.speed_mm_s);
+    const double since_s = s.seconds().total;
+    lower_off_hooks(s, slot);
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
+    return since_s;
 }
 
 /// Step 3 for `spray_s` less what has passed of it since `sprayed_since_s` and what step 4 will take.
@@ -135,8 +171,7 @@ void load_from_tower(Sequence& s, int slot) {
 
 void swap_by_tower(Sequence& s, int from_slot, int to_slot, double spray_s) {
     const Printer& p = s.printer();
-    push_away(s, from_slot);
-    const double since_s = s.seconds().total - hook_seconds(p) - back_off_seconds(p);
+    const double since_s = push_away(s, from_slot);
     spray(s, to_slot, since_s, spray_s, hook_seconds(p) + back_off_seconds(p));
     s.comment("4 advance, raise the next vat onto the hooks");
     s.move(Axis::carriage, p.carriage.tower_um);
@@ -148,8 +183,7 @@ void swap_by_tower(Sequence& s, int from_slot, int to_slot, double spray_s) {
 
 void store_in_tower(Sequence& s, int slot) {
     const Printer& p = s.printer();
-    push_away(s, slot);
-    const double since_s = s.seconds().total - hook_seconds(p) - back_off_seconds(p);
+    const double since_s = push_away(s, slot);
     spray(s, slot, since_s, p.cleaning.spray_s, 0);
     pump_off(s);
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
@@ -239,7 +273,7 @@ Sequence standing_at(const machine::Printer& printer, int slot) {
     Sequence s(printer);
     s.mute();
     Position at;
-    at[Axis::platform] = printer.clear_um(0);
+    at[Axis::platform] = printer.push_um(0);
     if (printer.store() == Store::tower) {
         at[Axis::carriage] = printer.carriage.print_um;
         at[Axis::tower] = printer.level_um(slot);

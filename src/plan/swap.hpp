@@ -3,7 +3,7 @@
 // A tower: the swap of the thesis (chapter 4), step by step.
 //
 //   1  the carriage pushes the vat into the tower; the brush wipes the part on the way
-//   2  the pump starts; the tower lowers, the hooks come free
+//   2  the pump starts; the tower lowers, the hooks come free, and the platform rises off the brush
 //   3  the cleaning vat backs off and oscillates in X, the platform in Z, while the tower brings the next slot (of
 //      several towers, the table first brings the right one)
 //   4  the carriage advances, the tower rises, the hooks engage; the pump stops
@@ -13,7 +13,8 @@
 // 63 s. A table: it turns or shifts to the cleaning station, the platform lowers the part into it and oscillates, rises
 // again, and the table brings the next vat. A single vat: nothing ever moves.
 //
-// All of it needs the platform clear of the vat before.
+// All of it needs the platform clear of the vat before; to put a vat away that has a brush, at Printer::push_um() of
+// the part, where the brush reaches it.
 #pragma once
 
 #include "plan/sequence.hpp"
@@ -36,7 +37,7 @@ void clean_part(Sequence& sequence, double seconds);
 /// The vat of `slot` lies under the platform and the tower stands anywhere: brings the tower level with the slot.
 void meet_vat(Sequence& sequence, int slot);
 
-/// A muted sequence that stands with the vat of `slot` under a platform that is clear of it.
+/// A muted sequence that stands with the vat of `slot` under a platform that is ready for it to be put away.
 [[nodiscard]] Sequence standing_at(const machine::Printer& printer, int slot);
 
 /// What loading the first vat takes, from homed axes.

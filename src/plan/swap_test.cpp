@@ -15,6 +15,7 @@ Sequence loaded(const machine::Printer& printer) {
     Sequence s(printer);
     s.move(Axis::platform, printer.clear_um(1000));
     load_vat(s, 1);
+    s.move(Axis::platform, printer.push_um(1000));
     return s;
 }
 
@@ -67,6 +68,21 @@ TEST_CASE("the same swap on a slower carriage takes longer: times are motions, n
     const double push = 355.6 / 7.6 + 7.6 / 50;
     CHECK(seconds_of_swap(slow, 2) > before + 40);
     CHECK(seconds_of_swap(slow, 2) == doctest::Approx(2 * push + 15).epsilon(0.02));
+}
+
+TEST_CASE("the brush wipes a part that hangs 1 mm over the rim for 10 s; it takes no time of its own") {
+    machine::Printer printer = test::tower();
+    const double with_s = seconds_of_swap(printer, 2);
+    Sequence s = loaded(printer);
+    CHECK(s.position()[Axis::platform] == 1000 + 82550 + 1000);
+    const std::size_t before = s.text().size();
+    swap_vat(s, 1, 2);
+    const std::string swap = s.text().substr(before);
+    // Off the hooks and off the brush in one move: 1 mm up while the tower lowers by 29.5 mm at 10 mm/s.
+    CHECK(swap.find("G1 Z85.550 Y0.500 F600.3") != std::string::npos);
+    printer.cleaning.brush = false;
+    CHECK(seconds_of_swap(printer, 2) == doctest::Approx(with_s).epsilon(1e-6));
+    CHECK(loaded(printer).position()[Axis::platform] == 1000 + 82550 + 2000);
 }
 
 TEST_CASE("every fan of the machine dries the part while the next vat comes, none at any other time") {

@@ -32,6 +32,7 @@ std::vector<Device> devices_of(const machine::Printer& printer) {
                                        {machine::Axis::table, Device::table}}) {
         if (printer.axis(axis).present()) devices.push_back(device);
     }
+    if (printer.has_brush()) devices.push_back(Device::brush);
     if (!printer.pump.on.empty()) devices.push_back(Device::pump);
     if (!printer.fans.empty()) devices.push_back(Device::fans);
     return devices;
@@ -41,7 +42,7 @@ std::vector<Device> devices_of(const machine::Printer& printer) {
 
 std::string_view device_name(Device device) {
     constexpr std::array<std::string_view, device_count> names = {"platform", "cleaning vat", "tower", "table",
-                                                                  "spray",    "fans",         "light"};
+                                                                  "spray",    "fans",         "light", "brush"};
     return names[static_cast<std::size_t>(device)];
 }
 

@@ -11,8 +11,8 @@ namespace pliant::plan {
 
 struct Plan;
 
-enum class Device { platform, carriage, tower, table, pump, fans, light };
-inline constexpr int device_count = 7;
+enum class Device { platform, carriage, tower, table, pump, fans, light, brush };
+inline constexpr int device_count = 8;
 
 /// What a person calls it.
 [[nodiscard]] std::string_view device_name(Device device);

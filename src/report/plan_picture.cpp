@@ -82,10 +82,12 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
     draw_title(canvas, 262,
                fmt::format("One swap, from slot {} to slot {}: {:.1f} s", swap.from_slot, swap.to_slot, swap.seconds));
     constexpr double top = 282;
+    constexpr double room = 264;  // above the next title
     const int rows = static_cast<int>(swap.devices.size());
-    draw_axis(canvas, top, top + rows * row_height, swap.seconds, 1, "s");
+    const double height = std::min(row_height, room / std::max(1, rows));
+    draw_axis(canvas, top, top + rows * height, swap.seconds, 1, "s");
     for (int d = 0; d < rows; ++d) {
-        canvas.text({left - 16, top + d * row_height + 29},
+        canvas.text({left - 16, top + d * height + height / 2 + 7},
                     plan::device_name(swap.devices[static_cast<std::size_t>(d)]), label);
     }
     for (const plan::Stretch& s : swap.stretches) {
@@ -93,7 +95,7 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
         if (found == swap.devices.end()) continue;
         const int d = static_cast<int>(found - swap.devices.begin());
         const double scale = (right - left) / swap.seconds;
-        canvas.box({left + s.begin_s * scale, top + d * row_height + 7}, (s.end_s - s.begin_s) * scale, row_height - 14,
+        canvas.box({left + s.begin_s * scale, top + d * height + 7}, (s.end_s - s.begin_s) * scale, height - 14,
                    palette(d), 4);
     }
 }

@@ -129,6 +129,8 @@ void Twin::execute_move(const Command& c) {
     if (Status status = motors_.move(now_s_, target, feed_mm_s_); !status) return violation(status.error().message);
     ++log_.moves;
     log_.path = path_after(log_.path, target);
+    const int slip_um = slip_um_[static_cast<std::size_t>(Axis::platform)];
+    brush_.move(from, target, interlock().part_height_um() - slip_um);
     miss_steps(from, target);
     note_vat(vat);
 }
@@ -180,10 +182,12 @@ void Twin::execute_set(const Command& c) {
 void Twin::note_vat(std::optional<int> before) {
     const auto vat = interlock().hooked_vat();
     if (vat == before) return;
+    const double brushed = brush_.wiped() ? printer_.brushed_share() : 0;
+    brush_.reset();
     if (before) {
         if (part_vat_ == *before && cure_.section_mm2() > 0) {
-            cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2()));
-            residue_ = 1;
+            cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2(), brushed));
+            residue_ = 1 - brushed;
         }
         if (fault_hits(Fault::Kind::stuck_hook, ++unhooked_) && stuck_vat_ < 0) {
             stuck_vat_ = *before;

@@ -19,8 +19,10 @@ Fluids::Fluids(const machine::Printer& printer)
     }
 }
 
-double Fluids::leave(int vat, double section_mm2) {
-    const double ml = section_mm2 * printer_->cleaning.film_um / 1e6;
+double Fluids::leave(int vat, double section_mm2, double brushed) {
+    const double film_ml = section_mm2 * printer_->cleaning.film_um / 1e6;
+    const double ml = film_ml * (1 - brushed);
+    brushed_ml_ += film_ml * brushed;
     for (std::size_t r = 0; r < film_ml_.size(); ++r) film_ml_[r] = ml * mixture_[static_cast<std::size_t>(vat)][r];
     return ml;
 }

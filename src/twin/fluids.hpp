@@ -14,8 +14,9 @@ class Fluids {
 public:
     explicit Fluids(const machine::Printer& printer);
 
-    /// The part leaves a vat with a film over `section_mm2` of it. What the vat loses, in ml.
-    double leave(int vat, double section_mm2);
+    /// The part leaves a vat with a film over `section_mm2` of it, of which a brush returns the share `brushed`. What
+    /// the vat loses, in ml.
+    double leave(int vat, double section_mm2, double brushed = 0);
     /// The part is cleaned; by the law of the machine's method (thesis, table 4.2).
     void clean(double seconds);
     /// The part comes into a vat that holds `vat_ml`: what is left of the film mixes in. What the vat gains, in ml.
@@ -33,6 +34,8 @@ public:
     [[nodiscard]] const std::vector<std::string>& resins() const { return resins_; }
     /// Resin that cleaning has washed off, in ml.
     [[nodiscard]] double washed_ml() const { return washed_ml_; }
+    /// Resin that brushes have wiped off the part, back into its vats, in ml.
+    [[nodiscard]] double brushed_ml() const { return brushed_ml_; }
 
 private:
     const machine::Printer* printer_;
@@ -42,6 +45,7 @@ private:
     std::vector<std::vector<double>> mixture_;  ///< (vats, resins), shares
     std::vector<double> film_ml_;               ///< by resin
     double washed_ml_ = 0;
+    double brushed_ml_ = 0;
 };
 
 }  // namespace pliant::twin

@@ -31,6 +31,16 @@ TEST_CASE("what clings to the part and is not sprayed off mixes into the next va
     CHECK(fluids.enter(2, 100) == 0);
 }
 
+TEST_CASE("a brush returns its share to the vat: less is lost, washed off and carried on") {
+    const auto printer = printer_with_film();
+    Fluids fluids(printer);
+    CHECK(fluids.leave(0, 1000, 0.29) == doctest::Approx(0.071));
+    CHECK(fluids.brushed_ml() == doctest::Approx(0.029));
+    fluids.clean(15);
+    CHECK(fluids.washed_ml() / (0.071 * 0.9475) == doctest::Approx(1));
+    CHECK(fluids.enter(1, 100) / (0.071 * 0.0525) == doctest::Approx(1));
+}
+
 TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);

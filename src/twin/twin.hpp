@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "job/job.hpp"
+#include "machine/brush.hpp"
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
 #include "twin/cure.hpp"
@@ -222,6 +223,7 @@ private:
     int missed_vat_ = -1;                             ///< on hooks that did not catch it
     int part_vat_ = -1;                               ///< whose resin clings to the part
     double residue_ = 0;
+    machine::BrushWatch brush_{printer_};
     bool pump_works_ = true;
     std::optional<Runs> shown_;
     double shown_since_s_ = 0;
