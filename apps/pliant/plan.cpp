@@ -10,6 +10,7 @@
 #include "overcure.hpp"
 #include "plan/timeline.hpp"
 #include "report/plan_picture.hpp"
+#include "spray_plan.hpp"
 
 namespace pliant::app {
 namespace {
@@ -19,11 +20,14 @@ struct Options {
     std::string printer;
     std::string picture_file;
     bool any_vat = false;
+    SprayOrder spray;
     Output output;
 };
 
 Status make_plan(const Options& options) {
     if (Status named = check_ending("-o", options.picture_file, "a picture", ".png"); !named) return named;
+    if (Status named = check_ending("--spray-picture", options.spray.picture_file, "a picture", ".png"); !named)
+        return named;
     Result<operate::OpenJob> job = read_job(options.job);
     if (!job) return tl::unexpected(job.error());
     if (!options.printer.empty()) {
@@ -31,6 +35,8 @@ Status make_plan(const Options& options) {
         if (!other) return tl::unexpected(other.error());
         job->printer = std::move(*other);
     }
+    const Result<std::optional<SprayResult>> spray = look_at_spray(options.spray, job->archive, job->printer);
+    if (!spray) return tl::unexpected(spray.error());
     job::Manifest manifest = job->archive.manifest();
     manifest.any_vat = manifest.any_vat || options.any_vat;
     Result<plan::Plan> plan = plan::make_plan(manifest, job->printer);
@@ -46,9 +52,9 @@ Status make_plan(const Options& options) {
         if (Status status = write_file(options.picture_file, *png); !status) return status;
     }
     if (options.output.json)
-        fmt::print("{}\n", plan::plan_json(*plan));
+        fmt::print("{}\n", with_spray(plan::plan_json(*plan), *spray));
     else if (!options.output.quiet)
-        fmt::print("{}", plan::plan_text(*plan));
+        fmt::print("{}{}", plan::plan_text(*plan), spray_text(*spray));
     return {};
 }
 
@@ -61,6 +67,12 @@ void add_plan(CLI::App& app, int& status) {
     command->add_option("--printer", options->printer, "another printer file than the job's own, to compare");
     command->add_flag("--any-vat", options->any_vat, "as if resins that no vat holds were filled into free ones");
     command->add_option("-o,--output", options->picture_file, "file for a picture of the plan (.png)");
+    command->add_flag("--spray", options->spray.wanted, "how clean the machine's sprinklers get the finished part");
+    command->add_option("--optimise-spray", options->spray.cleanness,
+                        "plan with the oscillation and time that take off this share of the film (0.95) with the least "
+                        "solution");
+    command->add_option("--spray-picture", options->spray.picture_file,
+                        "file for a picture of what the spray leaves on the part (.png)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant plan gripper.zip -o plan.png");
     on_call(*command, status, [options] { return make_plan(*options); });

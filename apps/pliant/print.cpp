@@ -69,6 +69,15 @@ Result<int> report_on_journal(const LiveOptions& live) {
     return exit_done;
 }
 
+/// Does what the plan asks of a person, when the light of `layer` comes: refills its vats, and looks after the solution
+/// for the layer above, whose first cleaning comes before its first light.
+void do_as_asked(twin::Twin& twin, const plan::Plan& plan, int layer, std::size_t& refilled, std::size_t& cared) {
+    for (; refilled < plan.refills.size() && plan.refills[refilled].layer <= layer; ++refilled)
+        twin.fill_vat(plan.refills[refilled].slot);
+    const auto& care = plan.solution.care;
+    for (; cared < care.size() && care[cared].layer <= layer + 1; ++cared) twin.care(care[cared].care);
+}
+
 Result<int> print_on_twin(const Options& options) {
     auto progress = terminal_progress(options.live.output);
     const Result<operate::ProvedJob> job = prove_job(options.live.job);
@@ -82,7 +91,9 @@ Result<int> print_on_twin(const Options& options) {
     TwinBench bench(plan::filled_printer(job->plan, manifest, job->printer), std::move(twin_options));
     // What has been shown is remembered: decoding is most of the work.
     std::map<std::pair<int, int>, twin::Runs> shown;
+    std::size_t refilled = 0, cared = 0;
     const auto images = [&](int layer, int material) {
+        do_as_asked(bench.twin(), job->plan, layer, refilled, cared);
         Result<job::Image> image = operate::image_of(job->archive, layer, material);
         if (image) shown[{layer, material}] = twin::runs_of(*image);
         return image;

@@ -16,6 +16,7 @@
 #include "host/print.hpp"
 #include "machine/interlock.hpp"
 #include "machine/printer.hpp"
+#include "machine/solution.hpp"
 #include "machine/switches.hpp"
 
 namespace pliant::host {
@@ -46,11 +47,12 @@ struct Programs {
     std::function<Result<std::string>(const Recovery& recovery)> resume;
 };
 
-/// Ask for resin before a layer.
+/// Ask for resin, or for care of the cleaning solution, before a layer.
 struct Refill {
     int layer = 0;
-    int slot = 0;      ///< of the vat
-    std::string text;  ///< "refill the vat of slot 2 with rigid-flex"
+    int slot = 0;      ///< of the vat; 0: none, `care` is asked for
+    std::string text;  ///< "refill the vat of slot 2 with rigid-flex"; all that is asked for before that layer
+    machine::SolutionCare care = machine::SolutionCare::change;
 };
 
 /// A job as the host needs it.

@@ -186,6 +186,31 @@ struct Cleaning {
     double brush_share = 0;  ///< of the film on the part that the brush returns to its vat
 };
 
+/// The reservoir of the cleaning solution, its drain and its filter.
+struct Solution {
+    double volume_ml = 0;         ///< of a full reservoir; 0: the machine has none, every cleaning takes fresh solution
+    double fill_ml = 0;           ///< in it at the start
+    double resin_share = 0;       ///< of that, resin
+    double least_ml = 0;          ///< below that the pump draws air
+    double spray_loss = 0;        ///< share of what is pumped that evaporates and does not come back through the drain
+    double evaporation_ml_h = 0;  ///< from the reservoir, in an hour
+    double spent_share = 0;       ///< share of resin at which the solution must be changed
+    double filter_share = 0;      ///< of the resin that is washed off: what the filter keeps
+    double filter_ml = 0;         ///< and how much of it until it is full
+
+    [[nodiscard]] bool present() const { return volume_ml > 0; }
+};
+
+/// A head of the spray, in the cleaning vat (thesis, figure 4.3): a cone of drops, equally dense in all its directions.
+struct Sprinkler {
+    /// x and y of the part, from the middle of the platform, with the carriage at the tower (of a table: with the
+    /// cleaning station under the platform); z above the floor of the cleaning vat.
+    std::array<double, 3> place_mm{};
+    std::array<double, 3> aim{0, 0, 1};  ///< of length 1
+    double cone_rad = 0;                 ///< full angle
+    double flow = 1;                     ///< its part of the solution that is pumped, beside those of the others
+};
+
 /// The commands of something that hangs on an auxiliary pin; "" if the machine has none.
 struct Switch {
     std::string on, off;
@@ -254,6 +279,8 @@ struct Printer {
     DoorSwitch door;
     EmergencyLine emergency_line;
     Limits limits;
+    Solution solution{};
+    std::vector<Sprinkler> sprinklers{};  ///< empty: where they are is not known
 
     [[nodiscard]] const AxisSpec& axis(Axis a) const { return axes[static_cast<std::size_t>(a)]; }
     [[nodiscard]] Store store() const {

@@ -380,6 +380,69 @@ Cleaning read_cleaning(Reader r, Store store, int clearance_um) {
     return c;
 }
 
+double share(Reader& r, std::string_view key, double fallback) {
+    const double value = r.number(key, fallback);
+    if (!(value >= 0 && value <= 1)) r.problem(key, "must be a share from 0 to 1");
+    return value;
+}
+
+/// The filter's two keys go together.
+void read_filter(Reader& r, Solution& s) {
+    if (r.has("filter") != r.has("filter_share")) {
+        r.problem("filter", "and filter_share go together: how much resin it holds, and which share it keeps");
+    } else if (r.has("filter")) {
+        s.filter_ml = positive(r, "filter", Dimension::volume, 1e6);
+        s.filter_share = share(r, "filter_share", 0);
+    }
+}
+
+Solution read_solution(Reader r) {
+    Solution s;
+    s.volume_ml = positive(r, "volume", Dimension::volume, 1e6);
+    s.fill_ml = r.quantity("fill", Dimension::volume, s.volume_ml / 1e6) * 1e6;
+    if (s.fill_ml < 0 || s.fill_ml > s.volume_ml) r.problem("fill", "must be from 0 to volume");
+    s.resin_share = share(r, "resin_share", 0);
+    s.least_ml = not_negative(r, "least", Dimension::volume, 1e6);
+    if (s.least_ml >= s.volume_ml && r.has("least")) r.problem("least", "must be less than volume");
+    s.spray_loss = share(r, "spray_loss", 0.02);
+    s.evaporation_ml_h = not_negative(r, "evaporation_per_hour", Dimension::volume, 1e6);
+    s.spent_share = r.number("spent", 0.1);
+    if (!(s.spent_share > 0 && s.spent_share <= 1)) r.problem("spent", "must be a share above 0, at most 1");
+    read_filter(r, s);
+    r.finish();
+    return s;
+}
+
+Sprinkler read_sprinkler(Reader& r) {
+    Sprinkler s;
+    const auto place = r.quantities("position", Dimension::length, 3);
+    for (std::size_t i = 0; i < place.size() && i < 3; ++i)
+        s.place_mm[i] = checked_um(r, "position", place[i]) / 1000.0;
+    const std::vector<double> aim = r.has("aim") ? r.numbers("aim", 3) : std::vector<double>{0, 0, 1};
+    const double length = aim.size() == 3 ? std::hypot(aim[0], aim[1], aim[2]) : 0;
+    if (length > 0 && std::isfinite(length))
+        s.aim = {aim[0] / length, aim[1] / length, aim[2] / length};
+    else
+        r.problem("aim", "must be a direction such as [0.5, 0, 1]");
+    constexpr double widest_deg = 170;
+    s.cone_rad = r.quantity("cone", Dimension::angle);
+    if (r.has("cone") && !(s.cone_rad > 0 && s.cone_rad <= widest_deg / degrees))
+        r.problem("cone", "must be above 0, at most 170 deg: the full angle");
+    s.flow = r.number("flow", 1);
+    if (!(s.flow > 0 && s.flow <= 1e6)) r.problem("flow", "must be above 0: its part beside those of the other heads");
+    r.finish();
+    return s;
+}
+
+void read_sprinklers(Reader& root, Printer& p) {
+    constexpr std::size_t most = 64;
+    if (!root.has("sprinkler")) return;
+    for (Reader& r : root.tables("sprinkler")) p.sprinklers.push_back(read_sprinkler(r));
+    if (p.store() == Store::none || p.cleaning.method != CleaningMethod::spray)
+        root.problem("sprinkler", "belongs to a machine that cleans with method = \"spray\"");
+    if (p.sprinklers.size() > most) root.problem("sprinkler", "there may be at most 64");
+}
+
 Limits read_limits(Reader r) {
     Limits limits;
     limits.exposure_s = r.quantity("exposure", Dimension::time, limits.exposure_s);
@@ -614,6 +677,11 @@ Printer read_printer(Reader& root) {
     read_vats(root, p);
     p.projector = read_projector(root.table("projector"));
     p.cleaning = read_cleaning(root.table("cleaning", p.store() != Store::none), p.store(), p.platform.clearance_um);
+    if (root.has("solution")) {
+        p.solution = read_solution(root.table("solution"));
+        if (p.store() == Store::none) root.problem("solution", "belongs to a machine that cleans: one with more vats");
+    }
+    read_sprinklers(root, p);
     p.pump = read_switch(root.table("pump", false));
     read_fans(root, p);
     read_limit_switches(root, p);

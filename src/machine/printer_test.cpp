@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "core/files.hpp"
@@ -150,4 +151,19 @@ TEST_CASE("a brush: its height, its share, what they are without being said, and
     const auto on_table = parse_printer(replaced(rotary, "[cleaning]", "[cleaning]\nbrush = true"), "p.toml");
     REQUIRE_FALSE(on_table);
     CHECK(holds(on_table.error().message, "cleaning.brush: needs a [tower]"));
+}
+
+TEST_CASE("sprinklers have a place, a direction of length 1 and a cone") {
+    const Printer tower = load_printer(tower_file).value();
+    REQUIRE(tower.sprinklers.size() == 3);
+    const Sprinkler& head = tower.sprinklers[1];
+    CHECK(head.place_mm == std::array<double, 3>{120, -60, 20});
+    CHECK(std::hypot(head.aim[0], head.aim[1], head.aim[2]) == doctest::Approx(1));
+    CHECK(head.aim[0] / head.aim[1] == doctest::Approx(-1.5 / 0.94));
+    CHECK(head.cone_rad == doctest::Approx(100 * 3.14159265358979 / 180));
+    CHECK(holds(message_with("aim = [1.5, 0.94, 1]", "aim = [0, 0, 0]"), "sprinkler[0].aim: must be a direction"));
+    CHECK(holds(message_with("cone = \"100 deg\"", "cone = \"180 deg\""), "sprinkler[0].cone: must be above 0"));
+    CHECK(holds(message_with("cone = \"100 deg\"", "cone = \"100 deg\"\nflow = 0"), "flow: must be above 0"));
+    CHECK(holds(message_with("method = \"spray\"", "method = \"bath\""), "sprinkler: belongs to a machine"));
+    CHECK(holds(message_with("cone = \"100 deg\"", "#"), "cone"));
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
 #include "core/files.hpp"
 #include "operate/job_file.hpp"
 #include "operate/proved_job.hpp"
@@ -9,12 +12,23 @@
 namespace pliant::operate {
 namespace {
 
+/// What a person has to do before layers. The host asks once before a layer: all that is to be done there is one text.
 std::vector<host::Refill> refills_of(const plan::Plan& plan) {
     std::vector<host::Refill> refills;
     for (const plan::RefillBefore& refill : plan.refills) {
         refills.push_back(
             {refill.layer, refill.slot, fmt::format("refill the vat of slot {} with {}", refill.slot, refill.resin)});
     }
+    for (const plan::CareBefore& care : plan.solution.care) {
+        if (care.layer > 0) refills.push_back({care.layer, 0, std::string(machine::care_text(care.care)), care.care});
+    }
+    std::stable_sort(refills.begin(), refills.end(), [](auto& a, auto& b) { return a.layer < b.layer; });
+    std::map<int, std::string> texts;
+    for (const host::Refill& refill : refills) {
+        std::string& text = texts[refill.layer];
+        text += (text.empty() ? "" : "; ") + refill.text;
+    }
+    for (host::Refill& refill : refills) refill.text = texts[refill.layer];
     return refills;
 }
 

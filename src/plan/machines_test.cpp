@@ -173,12 +173,46 @@ TEST_CASE("resin that is washed off and solution that is used follow from the nu
     CHECK(brushed.brushed_ml / brushed.waste_ml == doctest::Approx(0.29 / 0.71));
     CHECK(brushed.vats[0].brushed_ml + brushed.vats[1].brushed_ml == doctest::Approx(brushed.brushed_ml));
     printer.cleaning.brush = false;
+    printer.solution = {};
     const Plan plan = make_plan(job, printer).value();
     CHECK((brushed.brushed_ml + brushed.waste_ml) / plan.waste_ml == doctest::Approx(1));
     CHECK(plan.brushed_ml == 0);
     // Two swaps and the cleaning at the end: 20 ml each; 200 mm^2 under a film of 60 um each.
     CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
     CHECK(plan.waste_ml == doctest::Approx(3 * 200 * 0.06 / 1000));
+}
+
+TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, and it is changed when it is spent") {
+    machine::Printer printer = plan::test::tower();
+    job::Manifest job =
+        plan::test::make_job(std::vector<std::vector<int>>(170, {0, 1, 2}), {"semi-flex", "rigid-flex", "tough"});
+    const Plan die = make_plan(job, printer).value();
+    CHECK(die.swaps == 340);
+    CHECK(die.solution.pumped_ml == doctest::Approx(341 * 20));
+    // 2 % of what is sprayed, and 1 ml an hour of printing.
+    const double evaporated = 341 * 20 * 0.02 + die.seconds.total / 3600;
+    CHECK(die.solvent_ml / evaporated == doctest::Approx(1).epsilon(0.01));
+    CHECK(die.solution.care.empty());
+    // 300 mm^2 under 60 um, brushed and sprayed; a fifth of it stays in the filter.
+    const double washed = 341 * 300 * 0.06 / 1000 * 0.71 * 0.9475 * 0.8;
+    CHECK(die.solution.resin_share * die.solution.liquid_ml / washed == doctest::Approx(1).epsilon(0.01));
+
+    for (job::Layer& layer : job.layers) {
+        for (job::LayerImage& image : layer.images) image.area_mm2 = 8000;
+    }
+    printer.solution.spent_share = 0.05;
+    printer.solution.filter_share = printer.solution.filter_ml = 0;
+    const Plan plate = make_plan(job, printer).value();
+    REQUIRE(plate.solution.care.size() == 1);
+    CHECK(plate.solution.care[0].care == machine::SolutionCare::change);
+    CHECK(plate.solvent_ml > 4500);
+    // By hand: 1.44 ml of film less what brush and spray leave, and less what the solution brings back (2.5 % in the
+    // mean), are 0.944 ml of resin at each of two cleanings a layer; 0.4 ml evaporate. n 1.889 / (5000 + n 1.04) = 5 %.
+    CHECK(plate.solution.care[0].layer == doctest::Approx(136).epsilon(0.01));
+    CHECK(plate.solution.resin_share < 0.05);
+    const std::string text = plan_text(plate);
+    CHECK(text.find("change the cleaning solution") != std::string::npos);
+    CHECK(plan_json(plate).find("\"care\"") != std::string::npos);
 }
 
 TEST_CASE("a program that has lost a line that the interlocks depend on is refused") {

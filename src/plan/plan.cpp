@@ -9,6 +9,7 @@
 #include "plan/assign.hpp"
 #include "plan/least_cost.hpp"
 #include "plan/print_sequence.hpp"
+#include "plan/solution_use.hpp"
 #include "plan/swap.hpp"
 
 namespace pliant::plan {
@@ -126,37 +127,6 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     plan.swap_lower_bound = fewest_swaps(layers);
 }
 
-/// What resin clings to when the part leaves a vat: its cross-section.
-double section_mm2(const job::Layer& layer) {
-    double area = 0;
-    for (const job::LayerImage& image : layer.images) area += image.area_mm2;
-    return area;
-}
-
-/// What the brush returns to its vat at every change, what is washed off, and the solution for it.
-void add_waste(Plan& plan, const job::Manifest& job, const Printer& printer) {
-    const auto clean = [&](int vat, std::size_t layer, double seconds) {
-        const auto use = std::find_if(plan.vats.begin(), plan.vats.end(), [vat](auto& u) { return u.vat == vat; });
-        const double film_ml = section_mm2(job.layers[layer]) * printer.cleaning.film_um / 1e6;
-        const double brushed_ml = film_ml * printer.brushed_share();
-        use->brushed_ml += brushed_ml;
-        plan.brushed_ml += brushed_ml;
-        use->waste_ml += film_ml - brushed_ml;
-        plan.waste_ml += film_ml - brushed_ml;
-        plan.solvent_ml += printer.cleaning.solvent_ml_s * seconds;
-    };
-    int loaded = -1;
-    std::size_t last_layer = 0;
-    for (std::size_t i = 0; i < plan.order.size(); ++i) {
-        for (const int vat : plan.order[i]) {
-            if (loaded >= 0 && loaded != vat) clean(loaded, last_layer, printer.cleaning_s(loaded, vat));
-            loaded = vat;
-            last_layer = i;
-        }
-    }
-    if (loaded >= 0 && printer.store() != machine::Store::none) clean(loaded, last_layer, printer.cleaning.spray_s);
-}
-
 /// A blank layer below a printed one leaves a gap that the light must bridge.
 void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) {
     int below_um = 0;
@@ -191,11 +161,11 @@ Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRu
     plan.warnings = std::move(assignment->warnings);
     plan.vat_of_image = std::move(assignment->vat_of_image);
     choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
-    add_waste(plan, job, with_resins(plan, printer));
     warn_of_gaps(job, printer, plan);
     PrintTimes times = print_times(plan, job, with_resins(plan, printer));
     plan.seconds = times.all;
     plan.layer_seconds = std::move(times.layers);
+    reckon_solution(plan, job, with_resins(plan, printer));
     return plan;
 }
 

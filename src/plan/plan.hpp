@@ -10,6 +10,7 @@
 #include "machine/printer.hpp"
 #include "plan/order.hpp"
 #include "plan/sequence.hpp"
+#include "plan/solution_use.hpp"
 
 namespace pliant::plan {
 
@@ -56,10 +57,11 @@ struct Plan {
     double least_change_s = 0;                   ///< no order's changes of vat take less
     std::vector<Seconds> layer_seconds;          ///< of each layer, with the changes of vat before and within it
     double waste_ml = 0;                         ///< resin washed off
-    double solvent_ml = 0;                       ///< cleaning solution used
+    double solvent_ml = 0;                       ///< cleaning solution used up
     std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;
     double brushed_ml = 0;  ///< resin that brushes wipe off the part, back into its vats
+    SolutionUse solution;
 };
 
 /// Plans `job` for `printer`. Each resin takes the vat that holds it. One that no vat holds is an error, or, where the

@@ -77,6 +77,35 @@ Json vat_json(const VatUse& use) {
             {"brushed_ml", rounded(use.brushed_ml)}};
 }
 
+Json solution_json(const SolutionUse& s) {
+    Json care = Json::array();
+    for (const CareBefore& c : s.care)
+        care.push_back({{"layer", c.layer}, {"text", std::string(machine::care_text(c.care))}});
+    return {{"goes_round", s.goes_round},
+            {"pumped_ml", rounded(s.pumped_ml)},
+            {"used_ml", rounded(s.used_ml)},
+            {"liquid_ml", rounded(s.liquid_ml)},
+            {"resin_share", std::round(s.resin_share * 1e6) / 1e6},
+            {"filter_ml", rounded(s.filter_ml)},
+            {"care", std::move(care)}};
+}
+
+/// What becomes of the solution, and when somebody must look after it.
+std::string solution_text(const SolutionUse& s) {
+    if (s.pumped_ml <= 0) return "";
+    if (!s.goes_round) return fmt::format("  {:<10}{:>7.0f} ml\n", "solution", s.used_ml);
+    std::string text = fmt::format(
+        "  {:<10}{:>7.0f} ml   used up, of {:.0f} ml pumped; at the end {:.0f} ml with {:.2f} % of resin (spent at "
+        "{:g} %)\n",
+        "solution", s.used_ml, s.pumped_ml, s.liquid_ml, 100 * s.resin_share, 100 * s.spent_share);
+    constexpr std::size_t most = 5;
+    for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)
+        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer),
+                            machine::care_text(s.care[i].care));
+    if (s.care.size() > most) text += fmt::format("  and {} times more\n", s.care.size() - most);
+    return text;
+}
+
 std::string orders_text(const Plan& plan) {
     std::string text;
     for (const OrderCost& c : plan.compared) {
@@ -116,6 +145,7 @@ std::string plan_json(const Plan& plan) {
                        {"waste_ml", rounded(plan.waste_ml)},
                        {"brushed_ml", rounded(plan.brushed_ml)},
                        {"solvent_ml", rounded(plan.solvent_ml)},
+                       {"solution", solution_json(plan.solution)},
                        {"vats", std::move(vats)},
                        {"order", order_json(plan)},
                        {"warnings", plan.warnings}};
@@ -155,7 +185,7 @@ std::string plan_text(const Plan& plan) {
         text += fmt::format("  {:<10}{:>7.1f} ml   {}{}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin,
                             waste_text(use));
     }
-    if (plan.solvent_ml > 0) text += fmt::format("  {:<10}{:>7.0f} ml\n", "solution", plan.solvent_ml);
+    text += solution_text(plan.solution);
     for (const std::string& warning : plan.warnings) text += fmt::format("  warning: {}\n", warning);
     return text;
 }

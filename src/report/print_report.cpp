@@ -191,7 +191,7 @@ std::string materials(const Printed& p) {
     return out +
            fmt::format(
                "</tbody></table></div>\n<p class=\"faint\">As drawn. The plan counts {:.2f} ml more that cling to "
-               "the part and are washed off, and {:.0f} ml of cleaning solution.</p>\n",
+               "the part and are washed off, and {:.0f} ml of cleaning solution used up.</p>\n",
                p.plan.waste_ml, p.plan.solvent_ml);
 }
 

@@ -329,6 +329,9 @@ void PrintSession::prepare_start(Machine& machine) {
         machine.twin->with([&](twin::Twin& twin) {
             twin.take_part_off();
             for (const plan::VatUse& use : machine.ready.plan.vats) twin.fill_vat(use.slot);
+            for (const plan::CareBefore& care : machine.ready.plan.solution.care) {
+                if (care.layer == 0) twin.care(care.care);
+            }
         });
     }
     machine.part.clear();
@@ -339,7 +342,13 @@ void PrintSession::pour(Machine& machine) {
     const std::string prompt = machine.control.snapshot().prompt;
     if (!machine.twin || prompt.empty()) return;
     for (const host::Refill& refill : machine.ready.job.refills) {
-        if (refill.text == prompt) machine.twin->with([&](twin::Twin& twin) { twin.fill_vat(refill.slot); });
+        if (refill.text != prompt) continue;
+        machine.twin->with([&](twin::Twin& twin) {
+            if (refill.slot == 0)
+                twin.care(refill.care);
+            else
+                twin.fill_vat(refill.slot);
+        });
     }
 }
 

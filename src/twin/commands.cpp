@@ -235,10 +235,21 @@ void Twin::execute_switch(const Command& c) {
             mishap("the pump moves nothing");
         }
     } else if (pump_works_) {
-        sprayed_s_ += at_s - pump_since_s_;
-        residue_ *= 1 - machine::cleaning_law(printer_.cleaning.method).removed(at_s - pump_since_s_);
-        fluids_.clean(at_s - pump_since_s_);
+        spray_until(at_s);
     }
+}
+
+/// The pump stops. One that has drawn air has cleaned nothing.
+void Twin::spray_until(double at_s) {
+    fluids_.advance_to(at_s);
+    if (fluids_.solution().draws_air()) {
+        if (!drew_air_) mishap("the pump draws air: the cleaning solution does not cover it");
+        drew_air_ = true;
+        return;
+    }
+    drew_air_ = false;
+    sprayed_s_ += at_s - pump_since_s_;
+    residue_ *= fluids_.clean(at_s - pump_since_s_);
 }
 
 void Twin::switch_fans(const Command& c, double at_s) {

@@ -6,6 +6,7 @@
 
 #include "machine/cleaning_data.hpp"
 #include "machine/printer.hpp"
+#include "machine/solution.hpp"
 
 namespace pliant::twin {
 
@@ -17,8 +18,13 @@ public:
     /// The part leaves a vat with a film over `section_mm2` of it, of which a brush returns the share `brushed`. What
     /// the vat loses, in ml.
     double leave(int vat, double section_mm2, double brushed = 0);
-    /// The part is cleaned; by the law of the machine's method (thesis, table 4.2).
-    void clean(double seconds);
+    /// The part is cleaned; by the law of the machine's method (thesis, table 4.2). Where solution with resin in it
+    /// replaces the film, that resin stays. The share of the film that is left.
+    double clean(double seconds);
+    /// Somebody looks after the cleaning solution.
+    void care(machine::SolutionCare care);
+    /// The clock; solution evaporates.
+    void advance_to(double now_s);
     /// The part comes into a vat that holds `vat_ml`: what is left of the film mixes in. What the vat gains, in ml.
     double enter(int vat, double vat_ml);
 
@@ -32,18 +38,24 @@ public:
     /// Share of one resin in a vat.
     [[nodiscard]] double share(int vat, int resin) const;
     [[nodiscard]] const std::vector<std::string>& resins() const { return resins_; }
+    [[nodiscard]] const machine::SolutionCircuit& solution() const { return solution_; }
     /// Resin that cleaning has washed off, in ml.
     [[nodiscard]] double washed_ml() const { return washed_ml_; }
     /// Resin that brushes have wiped off the part, back into its vats, in ml.
     [[nodiscard]] double brushed_ml() const { return brushed_ml_; }
 
 private:
+    void mix(const std::vector<double>& washed, double off, double before);
+
     const machine::Printer* printer_;
     machine::CleaningLaw law_;
     std::vector<std::string> resins_;
     std::vector<int> own_;                      ///< resin of each vat
     std::vector<std::vector<double>> mixture_;  ///< (vats, resins), shares
     std::vector<double> film_ml_;               ///< by resin
+    machine::SolutionCircuit solution_;
+    std::vector<double> dissolved_;  ///< by resin: shares of the resin in the solution
+    double now_s_ = 0;
     double washed_ml_ = 0;
     double brushed_ml_ = 0;
 };

@@ -41,6 +41,38 @@ TEST_CASE("a brush returns its share to the vat: less is lost, washed off and ca
     CHECK(fluids.enter(1, 100) / (0.071 * 0.0525) == doctest::Approx(1));
 }
 
+TEST_CASE("solution with resin in it cleans less, and carries resins to where they have never been") {
+    auto printer = printer_with_film();
+    printer.solution = {100, 100, 0, 0, 0, 0, 1, 0, 0};
+    Fluids fluids(printer);
+    for (int i = 0; i < 200; ++i) {
+        fluids.leave(0, 1000);
+        fluids.clean(15);
+        fluids.wipe();
+    }
+    const double c = fluids.solution().resin_share();
+    CHECK(c > 0.1);
+    CHECK(c < 0.17);  // 200 times 0.09475 ml, less what stays on the part, in 100 ml
+    fluids.leave(1, 1000);
+    CHECK(fluids.clean(15) / (1 - 0.9475 * (1 - c)) == doctest::Approx(1));
+    fluids.enter(2, 100);
+    CHECK(fluids.share(2, 0) / (0.1 * 0.9475 * c / 100) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(fluids.share(2, 1) / (0.1 * 0.0525 / 100) == doctest::Approx(1).epsilon(1e-3));
+    fluids.care(machine::SolutionCare::change);
+    fluids.leave(1, 1000);
+    CHECK(fluids.clean(15) == doctest::Approx(0.0525));
+}
+
+TEST_CASE("solution that has been used before counts as foreign resin") {
+    auto printer = printer_with_film();
+    printer.solution = {100, 100, 0.2, 0, 0, 0, 1, 0, 0};
+    Fluids fluids(printer);
+    fluids.leave(0, 1000);
+    fluids.clean(15);
+    CHECK(fluids.enter(1, 100) / (0.1 * (0.0525 + 0.9475 * 0.2)) == doctest::Approx(1));
+    CHECK(fluids.foreign_share(1) > 0.0002);
+}
+
 TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);

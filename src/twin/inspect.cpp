@@ -39,6 +39,16 @@ void count_stray_layers(Report& report, Twin& twin, const job::Manifest& job) {
     }
 }
 
+void measure_solution(Report& report, const Fluids& fluids) {
+    const machine::SolutionCircuit& solution = fluids.solution();
+    report.washed_ml = fluids.washed_ml();
+    report.brushed_ml = fluids.brushed_ml();
+    report.solution_pumped_ml = solution.pumped_ml();
+    report.solution_used_ml = solution.used_ml();
+    report.solution_ml = solution.liquid_ml();
+    report.solution_resin_share = solution.resin_share();
+}
+
 void measure_resins(Report& report, Twin& twin) {
     const machine::Printer& printer = twin.printer();
     const double pixel_mm = printer.projector.pixel_um / 1000;
@@ -181,6 +191,7 @@ Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& im
     Verdict verdict(report, judgement);
     judge_contamination(report, twin, job, verdict.accepts(Finding::Kind::contamination));
     measure_resins(report, twin);
+    measure_solution(report, twin.fluids());
     const machine::Projector& projector = twin.printer().projector;
     report.trapped = trapped_resin(cured.layers(), projector.width_px, projector.height_px, projector.pixel_um);
     judge_materials(report, job, *kind, verdict);

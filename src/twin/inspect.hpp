@@ -76,6 +76,10 @@ struct Report {
     std::vector<Trapped> trapped;              ///< liquid that stays in the part, largest first
     Log log;
     double clock_s = 0;
+    double washed_ml = 0, brushed_ml = 0;  ///< resin off the part: into the solution, and back into its vats
+    double solution_pumped_ml = 0, solution_used_ml = 0;
+    double solution_ml = 0;           ///< in the reservoir in the end; 0: the machine has none
+    double solution_resin_share = 0;  ///< of that, resin
 };
 
 /// How far sideways an exact slicer may put a border: the rounding of grey values, half a pixel of black and white

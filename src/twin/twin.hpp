@@ -99,6 +99,8 @@ public:
     void set_door(bool open);
     /// Somebody fills the vat of a slot up to what the printer file has in it. No such slot: nothing happens.
     void fill_vat(int slot);
+    /// Somebody looks after the cleaning solution.
+    void care(machine::SolutionCare care) { fluids_.care(care); }
 
     /// Somebody takes the part away and cleans the platform: the next print begins with an empty block and log.
     void take_part_off();
@@ -166,6 +168,7 @@ private:
     void say_soft_endstops();
     void say_switches();
     [[nodiscard]] bool is_pressed(const machine::LimitSwitch& limit) const;
+    void spray_until(double at_s);
     void switch_fans(const machine::Command& command, double at_s);
     void open_door();
     void note_vat(std::optional<int> before);
@@ -225,6 +228,7 @@ private:
     double residue_ = 0;
     machine::BrushWatch brush_{printer_};
     bool pump_works_ = true;
+    bool drew_air_ = false;
     std::optional<Runs> shown_;
     double shown_since_s_ = 0;
     int shown_vat_ = -1;

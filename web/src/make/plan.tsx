@@ -37,7 +37,7 @@ function Figures({ plan }: { plan: Plan }) {
         </div>
         <div>
           <b>{plan.solvent_ml.toFixed(0)} ml</b>
-          <span>cleaning solution</span>
+          <span>cleaning solution used up</span>
         </div>
       </div>
       <div class="share" role="img" aria-label={kinds.map((k) => `${k.label} ${clock(plan.seconds[k.key])}`).join(', ')}>

@@ -1,0 +1,111 @@
+#include "plan/solution_use.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "machine/cleaning_data.hpp"
+#include "plan/plan.hpp"
+
+namespace pliant::plan {
+namespace {
+
+using machine::Printer;
+using machine::SolutionCare;
+using machine::SolutionCircuit;
+
+/// The part leaves a vat and is cleaned.
+struct Cleaning {
+    int vat = 0;
+    double film_ml = 0;  ///< on the part before anything is done about it
+    double seconds = 0;
+};
+
+/// What resin clings to when the part leaves a vat: its cross-section.
+double film_ml(const job::Layer& layer, const Printer& printer) {
+    double area_mm2 = 0;
+    for (const job::LayerImage& image : layer.images) area_mm2 += image.area_mm2;
+    return area_mm2 * printer.cleaning.film_um / 1e6;
+}
+
+/// The cleanings before and within each layer; that at the end belongs to the last layer that is printed.
+std::vector<std::vector<Cleaning>> cleanings(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    std::vector<std::vector<Cleaning>> all(plan.order.size());
+    int loaded = -1;
+    std::size_t last_layer = 0;
+    for (std::size_t i = 0; i < plan.order.size(); ++i) {
+        for (const int vat : plan.order[i]) {
+            if (loaded >= 0 && loaded != vat)
+                all[i].push_back({loaded, film_ml(job.layers[last_layer], printer), printer.cleaning_s(loaded, vat)});
+            loaded = vat;
+            last_layer = i;
+        }
+    }
+    if (loaded >= 0 && printer.store() != machine::Store::none)
+        all[last_layer].push_back({loaded, film_ml(job.layers[last_layer], printer), printer.cleaning.spray_s});
+    return all;
+}
+
+void add_waste(Plan& plan, const Cleaning& c, const Printer& printer) {
+    const auto use = std::find_if(plan.vats.begin(), plan.vats.end(), [&](const VatUse& u) { return u.vat == c.vat; });
+    const double brushed_ml = c.film_ml * printer.brushed_share();
+    use->brushed_ml += brushed_ml;
+    use->waste_ml += c.film_ml - brushed_ml;
+    plan.brushed_ml += brushed_ml;
+    plan.waste_ml += c.film_ml - brushed_ml;
+}
+
+/// The cleanings of one layer, and the time that it takes.
+void pass_layer(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, double seconds, const Printer& printer) {
+    const machine::CleaningLaw law = machine::cleaning_law(printer.cleaning.method);
+    for (const Cleaning& c : layer) {
+        const double on_part_ml = c.film_ml * (1 - printer.brushed_share());
+        circuit.clean(c.seconds, on_part_ml * law.removed(c.seconds) * (1 - circuit.resin_share()));
+    }
+    circuit.wait(seconds);
+}
+
+/// What must be done before a layer so that the circuit lasts through it.
+void look_after(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, double seconds, int index,
+                const Printer& printer, std::vector<CareBefore>& care) {
+    SolutionCircuit ahead = circuit;
+    pass_layer(ahead, layer, seconds, printer);
+    constexpr int kinds = 3;
+    for (int i = 0; i < kinds; ++i) {
+        const auto needed = circuit.needs() ? circuit.needs() : ahead.needs();
+        if (!needed) return;
+        const bool again = !care.empty() && care.back().layer == index && care.back().care == *needed;
+        if (again) return;  // one layer is more than a fresh circuit lasts
+        care.push_back({index, *needed});
+        circuit.care(*needed);
+        ahead = circuit;
+        pass_layer(ahead, layer, seconds, printer);
+    }
+}
+
+}  // namespace
+
+void reckon_solution(Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const auto layers = cleanings(plan, job, printer);
+    SolutionCircuit circuit(printer);
+    SolutionUse use;
+    use.goes_round = circuit.goes_round();
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const double seconds = i < plan.layer_seconds.size() ? plan.layer_seconds[i].total : 0;
+        if (!layers[i].empty()) look_after(circuit, layers[i], seconds, static_cast<int>(i), printer, use.care);
+        pass_layer(circuit, layers[i], seconds, printer);
+        for (const Cleaning& c : layers[i]) add_waste(plan, c, printer);
+    }
+    for (const CareBefore& care : use.care) {
+        if (care.layer == 0) plan.warnings.push_back(fmt::format("{} before the print", machine::care_text(care.care)));
+    }
+    use.pumped_ml = circuit.pumped_ml();
+    use.used_ml = plan.solvent_ml = circuit.used_ml();
+    use.liquid_ml = circuit.liquid_ml();
+    use.resin_share = circuit.resin_share();
+    use.spent_share = printer.solution.spent_share;
+    use.filter_ml = circuit.filter_ml();
+    plan.solution = std::move(use);
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,60 @@
+#include "wash/best_spray.hpp"
+
+#include <doctest/doctest.h>
+
+#include "core/test_text.hpp"
+#include "wash/test_parts.hpp"
+
+using namespace pliant;
+using namespace pliant::wash;
+using pliant::test::holds;
+
+namespace {
+
+machine::Printer tower() {
+    return machine::load_printer("examples/printers/tower.toml").value();
+}
+
+PartCells disc() {
+    return coarsened(wash::test::cylinder(), 54);
+}
+
+}  // namespace
+
+TEST_CASE("the best spray takes less solution than the printer's own for the same cleanness, and reaches it") {
+    machine::Printer p = tower();
+    const PartCells part = disc();
+    const std::vector<Face> faces = wet_faces(part);
+    const double own = cleanness(faces, spray_rates(part, faces, p, strokes_of(p)), p.cleaning.spray_s).removed;
+    const Result<BestSpray> best = best_spray(part, p, 0.95);
+    REQUIRE_MESSAGE(best, (best ? "" : best.error().message));
+    MESSAGE(best->strokes.x_um << " um, " << best->strokes.z_um << " um, " << best->seconds << " s");
+    CHECK(own > 0.95);
+    CHECK(best->seconds < p.cleaning.spray_s);
+    CHECK(best->solution_ml / best->seconds == doctest::Approx(20.0 / 15));
+    CHECK(best->removed >= 0.95);
+    const auto rates = spray_rates(part, faces, p, best->strokes);
+    CHECK(cleanness(faces, rates, best->seconds).removed == doctest::Approx(best->removed));
+    CHECK(cleanness(faces, rates, best->seconds - 0.2).removed < 0.95);
+    // Nobody who tries other strokes by hand finds a shorter time.
+    for (const Strokes& other : {Strokes{8000, 5000}, Strokes{60000, 0}, Strokes{150000, 5000}, Strokes{1000, 0}}) {
+        const double removed = cleanness(faces, spray_rates(part, faces, p, other), best->seconds - 0.15).removed;
+        CHECK(removed < 0.955);
+    }
+}
+
+TEST_CASE("what cannot be reached is said, and what is missing") {
+    const machine::Printer p = tower();
+    const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
+    REQUIRE_FALSE(scaffold);
+    CHECK(holds(scaffold.error().message, "no oscillation cleans the part to 99.0 %: at most "));
+    CHECK(holds(scaffold.error().message, "the rest no jet reaches"));
+    machine::Printer dry = p;
+    dry.sprinklers.clear();
+    CHECK(holds(best_spray(disc(), dry, 0.9).error().message, "has no [[sprinkler]] tables"));
+    dry = p;
+    dry.cleaning.solvent_ml_s = 0;
+    CHECK(holds(best_spray(disc(), dry, 0.9).error().message, "cleaning.solvent"));
+    for (const double wanted : {0.0, 1.0, -1.0, 2.0})
+        CHECK(holds(best_spray(disc(), p, wanted).error().message, "must be above 0 and below 1"));
+}
