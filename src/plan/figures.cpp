@@ -145,6 +145,28 @@ Printer with_vats(const Printer& printer, int vats) {
     return p;
 }
 
+Printer with_bed(const Printer& printer, double bed, double motors) {
+    Printer p = printer;
+    const auto scaled = [&](int um) { return static_cast<int>(std::lround(um * bed)); };
+    for (const Axis axis : {Axis::carriage, Axis::tower, Axis::table})
+        p.axes[static_cast<std::size_t>(axis)].speed_mm_s *= motors;
+    if (p.store() == Store::tower) {
+        const int longer_um =
+            scaled(p.carriage.tower_um - p.carriage.print_um) - (p.carriage.tower_um - p.carriage.print_um);
+        p.carriage.tower_um += longer_um;
+        p.axes[static_cast<std::size_t>(Axis::carriage)].max_um += longer_um;
+        (p.carriage.along_y ? p.platform.depth_um : p.platform.width_um) =
+            scaled(p.carriage.along_y ? p.platform.depth_um : p.platform.width_um);
+    } else if (p.store() == Store::table && !p.axis(Axis::table).rotary) {
+        for (int& station_um : p.table.stations_um) station_um = scaled(station_um);
+        p.table.cleaning_um = scaled(p.table.cleaning_um);
+        p.axes[static_cast<std::size_t>(Axis::table)].min_um = scaled(p.axis(Axis::table).min_um);
+        p.axes[static_cast<std::size_t>(Axis::table)].max_um = scaled(p.axis(Axis::table).max_um);
+        p.platform.width_um = scaled(p.platform.width_um);
+    }
+    return p;
+}
+
 std::vector<SwapTimes> swap_over_vats(const Printer& printer, const std::vector<int>& vats) {
     std::vector<SwapTimes> times;
     for (const int n : vats) {

@@ -53,6 +53,10 @@ struct SwapTimes {
     double mean_s = 0;  ///< over all pairs
 };
 
+/// The same machine with a bed that is `bed` times as long along the way of its vats (and that way with it), and with
+/// carriage, tower and table `motors` times as fast. Accelerations stay.
+[[nodiscard]] machine::Printer with_bed(const machine::Printer& printer, double bed, double motors);
+
 /// How a change of vats grows with the store.
 [[nodiscard]] std::vector<SwapTimes> swap_over_vats(const machine::Printer& printer, const std::vector<int>& vats);
 

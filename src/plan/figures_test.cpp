@@ -58,3 +58,17 @@ TEST_CASE("a neighbour of the tower is always as near; rows and rings grow with 
     CHECK(linear[2].mean_s > linear[0].mean_s + 100);
     CHECK(rotary[2].mean_s > rotary[0].mean_s + 10);
 }
+
+TEST_CASE("a swap follows the bed's length one to one, and the motors") {
+    const machine::Printer tower = machine_of("tower");
+    const auto swap_s = [&](double bed, double motors) { return figures(with_bed(tower, bed, motors)).swap.total_s; };
+    CHECK(swap_s(1, 1) == doctest::Approx(figures(tower).swap.total_s));
+    // Push and pull go 355.6 mm further each, at 15.2 mm/s; and half as far.
+    CHECK(swap_s(2, 1) - swap_s(1, 1) == doctest::Approx(2 * 355.6 / 15.2).epsilon(1e-4));
+    CHECK(swap_s(1, 1) - swap_s(0.5, 1) == doctest::Approx(355.6 / 15.2).epsilon(1e-4));
+    // At twice the speed: 355.6 / 30.4 s each way and a ramp of 30.4 / 50 s; the spray still takes its 15 s.
+    CHECK(swap_s(1, 2) == doctest::Approx(2 * (355.6 / 30.4 + 30.4 / 50) + 15).epsilon(1e-3));
+    CHECK(swap_s(1, 1000) > 15);  // with motors as fast as one likes, ramps and cleaning stay
+    const machine::Printer linear = machine_of("linear");
+    CHECK(figures(with_bed(linear, 2, 1)).swap.total_s > figures(linear).swap.total_s);
+}

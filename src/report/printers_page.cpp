@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -147,6 +148,29 @@ Result<std::string> growth_plot(const std::vector<Printer>& printers) {
     return fmt::format("<img alt=\"swap time over vats\" src=\"data:image/png;base64,{}\">\n", base64(*png));
 }
 
+/// Seconds of a swap of the first tower, over the length of its bed and the speed of its motors.
+std::string bed_table(const std::vector<Printer>& printers) {
+    const Kinds kinds(printers);
+    const Printer* p = kinds.tower != nullptr ? kinds.tower : kinds.line;
+    if (p == nullptr || p->vats.size() < 2) return "";
+    constexpr std::array<double, 4> beds = {0.5, 1, 1.5, 2}, motors = {1, 2, 4, 8};
+    const bool deep = p->store() == Store::tower && p->carriage.along_y;
+    std::vector<std::string> head = {"bed along the way of the vats"};
+    for (const double m : motors) head.push_back(m == 1 ? "motors as they are" : fmt::format("{:g} times as fast", m));
+    std::string text = "<table>\n" + row(head, "th");
+    for (const double bed : beds) {
+        const double length_mm = (deep ? p->platform.depth_um : p->platform.width_um) / 1000.0 * bed;
+        std::vector<std::string> cells = {fmt::format("{:.0f} mm", length_mm)};
+        for (const double m : motors)
+            cells.push_back(fmt::format("{:.1f} s", plan::figures(plan::with_bed(*p, bed, m)).swap.total_s));
+        text += row(cells);
+    }
+    return "<h2>How a swap follows from bed and motors</h2>\n" + text + "</table>\n" +
+           fmt::format(
+               "<p class=\"note\">{}: the way of its vats grows with the bed, accelerations and cleaning stay.</p>\n",
+               html_escaped(p->name));
+}
+
 std::string test_name(const machine::CleaningTest& t) {
     return t.seconds > 0 ? fmt::format("{} {:.0f} s", t.method, t.seconds) : std::string(t.method);
 }
@@ -238,6 +262,7 @@ Result<std::string> printers_page(const std::vector<Printer>& printers) {
     page +=
         "<p class=\"note\">The same machines with a longer tower, a longer row, and a wider turntable whose rim is no "
         "faster than before.</p>\n";
+    page += bed_table(printers);
     page += "<h2>Cleaning (table 4.2)</h2>\n" + cleaning_table();
     page += "<h2>Where the thesis disagrees with itself</h2>\n" + disagreements(printers);
     return page + "</main>\n</body>\n</html>\n";

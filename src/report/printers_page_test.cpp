@@ -31,6 +31,9 @@ TEST_CASE("the page holds every machine and needs nothing from anywhere") {
     CHECK(page->find("under ultrasound 120 s it prints 57 %, they give 89 % (57 % is theirs for ultrasound 15 s)") !=
           std::string::npos);
     CHECK(page->find("23.7 + 15.0 + 23.7 = 62.4 s") != std::string::npos);
+    // The bed of 6 in, and one twice as long: 2 (711.2 / 15.2 + 15.2 / 50) + 15 s.
+    CHECK(page->find("<td>152 mm</td><td>62.4 s</td>") != std::string::npos);
+    CHECK(page->find("<td>305 mm</td><td>109.2 s</td>") != std::string::npos);
 }
 
 TEST_CASE("one machine alone, even with a single vat, is a page too") {

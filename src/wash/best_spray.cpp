@@ -27,15 +27,22 @@ Strokes most_strokes(const Printer& p, double part_mm) {
     return most;
 }
 
-/// A stroke out and back at the speed of cleaning.
-double pair_seconds(const Printer& p, const Strokes& strokes) {
+/// What every cleaning takes at least: a stroke out and back at the speed of cleaning, and of a tower the time in which
+/// the vat is let go and the next one taken, while the pump runs.
+double least_seconds(const Printer& p, const Strokes& strokes) {
     machine::Position far;
     far[Axis::carriage] = strokes.x_um;
     far[Axis::platform] = strokes.z_um;
     const double lead_um = p.store() == machine::Store::tower ? strokes.x_um : strokes.z_um;
     const double path_um = std::hypot(strokes.x_um, strokes.z_um);
     const double feed = lead_um > 0 ? p.cleaning.speed_mm_s * path_um / lead_um : 0;
-    return 2 * machine::move_seconds(p, {}, far, feed);
+    const double pair_s = 2 * machine::move_seconds(p, {}, far, feed);
+    if (p.store() != machine::Store::tower) return pair_s;
+    machine::Position hooks, back;
+    hooks[Axis::tower] = p.hooks.travel_um;
+    back[Axis::carriage] = p.carriage.back_off_um;
+    return pair_s + 2 * machine::move_seconds(p, {}, hooks, p.hooks.speed_mm_s) +
+           2 * machine::move_seconds(p, {}, back, 0);
 }
 
 class Search {
@@ -58,7 +65,7 @@ public:
             (cleanness(faces_, rates, middle).removed < wanted_ ? low : high) = middle;
         }
         // Whole tenths of a second, as a person writes them.
-        const double seconds = std::ceil(10 * std::max(high, pair_seconds(printer_, strokes)) - 1e-9) / 10;
+        const double seconds = std::ceil(10 * std::max(high, least_seconds(printer_, strokes)) - 1e-9) / 10;
         if (seconds > most_s || (best_ && seconds >= best_->seconds)) return;
         const Cleanness c = cleanness(faces_, rates, seconds);
         best_ = BestSpray{strokes, seconds, seconds * printer_.cleaning.solvent_ml_s, c.removed, c.unseen};

@@ -15,8 +15,9 @@ struct BestSpray {
 };
 
 /// Searches all strokes that the machine has room for, first coarsely, then around the best. A cleaning is at least one
-/// stroke out and back. Errors: the machine has no sprinklers, pumps nothing, or no oscillation makes the part so clean
-/// within the longest cleaning that the machine allows; then it says how clean it gets.
+/// stroke out and back, and of a tower what its hooks take meanwhile. Errors: the machine has no sprinklers, pumps
+/// nothing, or no oscillation makes the part so clean within the longest cleaning that the machine allows; then it says
+/// how clean it gets.
 [[nodiscard]] Result<BestSpray> best_spray(const PartCells& part, const machine::Printer& printer, double wanted);
 
 }  // namespace pliant::wash
