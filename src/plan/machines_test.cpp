@@ -215,6 +215,16 @@ TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, 
     CHECK(plan_json(plate).find("\"care\"") != std::string::npos);
 }
 
+TEST_CASE("where the store takes longer than the cleaning, the pump runs as long, and the plan counts it") {
+    const machine::Printer printer = plan::test::tower();
+    const Plan far =
+        make_plan(plan::test::make_job({{0}, {3}, {0}}, {"semi-flex", "rigid-flex", "tough", "elastomer"}), printer)
+            .value();
+    REQUIRE(far.swaps == 2);
+    CHECK(far.solution.pumped_ml / (far.seconds.clean * 20 / 15) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(far.solution.pumped_ml > 3 * 20 + 10);
+}
+
 TEST_CASE("a program that has lost a line that the interlocks depend on is refused") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({{0, 1}, {1}}, {"semi-flex", "rigid-flex"});

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "machine/cleaning_data.hpp"
 #include "plan/plan.hpp"
+#include "plan/swap.hpp"
 
 namespace pliant::plan {
 namespace {
@@ -28,21 +31,47 @@ double film_ml(const job::Layer& layer, const Printer& printer) {
     return area_mm2 * printer.cleaning.film_um / 1e6;
 }
 
+/// How long the pump runs in a swap, or while the last vat is stored (`to` is -1): as long as is asked for, or longer
+/// where the store takes longer to bring the vat.
+class PumpTimes {
+public:
+    explicit PumpTimes(const Printer& printer) : printer_(printer) {}
+
+    double seconds(int from, int to) {
+        double& known = known_[{from, to}];
+        if (known > 0) return known;
+        const double asked_s = to < 0 ? printer_.cleaning.spray_s : printer_.cleaning_s(from, to);
+        Sequence s = standing_at(printer_, slot(from));
+        if (to < 0)
+            store_vat(s, slot(from));
+        else
+            swap_vat(s, slot(from), slot(to));
+        return known = std::max(asked_s, s.seconds().clean);
+    }
+
+private:
+    [[nodiscard]] int slot(int vat) const { return printer_.vats[static_cast<std::size_t>(vat)].slot; }
+
+    const Printer& printer_;
+    std::map<std::pair<int, int>, double> known_;
+};
+
 /// The cleanings before and within each layer; that at the end belongs to the last layer that is printed.
 std::vector<std::vector<Cleaning>> cleanings(const Plan& plan, const job::Manifest& job, const Printer& printer) {
     std::vector<std::vector<Cleaning>> all(plan.order.size());
+    PumpTimes pump(printer);
     int loaded = -1;
     std::size_t last_layer = 0;
     for (std::size_t i = 0; i < plan.order.size(); ++i) {
         for (const int vat : plan.order[i]) {
             if (loaded >= 0 && loaded != vat)
-                all[i].push_back({loaded, film_ml(job.layers[last_layer], printer), printer.cleaning_s(loaded, vat)});
+                all[i].push_back({loaded, film_ml(job.layers[last_layer], printer), pump.seconds(loaded, vat)});
             loaded = vat;
             last_layer = i;
         }
     }
     if (loaded >= 0 && printer.store() != machine::Store::none)
-        all[last_layer].push_back({loaded, film_ml(job.layers[last_layer], printer), printer.cleaning.spray_s});
+        all[last_layer].push_back({loaded, film_ml(job.layers[last_layer], printer), pump.seconds(loaded, -1)});
     return all;
 }
 

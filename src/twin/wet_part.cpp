@@ -1,7 +1,7 @@
 #include "twin/wet_part.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace pliant::twin {
 namespace {
@@ -42,18 +42,16 @@ wash::PartCells wet_part(const CoarsePart& part, const machine::Projector& proje
     const double upper = b.row - part.rows() / 2.0, lower = b.end_row - part.rows() / 2.0;
     cells.x_mm = cells.cell_mm * (projector.mirror_x ? -right : left);
     cells.y_mm = cells.cell_mm * (projector.mirror_y ? upper : -lower);
-    cells.solid.resize(static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows) *
-                       static_cast<std::size_t>(cells.slabs));
+    wash::CellJoiner joiner(cells, most_cells);
     for (const CoarsePart::CellRun& run : part.runs()) {
         const CoarsePart::Slab& slab = part.slabs()[run.slab];
         const int row = projector.mirror_y ? run.row - b.row : b.end_row - 1 - run.row;
         for (int c = run.begin; c < run.end; ++c) {
             const int column = projector.mirror_x ? b.end_column - 1 - c : c - b.column;
-            for (int s = slab.bottom_um / slab_um; s * slab_um < slab.top_um; ++s)
-                cells.solid[cells.index(column, row, s)] = 1;
+            for (int s = slab.bottom_um / slab_um; s * slab_um < slab.top_um; ++s) joiner.add(column, row, s);
         }
     }
-    return wash::coarsened(cells, most_cells);
+    return std::move(joiner).made();
 }
 
 }  // namespace pliant::twin

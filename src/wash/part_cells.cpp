@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace pliant::wash {
 namespace {
@@ -61,31 +62,43 @@ std::vector<Face> wet_faces(const PartCells& part) {
     return faces;
 }
 
-PartCells coarsened(const PartCells& part, int most) {
-    const int wide = (std::max(part.columns, part.rows) + most - 1) / most;
+CellJoiner::CellJoiner(const PartCells& fine, int most)
+    : wide_(std::max(1, (std::max(fine.columns, fine.rows) + most - 1) / most)) {
     // About as high as wide: what a slope looks like is judged from the cells around it.
-    const int high = std::max(
-        {1, (part.slabs + most - 1) / most, static_cast<int>(std::lround(part.cell_mm * wide / part.high_mm))});
-    if (wide <= 1 && high <= 1) return part;
-    PartCells out{(part.columns + wide - 1) / wide,
-                  (part.rows + wide - 1) / wide,
-                  (part.slabs + high - 1) / high,
-                  part.cell_mm * wide,
-                  part.high_mm * high,
-                  part.x_mm,
-                  part.y_mm,
-                  {}};
-    std::vector<int> filled(static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows) *
-                            static_cast<std::size_t>(out.slabs));
+    const int as_wide = static_cast<int>(std::lround(fine.cell_mm * wide_ / fine.high_mm));
+    high_ = std::max({1, (fine.slabs + most - 1) / most, as_wide});
+    out_ = {(fine.columns + wide_ - 1) / wide_,
+            (fine.rows + wide_ - 1) / wide_,
+            (fine.slabs + high_ - 1) / high_,
+            fine.cell_mm * wide_,
+            fine.high_mm * high_,
+            fine.x_mm,
+            fine.y_mm,
+            {}};
+    filled_.resize(static_cast<std::size_t>(out_.columns) * static_cast<std::size_t>(out_.rows) *
+                   static_cast<std::size_t>(out_.slabs));
+}
+
+void CellJoiner::add(int column, int row, int slab) {
+    ++filled_[out_.index(column / wide_, row / wide_, slab / high_)];
+}
+
+PartCells CellJoiner::made() && {
+    out_.solid.resize(filled_.size());
+    for (std::size_t i = 0; i < filled_.size(); ++i) out_.solid[i] = 3 * filled_[i] >= wide_ * wide_ * high_ ? 1 : 0;
+    return std::move(out_);
+}
+
+PartCells coarsened(const PartCells& part, int most) {
+    CellJoiner joiner(part, most);
     for (int slab = 0; slab < part.slabs; ++slab) {
         for (int row = 0; row < part.rows; ++row) {
-            for (int column = 0; column < part.columns; ++column)
-                filled[out.index(column / wide, row / wide, slab / high)] += part.at(column, row, slab) ? 1 : 0;
+            for (int column = 0; column < part.columns; ++column) {
+                if (part.at(column, row, slab)) joiner.add(column, row, slab);
+            }
         }
     }
-    out.solid.resize(filled.size());
-    for (std::size_t i = 0; i < filled.size(); ++i) out.solid[i] = 3 * filled[i] >= wide * wide * high ? 1 : 0;
-    return out;
+    return std::move(joiner).made();
 }
 
 }  // namespace pliant::wash

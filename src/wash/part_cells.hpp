@@ -42,8 +42,23 @@ struct Face {
 /// All but what is fixed to the platform, slab by slab. Closed pockets count too: nothing reaches them.
 [[nodiscard]] std::vector<Face> wet_faces(const PartCells& part);
 
-/// The same part in cells at least as large and not much wider than high, of at most `most` in any direction; a cell
-/// that is filled to a third is solid.
+/// Joins fine cells to larger ones, at most `most` in any direction and not much wider than high; what is filled to a
+/// third is solid. Memory: of the larger cells only.
+class CellJoiner {
+public:
+    /// `fine` without its `solid`.
+    CellJoiner(const PartCells& fine, int most);
+    /// A solid cell of the fine ones.
+    void add(int column, int row, int slab);
+    [[nodiscard]] PartCells made() &&;
+
+private:
+    int wide_ = 1, high_ = 1;
+    PartCells out_;
+    std::vector<int> filled_;
+};
+
+/// The same part in larger cells.
 [[nodiscard]] PartCells coarsened(const PartCells& part, int most);
 
 }  // namespace pliant::wash
