@@ -559,8 +559,7 @@ TEST_CASE("contamination: what spray leaves goes from vat to vat, and is mapped"
     p.run();
     p.must_pass();
     CHECK(p.report.contamination.size() == 10);
-    // The brush takes 29 %, the spray all but 5.25 % of the rest.
-    CHECK(p.report.worst_residue / (0.71 * 0.0525) == doctest::Approx(1).epsilon(0.01));
+    CHECK(p.report.worst_residue == doctest::Approx(0.0525).epsilon(0.01));
     CHECK(p.report.worst_foreign > 0);
     CHECK(p.report.worst_foreign < 1e-6);
     const double brushed = p.report.worst_foreign;

@@ -187,7 +187,7 @@ void Twin::note_vat(std::optional<int> before) {
     if (before) {
         if (part_vat_ == *before && cure_.section_mm2() > 0) {
             cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2(), brushed));
-            residue_ = 1 - brushed;
+            residue_ = 1;
         }
         if (fault_hits(Fault::Kind::stuck_hook, ++unhooked_) && stuck_vat_ < 0) {
             stuck_vat_ = *before;

@@ -76,7 +76,7 @@ struct Contamination {
     int top_um = 0;
     int vat = 0;
     double foreign = 0;  ///< of the vat's content that is another resin
-    double residue = 0;  ///< of the film of the vat before that cleaning has left on the part
+    double residue = 0;  ///< of the film of the vat before, past its brush: what cleaning has left on the part
 };
 
 class Twin {

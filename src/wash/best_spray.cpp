@@ -28,13 +28,14 @@ Strokes most_strokes(const Printer& p, double part_mm) {
 }
 
 /// What every cleaning takes at least: a stroke out and back at the speed of cleaning, and of a tower the time in which
-/// the vat is let go and the next one taken, while the pump runs.
+/// the vat is let go, the tower goes on by a slot, and the next vat is taken, all while the pump runs.
 double least_seconds(const Printer& p, const Strokes& strokes) {
     machine::Position far;
     far[Axis::carriage] = strokes.x_um;
     far[Axis::platform] = strokes.z_um;
     const double lead_um = p.store() == machine::Store::tower ? strokes.x_um : strokes.z_um;
-    const double path_um = std::hypot(strokes.x_um, strokes.z_um);
+    if (p.store() == machine::Store::tower) far[Axis::tower] = p.tower.pitch_um / 2;
+    const double path_um = std::hypot(strokes.x_um, strokes.z_um, far[Axis::tower]);
     const double feed = lead_um > 0 ? p.cleaning.speed_mm_s * path_um / lead_um : 0;
     const double pair_s = 2 * machine::move_seconds(p, {}, far, feed);
     if (p.store() != machine::Store::tower) return pair_s;
