@@ -1,6 +1,9 @@
 #include "problems.hpp"
 
+#include <numeric>
+
 #include "mesh/tet_file.hpp"
+#include "sim/actuated_space.hpp"
 #include "sim/attach.hpp"
 #include "sim/loads.hpp"
 #include "sim/reference_problems.hpp"
@@ -41,12 +44,27 @@ Description cable_bar(int order) {
     return d;
 }
 
-Description air_bar() {
+namespace {
+
+/// Regions: solid and air.
+mesh::TetMesh air_bar_mesh() {
     mesh::TetMesh whole = reference::kuhn_box({0.06, 0.012, 0.012}, 36, 6, 6, [](Vec3 c) {
         const bool inside = c.x > 0.01 && c.x < 0.05 && c.y > 0.004 && c.y < 0.008 && c.z > 0.002 && c.z < 0.006;
         return inside ? 1 : 0;
     });
     whole.region_names = {"solid", "air"};
+    return whole;
+}
+
+void add_clamp_and_tip(Description& d) {
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.06 - 1e-9; }))}};
+}
+
+}  // namespace
+
+Description air_bar() {
+    const mesh::TetMesh whole = air_bar_mesh();
     mesh::Extract solid = mesh::extract_regions(whole, {true, false});
     Description d;
     d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}});
@@ -54,8 +72,49 @@ Description air_bar() {
     d.mesh = std::move(solid.mesh);
     d.materials = {{"rubber", material::neo_hookean(1e6, 0.45), 0}};
     d.material_of_region = {0};
+    add_clamp_and_tip(d);
+    return d;
+}
+
+Description thesis_gap_bar() {
+    const double length = 0.1, notch = 0.004, floor = 0.005, cable_z = 0.01375, weight_Pa = 45e6;
+    Description d;
+    d.mesh = reference::kuhn_box({length, 0.02, 0.015}, 25, 4, 12, [&](Vec3 c) {
+        const bool in_notch = static_cast<int>(c.x / notch) % 5 == 2 && c.z > floor;
+        return in_notch ? 2 : c.x < length / 2 ? 0 : 1;
+    });
+    const material::ShapeBlend rigid{weight_Pa, 1}, soft{weight_Pa, 1 / material::shape_parameter_of_thesis(45.0 / 12)};
+    const double softest_Pa = material::youngs_modulus(material::moduli(soft));
+    d.materials = {{"rigid", rigid, 0}, {"soft", soft, 0}, {"gap", gap_law(softest_Pa), 0}};
+    d.material_of_region = {0, 1, 2};
     d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.markers = {{"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.06 - 1e-9; }))}};
+    d.markers = {
+        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) { return p.x > length - 1e-9; }))}};
+    Cable cable{"flexor", {}, {CableTarget::Kind::length_ratio, 0.88}};
+    for (int k = 0; k <= 25; ++k) {
+        const Vec3 at{notch * k, 0.01, cable_z};
+        if (k != 0 && k != 25 && k % 5 != 2 && k % 5 != 3) continue;
+        cable.points.push_back(
+            {reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < 1e-9; }), {1.0}, {}});
+    }
+    d.cables = {cable};
+    d.growths = {{2, {1, 0, 0}, 0, default_gap_weight * softest_Pa, 5 * notch, {0, 0.01, cable_z}}};
+    return d;
+}
+
+Description thesis_air_bar() {
+    Description d;
+    d.mesh = air_bar_mesh();
+    std::vector<int> same(d.mesh.points.size());
+    std::iota(same.begin(), same.end(), 0);
+    d.chambers.push_back({"air", wall_of_faces(d.mesh, mesh::region_faces(d.mesh, 1), same), {}});
+    d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.5};
+    const material::ShapeBlend soft{45e6, 1 / material::shape_parameter_of_thesis(45.0 / 12)};
+    const double softest_Pa = material::youngs_modulus(material::moduli(soft));
+    d.materials = {{"rubber", soft, 0}, {"air", air_law(softest_Pa, default_air_weight), 0}};
+    d.material_of_region = {0, 1};
+    d.growths = {{1, {}, 0, default_air_weight * softest_Pa, 0, {}}};
+    add_clamp_and_tip(d);
     return d;
 }
 

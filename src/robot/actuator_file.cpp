@@ -52,6 +52,17 @@ Anchor read_anchor(Reader& reader) {
     return anchor == "first" ? Anchor::first : (anchor == "last" ? Anchor::last : Anchor::none);
 }
 
+/// How hard gap or air elements are held to their target (A.4), beside the softest body.
+std::optional<double> read_weight(Reader& reader) {
+    if (!reader.has("weight")) return std::nullopt;
+    const double weight = reader.number("weight");
+    if (weight > 0 && weight <= sim::largest_space_weight) return weight;
+    reader.problem("weight", fmt::format("is the stiffness of the elements beside the softest Young's modulus: above 0 "
+                                         "and at most {:.6g}",
+                                         sim::largest_space_weight));
+    return std::nullopt;
+}
+
 void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     cable.points = read_path(reader, "cable");
     cable.anchor = read_anchor(reader);
@@ -68,6 +79,11 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     if (!(cable.friction >= 0 && cable.friction <= 10))
         reader.problem("friction", "is a coefficient: 0 or more, a cord in a plastic tube has 0.1 to 0.3");
     cable.target = read_target(reader);
+    if (reader.has("weight") && !cable.gap_elements)
+        reader.problem("weight", "is that of gap elements, which act with model = \"gap-elements\" only");
+    cable.weight = read_weight(reader).value_or(cable.weight);
+    if (cable.gap_elements && cable.friction > 0)
+        reader.problem("friction", "model = \"gap-elements\" closes the gaps and knows no guides; leave it out");
     if (cable.gap_elements && cable.target.kind == sim::CableTarget::Kind::tension_N)
         reader.problem("target", "model = \"gap-elements\" knows lengths only: length_ratio or shortening");
 }
@@ -178,6 +194,9 @@ void read_chamber(Reader& reader, Context& context, ChamberSpec& chamber) {
     }
     if (chamber.elements && std::holds_alternative<SurfaceFile>(chamber.air))
         reader.problem("surface", "model = \"elements\" needs meshed air: geometry or region");
+    if (reader.has("weight") && !chamber.elements)
+        reader.problem("weight", "is that of air elements, which act with model = \"elements\" only");
+    chamber.weight = read_weight(reader).value_or(chamber.weight);
     chamber.target = read_chamber_target(reader);
     const auto kind = chamber.target.kind;
     if (chamber.elements && kind != sim::ChamberTarget::Kind::volume_ratio &&
@@ -189,6 +208,7 @@ void read_gap(Reader& reader, Context& context, GapSpec& gap) {
     gap.space = read_air(reader, context);
     if (std::holds_alternative<SurfaceFile>(gap.space))
         reader.problem("surface", "a gap must be meshed: give geometry or region");
+    gap.weight = read_weight(reader);
 }
 
 /// One gap for all notches, beside those of the file.

@@ -63,7 +63,10 @@ void drive_by_gaps(ModelDraft& draft, const CableSpec& spec, const std::vector<V
             const Passage passage = passage_through(draft.description.mesh, region, points);
             const auto actuator = static_cast<int>(draft.description.cables.size());
             const int material = draft.description.material_of_region[static_cast<std::size_t>(region)];
-            if (passage.length > 0) draft.description.growths.push_back({material, passage.direction, actuator});
+            if (!(passage.length > 0)) continue;
+            const double weight_Pa = gap.weight.value_or(spec.weight) * softest_Pa(draft.robot);
+            draft.description.growths.push_back(
+                {material, passage.direction, actuator, weight_Pa, passage.length, passage.center});
         }
     }
     if (draft.description.growths.size() == before)

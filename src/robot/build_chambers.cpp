@@ -106,7 +106,8 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
     if (spec.elements) {
         const std::size_t region = draft.region_of(Region::Use::chamber, spec.name);
         const auto actuator = static_cast<int>(draft.description.cables.size() + draft.description.chambers.size());
-        draft.description.growths.push_back({draft.material_of(region), {}, actuator});
+        draft.description.growths.push_back(
+            {draft.material_of(region), {}, actuator, spec.weight * softest_Pa(draft.robot), 0, {}});
     }
     draft.description.chambers.push_back(std::move(chamber));
 }

@@ -7,12 +7,12 @@
 #include "robot/build_contact.hpp"
 #include "robot/build_grades.hpp"
 #include "robot/build_places.hpp"
+#include "sim/actuated_space.hpp"
 #include "sim/free_motion.hpp"
 
 namespace pliant::robot {
 namespace {
 
-/// Meshed space resists as much as the softest body, with a Poisson ratio of zero.
 void add_materials(ModelDraft& draft) {
     for (const MaterialSpec& m : draft.robot.materials)
         draft.description.materials.push_back({m.name, m.law, m.density_kg_m3});
@@ -20,13 +20,17 @@ void add_materials(ModelDraft& draft) {
     for (const Region& region : regions_of(draft.robot)) {
         if (region.use == Region::Use::body || !region.has_elements) continue;
         draft.description.material_of_region.push_back(static_cast<int>(draft.description.materials.size()));
-        draft.description.materials.push_back(
-            {std::string(region.name), material::ScaledTarget{softest_Pa(draft.robot)}, 0});
+        const double softest = softest_Pa(draft.robot);
+        draft.description.materials.push_back({std::string(region.name),
+                                               region.use == Region::Use::gap
+                                                   ? sim::gap_law(softest)
+                                                   : sim::air_law(softest, draft.robot.chambers[region.index].weight),
+                                               0});
     }
     for (const int notch : draft.notches) {
         draft.description.material_of_region.push_back(static_cast<int>(draft.description.materials.size()));
         draft.description.materials.push_back({draft.description.mesh.region_names[static_cast<std::size_t>(notch)],
-                                               material::ScaledTarget{softest_Pa(draft.robot)}, 0});
+                                               sim::gap_law(softest_Pa(draft.robot)), 0});
     }
 }
 

@@ -168,6 +168,40 @@ TEST_CASE("two cables share the notches that both cross; each closes them along 
     CHECK(growths[2].material == growths[0].material);
 }
 
+TEST_CASE("gap elements take the weight of their gap, else that of their cable") {
+    const std::string path = "[[0, 5, 9], [40, 5, 9]]";
+    const auto weight_Pa = [](const Built& built) { return built.model.description().growths.front().weight_Pa; };
+    const double usual = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true"))));
+    const double twice = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true\nweight = 0.2"))));
+    CHECK(twice == doctest::Approx(2 * usual));
+    const std::string gap = "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n";
+    const double of_gap = weight_Pa(built_of(notched(cable("flexor", path, "weight = 0.2") + gap + "weight = 0.4\n")));
+    CHECK(of_gap == doctest::Approx(4 * usual));
+    check_problem(notched(cable("flexor", path, "fill_notches = true\nweight = 0")), "above 0 and at most 1000");
+    check_problem(notched(cable("flexor", path, "fill_notches = true\nfriction = 0.1")), "knows no guides");
+    std::string length = notched(cable("flexor", path, "weight = 1"));
+    length.replace(length.find("gap-elements"), 12, "length");
+    check_problem(length, "act with model = \"gap-elements\" only");
+}
+
+TEST_CASE("air elements bend a robot as far as air does; their weight is checked") {
+    const auto hollow = [](const std::string& rest) {
+        return head + body("bar", "geometry = { box = [[0, 0, 0], [30, 10, 10]] }") +
+               "[[chamber]]\nname = \"air\"\ngeometry = { box = [[4, 2, 2], [26, 8, 5]] }\n"
+               "target = { volume_ratio = 1.3 }\n" +
+               rest + "[[marker]]\nname = \"tip\"\npoint = [30, 5, 5]\n[program]\nsteps = 3\n";
+    };
+    const auto tip = [&](const std::string& rest) {
+        const sim::Step step = last_step(built_of(hollow(rest)));
+        CHECK(step.chambers[0].volume_ratio == doctest::Approx(1.3).epsilon(1e-4));
+        return step.markers[0].position_m - Vec3{30e-3, 5e-3, 5e-3};
+    };
+    const Vec3 air = tip(""), elements = tip("model = \"elements\"\n");
+    CHECK(norm(elements - air) < 0.1 * norm(air));
+    check_problem(hollow("model = \"elements\"\nweight = -1\n"), "above 0 and at most 1000");
+    check_problem(hollow("weight = 1\n"), "act with model = \"elements\" only");
+}
+
 TEST_CASE("fill_notches says what it cannot do") {
     const std::string flexor = "[[0, 5, 9], [40, 5, 9]]";
     check_problem(notched(cable("flexor", "[[0, 5, 2], [40, 5, 2]]", "fill_notches = true")), "finds none");

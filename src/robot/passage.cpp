@@ -39,11 +39,15 @@ Passage passage_through(const mesh::TetMesh& mesh, int region, const std::vector
         for (std::size_t k = 1; k < points.size(); ++k) {
             const auto [begin, end] = clip(corner, points[k - 1], points[k]);
             if (begin >= end) continue;
-            sum += (end - begin) * (points[k] - points[k - 1]);
-            passage.length += (end - begin) * norm(points[k] - points[k - 1]);
+            const Vec3 way = points[k] - points[k - 1];
+            const double length = (end - begin) * norm(way);
+            sum += (end - begin) * way;
+            passage.center += length * (points[k - 1] + 0.5 * (begin + end) * way);
+            passage.length += length;
         }
     }
     if (norm(sum) > 0) passage.direction = unit(sum);
+    if (passage.length > 0) passage.center = passage.center / passage.length;
     return passage;
 }
 

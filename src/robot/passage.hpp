@@ -12,6 +12,7 @@ namespace pliant::robot {
 struct Passage {
     double length = 0;
     Vec3 direction;  ///< of length 1: the mean over the passage; zero where there is none
+    Vec3 center;     ///< the mean of its points
 };
 /// In the unit of the mesh, in which `points` stand too. Takes time in proportion to tets times points.
 [[nodiscard]] Passage passage_through(const mesh::TetMesh& mesh, int region, const std::vector<Vec3>& points);

@@ -15,6 +15,7 @@
 #include "material/law.hpp"
 #include "mesh/placement.hpp"
 #include "mesh/solid.hpp"
+#include "sim/actuated_space.hpp"
 #include "sim/simulate.hpp"
 
 namespace pliant::robot {
@@ -141,6 +142,7 @@ struct CableSpec {
     sim::CableTarget target;
     bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
     bool fill_notches = false;  ///< the notches that it crosses are gaps
+    double weight = sim::default_gap_weight;  ///< of its gap elements, where their gap has none of its own
     int line = 0;
 };
 
@@ -162,6 +164,7 @@ struct GapSpec {
     std::string name;
     Geometry space;
     int line = 0;
+    std::optional<double> weight{};  ///< of its elements, beside the softest Young's modulus
 };
 
 /// A chamber's air: a solid that is cut out of the bodies, a closed surface file, a region of the mesh file, or a
@@ -171,6 +174,7 @@ struct ChamberSpec {
     Geometry air;
     sim::ChamberTarget target;
     bool elements = false;  ///< the thesis' model (T3.6) instead of the volume constraint
+    double weight = sim::default_air_weight;  ///< of the elements, beside the softest Young's modulus
     int line = 0;
 };
 

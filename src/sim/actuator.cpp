@@ -4,8 +4,8 @@
 
 namespace pliant::sim {
 
-Actuator::Actuator(CablePath path, std::span<const double> rest)
-    : geometry_(std::move(path)), rest_measure_(measure(rest)) {}
+Actuator::Actuator(CablePath path, std::span<const double> rest, std::optional<GapElements> gaps)
+    : geometry_(std::move(path)), gaps_(std::move(gaps)), rest_measure_(measure(rest)) {}
 
 Actuator::Actuator(ChamberSurface surface, std::span<const double> rest)
     : geometry_(std::move(surface)), rest_measure_(measure(rest)) {}
@@ -17,6 +17,12 @@ double Actuator::measure(std::span<const double> x, std::span<const double> shar
 
 void Actuator::add_gradient(std::span<const double> x, double factor, std::span<double> forces,
                             std::span<const double> shares) const {
+    if (gaps_) return gaps_->add_pull(x, factor, forces);
+    add_measure_gradient(x, factor, forces, shares);
+}
+
+void Actuator::add_measure_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                                    std::span<const double> shares) const {
     if (const auto* path = std::get_if<CablePath>(&geometry_))
         path->add_gradient(x, factor, forces, shares);
     else
@@ -26,7 +32,9 @@ void Actuator::add_gradient(std::span<const double> x, double factor, std::span<
 void Actuator::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                            const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
                            std::span<const double> shares) const {
-    if (const auto* path = std::get_if<CablePath>(&geometry_))
+    if (gaps_)
+        gaps_->add_hessian(x, factor, free_index, pattern, values, project);
+    else if (const auto* path = std::get_if<CablePath>(&geometry_))
         path->add_hessian(x, factor, free_index, pattern, values, shares);
     else
         std::get<ChamberSurface>(geometry_).add_hessian(x, factor, free_index, pattern, values, project);

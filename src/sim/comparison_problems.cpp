@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/actuated_space.hpp"
 #include "sim/attach.hpp"
 #include "sim/cable_path.hpp"
 #include "sim/chamber_surface.hpp"
@@ -39,6 +40,7 @@ constexpr int cells_per_notch = 5;
 constexpr double pitch = 15 * mm;
 constexpr double height = 9 * mm;
 constexpr double notch_floor = 3 * mm;
+constexpr double cable_z = 6 * mm;
 constexpr double flare = 1.4 * mm;  ///< of each flank, from floor to top
 
 /// From the box in which every cell is as wide as the others.
@@ -69,7 +71,7 @@ Cable finger_cable(const mesh::TetMesh& mesh, const CableTarget& target) {
     Cable cable{"cable", {}, target};
     const double cell = pitch / cells_per_notch;
     const auto guide = [&](int line) {
-        const Vec3 at = to_finger({line * cell, 3 * mm, 6 * mm});
+        const Vec3 at = to_finger({line * cell, 3 * mm, cable_z});
         cable.points.push_back({nodes_where(mesh, [&](Vec3 p) { return norm(p - at) < tiny; }), {1.0}, {}});
     };
     guide(0);
@@ -82,14 +84,17 @@ Cable finger_cable(const mesh::TetMesh& mesh, const CableTarget& target) {
 }
 
 /// Region 1 of `whole` as empty space (dropped), or as elements whose target shape actuator 0 scales.
-void set_bodies(Description& d, mesh::Extract solid, const material::Law& law, Drive drive, Vec3 direction) {
+void set_bodies(Description& d, mesh::Extract solid, const material::Law& law, Drive drive, const Growth& growth) {
     d.mesh = std::move(solid.mesh);
     d.materials = {{"rubber", law, 0}};
     d.material_of_region = {0};
     if (drive == Drive::constraint) return;
-    d.materials.push_back({"space", material::ScaledTarget{material::youngs_modulus(material::moduli(law))}, 0});
+    const double softest = material::youngs_modulus(material::moduli(law));
+    const bool is_gap = growth.length_m > 0;
+    d.materials.push_back({"space", is_gap ? gap_law(softest) : air_law(softest, default_air_weight), 0});
     d.material_of_region.push_back(1);
-    d.growths = {{1, direction, 0}};
+    d.growths = {growth};
+    d.growths[0].weight_Pa = (is_gap ? default_gap_weight : default_air_weight) * softest;
 }
 
 }  // namespace
@@ -134,7 +139,8 @@ Description cable_finger(int order, const material::Law& law, const CableTarget&
     const auto end = nodes_where(linear.mesh, at_end);
     if (order == 2) linear.mesh = mesh::to_quadratic(linear.mesh);
     Description d;
-    set_bodies(d, std::move(linear), law, drive, {1, 0, 0});
+    const double notch_m = to_finger({3 * pitch / 5, 0, cable_z}).x - to_finger({2 * pitch / 5, 0, cable_z}).x;
+    set_bodies(d, std::move(linear), law, drive, {1, {1, 0, 0}, 0, 0, notches * notch_m, {0, 3 * mm, cable_z}});
     d.supports = {clamp(d.mesh)};
     d.cables = {finger_cable(d.mesh, target)};
     d.markers = {{"tip", mean_of(end)}};
@@ -157,7 +163,7 @@ Description air_block(int order, const material::Law& law, const ChamberTarget& 
     for (std::size_t n = 0; n < corners; ++n) {
         if (whole.points[n].x > 30 * mm - tiny) end.push_back(solid.node[n]);
     }
-    set_bodies(d, std::move(solid), law, drive, {});
+    set_bodies(d, std::move(solid), law, drive, {1, {}, 0, 0, 0, {}});
     d.supports = {clamp(d.mesh)};
     d.markers = {{"tip", mean_of(end)}};
     return d;

@@ -38,6 +38,9 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     scalar.block = 1;
     std::vector<double> values(scalar.entries(), 0.0);
     model.elements().add_laplacian(layout->element_sums, values);
+    for (const Actuator& actuator : system.actuators()) {
+        if (actuator.gaps() != nullptr) actuator.gaps()->add_laplacian(model.free_index(), scalar, values);
+    }
     // It knows no directions: a node that is held in some of them is held a little in all, so that the body is held.
     for (const FreeRoller& roller : system.rollers()) {
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];

@@ -5,6 +5,16 @@
 namespace pliant::sim {
 namespace {
 
+/// Pressure with which the elements of a chamber's air resist its volume: what they press with beyond that is left for
+/// the walls. 0 where the air is not meshed.
+double air_resistance(const Description& d, std::size_t actuator, double volume_ratio) {
+    for (const Growth& growth : d.growths) {
+        if (actuator >= d.cables.size() && growth.actuator == static_cast<int>(actuator))
+            return growth.weight_Pa * (volume_ratio - 1);
+    }
+    return 0;
+}
+
 void describe_actuators(const Model& model, const Equilibrium& system, const State& state, std::span<const double> x,
                         Step& step) {
     const auto& d = model.description();
@@ -12,7 +22,9 @@ void describe_actuators(const Model& model, const Equilibrium& system, const Sta
         const Actuator& actuator = system.actuators()[a];
         const double measure = actuator.measure(x);
         const double ratio = measure / actuator.rest_measure();
-        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        if (actuator.gaps() != nullptr) multiplier = actuator.gaps()->tension(x, multiplier);
+        multiplier += air_resistance(d, a, ratio);
         if (a < d.cables.size())
             step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
         else  // 0 - 0 is 0, where -0 would be a minus zero in every report

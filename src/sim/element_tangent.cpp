@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/parallel.hpp"
+#include "sim/blend_kernels.hpp"
 #include "sim/elements.hpp"
 
 namespace pliant::sim {
@@ -63,15 +64,18 @@ void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, 
     }
 }
 
-void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project,
-                           std::span<const material::Law> laws) const {
+void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values,
+                           bool project) const {
     const auto fill = [&](std::size_t b, double* blocks) {
-        const material::Law& law = law_among(laws, b);
+        const material::Law& law = law_of_batch(b);
         const auto form = material::invariant_form(law);
+        const auto* blend = std::get_if<material::ShapeBlend>(&law);
         if (form && project)
             batch_projected_tangent(batch(b), *form, x.data(), blocks);
         else if (form)
             batch_tangent(batch(b), *form, x.data(), blocks);
+        else if (blend != nullptr && !project)
+            batch_blend_tangent(batch(b), *blend, x.data(), blocks);
         else
             tangent_one_by_one(b, x, law, project, blocks);
     };

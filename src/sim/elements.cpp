@@ -8,6 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "mesh/order_in_space.hpp"
+#include "sim/blend_kernels.hpp"
 #include "sim/model.hpp"
 
 namespace pliant::sim {
@@ -274,7 +275,7 @@ void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) 
         BatchForces forces;
         sums_.clear(piece, lists.data());
         for (std::size_t b = begin; b < end; ++b) {
-            const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
+            const double stiffness = material::stiffness_bound(law_of_batch(b));
             forces_of(b, stiffness, forces.values);
             sums_.add(b, forces.values, lists.data());
         }
@@ -282,12 +283,11 @@ void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) 
     sums_.gather(lists.data(), result);
 }
 
-Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces,
-                                        std::span<const material::Law> laws) const {
+Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces) const {
     std::vector<Evaluation> partial(sums_.pieces());
     const bool with_forces = !forces.empty();
     const auto lists = scratch_.lend(with_forces ? sums_.space() : 0);
-    const auto forms = forms_of(laws.empty() ? laws_ : laws);
+    const auto forms = forms_of(laws_);
     sums_.for_pieces([&](std::size_t piece, std::size_t begin, std::size_t end) {
         BatchForces one;
         double* to = with_forces ? one.values : nullptr;
@@ -296,8 +296,10 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
         sum.min_J = std::numeric_limits<double>::infinity();
         for (std::size_t b = begin; b < end && sum.min_J > 0; ++b) {
             const auto& form = forms[static_cast<std::size_t>(batch_law_[b])];
-            const BatchResult result =
-                form ? batch_forces(batch(b), *form, x.data(), to) : forces_one_by_one(b, x, law_among(laws, b), to);
+            const auto* blend = std::get_if<material::ShapeBlend>(&law_of_batch(b));
+            const BatchResult result = form    ? batch_forces(batch(b), *form, x.data(), to)
+                                       : blend ? batch_blend_forces(batch(b), *blend, x.data(), to)
+                                               : forces_one_by_one(b, x, law_of_batch(b), to);
             sum.energy_J += result.energy_J;
             sum.min_J = std::min(sum.min_J, result.min_J);
             if (with_forces && sum.min_J > 0) sums_.add(b, one.values, lists.data());
@@ -315,7 +317,7 @@ Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<dou
 
 void Elements::add_laplacian(const BlockSums& sums, std::span<double> values) const {
     const auto fill = [&](std::size_t b, double* products) {
-        const double stiffness = material::stiffness_bound(laws_[static_cast<std::size_t>(batch_law_[b])]);
+        const double stiffness = material::stiffness_bound(law_of_batch(b));
         std::fill_n(products, pairs() * lanes, 0.0);
         for (std::size_t q = 0; q < points(); ++q) {
             const double* gradients = gradient_.data() + (b * points() + q) * width() * 3 * lanes;

@@ -31,17 +31,14 @@ public:
         double min_J = 1;     ///< over all integration points; if it is not positive, nothing else is computed
     };
     /// Adds the internal forces (3n) at node positions `x` (3n). Without `forces` only energy and min_J are found.
-    /// `laws` (materials), where given, stand in for the model's: targets of actuated space change with the program.
-    Evaluation evaluate(std::span<const double> x, std::span<double> forces,
-                        std::span<const material::Law> laws = {}) const;
+    Evaluation evaluate(std::span<const double> x, std::span<double> forces) const;
 
     /// Where the pairs of the tets' nodes go in a pattern over free nodes: made once for each pattern.
     [[nodiscard]] BlockSums block_sums(const std::vector<int>& free_index,
                                        const linalg::SymmetricPattern& pattern) const;
     /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
-    void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project,
-                     std::span<const material::Law> laws = {}) const;
+    void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
     /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
     /// for each pair of the pattern of the sums; W = stiffness_bound(law) times volume.
@@ -79,7 +76,16 @@ public:
                        place_[tet] % lanes];
     }
     [[nodiscard]] const material::Law& law(std::size_t tet) const { return laws_[static_cast<std::size_t>(law_[tet])]; }
+    /// Index of the material of a tet.
+    [[nodiscard]] int material(std::size_t tet) const { return law_[tet]; }
     [[nodiscard]] std::size_t tet_count() const { return law_.size(); }
+    [[nodiscard]] std::size_t nodes_per_tet() const { return width(); }
+    [[nodiscard]] int node_of(std::size_t tet, int a) const { return node(tet, a); }
+    /// grad N_a at an integration point, 1/m.
+    [[nodiscard]] Vec3 shape_gradient(std::size_t tet, int point, int a) const {
+        const double* g = gradient(tet, point, a);
+        return {g[0], g[lanes], g[2 * lanes]};
+    }
 
     /// Node lists of all tets, as free indices: the cliques of the stiffness pattern.
     [[nodiscard]] linalg::Lists cliques(const std::vector<int>& free_index) const;
@@ -109,9 +115,8 @@ private:
     void fill_empty_lanes();
     Status integrate(const mesh::TetMesh& mesh);
     void weigh(const Description& description);
-    [[nodiscard]] const material::Law& law_among(std::span<const material::Law> laws, std::size_t batch) const {
-        const auto index = static_cast<std::size_t>(batch_law_[batch]);
-        return laws.empty() ? laws_[index] : laws[index];
+    [[nodiscard]] const material::Law& law_of_batch(std::size_t batch) const {
+        return laws_[static_cast<std::size_t>(batch_law_[batch])];
     }
     // Of batches, where the law has no SIMD kernel; same arrays as those of element_kernels.hpp.
     [[nodiscard]] BatchResult forces_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law,

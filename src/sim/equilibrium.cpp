@@ -26,6 +26,26 @@ constexpr double plate_stiffness = 100;
 
 using Flaw = Evaluation::Flaw;
 
+/// Squared distance of a tet's centre from the straight line of a cable through its gap.
+double distance_from(const Growth& growth, const Vec3& centre) {
+    const Vec3 away = centre - growth.center_m;
+    const Vec3 across = away - dot(away, growth.direction) * growth.direction;
+    return dot(across, across);
+}
+
+/// True if no other cable that passes the same gap is nearer to the tet, nor one before it as near.
+bool is_nearest(const Description& d, std::size_t tet, const Growth& growth) {
+    Vec3 centre;
+    for (const int node : d.mesh.tet(tet).first(4)) centre += 0.25 * d.mesh.points[static_cast<std::size_t>(node)];
+    const double own = distance_from(growth, centre);
+    for (const Growth& other : d.growths) {
+        if (other.material != growth.material || other.actuator == growth.actuator) continue;
+        const double distance = distance_from(other, centre);
+        if (distance < own || (distance == own && other.actuator < growth.actuator)) return false;
+    }
+    return true;
+}
+
 Evaluation impossible(double min_J, Flaw flaw) {
     Evaluation e;
     e.min_J = min_J;
@@ -68,7 +88,9 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     for (std::size_t k = 0; k < d.pressures.size(); ++k) {
         if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
     }
-    conservative_ = model.elements().has_energy() && skew_.empty();
+    const auto by_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
+    conservative_ =
+        model.elements().has_energy() && skew_.empty() && std::none_of(actuators_.begin(), actuators_.end(), by_gaps);
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
     const double volume = mesh::volume(d.mesh);
@@ -83,12 +105,26 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
 void Equilibrium::add_actuators() {
     const Description& d = model_->description();
     const auto rest = view(std::as_const(rest_));
-    for (const Cable& cable : d.cables) actuators_.emplace_back(CablePath(cable.points, rest), rest);
+    for (std::size_t c = 0; c < d.cables.size(); ++c)
+        actuators_.emplace_back(CablePath(d.cables[c].points, rest), rest, gap_elements_of(c));
     for (const Spring& spring : d.springs) springs_.emplace_back(spring, rest);
     for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
     for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
-    grows_.assign(actuators_.size(), false);
-    for (const Growth& growth : d.growths) grows_[static_cast<std::size_t>(growth.actuator)] = true;
+}
+
+/// Of the tets of a gap that several cables pass, each one has those that are nearest to it.
+std::optional<GapElements> Equilibrium::gap_elements_of(std::size_t cable) const {
+    const Description& d = model_->description();
+    std::vector<GapElements::Gap> gaps;
+    for (const Growth& growth : d.growths) {
+        if (growth.actuator != static_cast<int>(cable)) continue;
+        GapElements::Gap gap{{}, growth.direction, growth.length_m, growth.weight_Pa};
+        for (std::size_t t = 0; t < model_->elements().tet_count(); ++t) {
+            if (model_->elements().material(t) == growth.material && is_nearest(d, t, growth)) gap.tets.push_back(t);
+        }
+        if (!gap.tets.empty()) gaps.push_back(std::move(gap));
+    }
+    return gaps.empty() ? std::nullopt : std::optional(GapElements(model_->elements(), gaps));
 }
 
 void Equilibrium::add_plates(double stiffness_Pa, double volume_m3) {
@@ -116,23 +152,6 @@ Eigen::VectorXd Equilibrium::external_at(double time) const {
             force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
     }
     return force;
-}
-
-std::vector<material::Law> Equilibrium::laws_at(std::span<const double> stretch) const {
-    const Description& d = model_->description();
-    std::vector<material::Law> laws;
-    if (d.growths.empty()) return laws;
-    for (const Material& material : d.materials) laws.push_back(material.law);
-    for (const Growth& growth : d.growths) {
-        const double scale = stretch.empty() ? 1 : stretch[static_cast<std::size_t>(growth.actuator)];
-        linalg::Matrix3 target = linalg::Matrix3::Identity();
-        if (norm(growth.direction) > 0)
-            target += (scale - 1) * vector(growth.direction) * vector(growth.direction).transpose();
-        else
-            target *= scale;
-        std::get<material::ScaledTarget>(laws[static_cast<std::size_t>(growth.material)]).target = target;
-    }
-    return laws;
 }
 
 Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
@@ -163,22 +182,16 @@ Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
     return {Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa};
 }
 
-double Equilibrium::wanted_ratio(std::size_t actuator, double time) const {
-    return drive_at(actuator, time).value / actuators_[actuator].rest_measure();
-}
-
-Controls Equilibrium::controls(double time, std::span<const double> stretch) const {
+Controls Equilibrium::controls(double time) const {
     Controls controls;
     controls.time = time;
     controls.met = met_;
     controls.external_N = external_at(time);
-    controls.laws = laws_at(stretch);
     controls.shares.resize(actuators_.size());
     controls.obstacles = obstacles_at(time);
     for (const Support& support : model_->description().supports)
         controls.support_share.push_back(support.share.at(time));
-    for (std::size_t a = 0; a < actuators_.size(); ++a)
-        controls.drives.push_back(grows_[a] ? Drive{Drive::Kind::multiplier, 0} : drive_at(a, time));
+    for (std::size_t a = 0; a < actuators_.size(); ++a) controls.drives.push_back(drive_at(a, time));
     return controls;
 }
 
@@ -249,7 +262,7 @@ double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
     Evaluation e;
     Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
-    const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal), controls.laws);
+    const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
     e.min_J = elastic.min_J;
     if (!(e.min_J > 0)) return impossible(e.min_J, Flaw::inverted);
     if (has_collapsed_chamber(state.x)) return impossible(e.min_J, Flaw::collapsed);
@@ -263,6 +276,11 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     for (const SpringPath& spring : springs_) {
         e.energy_J += spring.energy(view(state.x));
         spring.add_gradient(view(state.x), view(internal));
+    }
+    for (const Actuator& actuator : actuators_) {
+        if (actuator.gaps() == nullptr) continue;
+        e.energy_J += actuator.gaps()->energy(view(state.x));
+        actuator.gaps()->add_gradient(view(state.x), view(internal));
     }
     if (controls.inertia) {
         e.energy_J += controls.inertia->energy(state.x);
@@ -317,7 +335,10 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
     still.friction = nullptr;
     double springs = 0;
     for (const SpringPath& spring : springs_) springs += spring.energy(view(state.x));
-    return model_->elements().evaluate(view(state.x), {}, controls.laws).energy_J + springs -
+    for (const Actuator& actuator : actuators_) {
+        if (actuator.gaps() != nullptr) springs += actuator.gaps()->energy(view(state.x));
+    }
+    return model_->elements().evaluate(view(state.x), {}).energy_J + springs -
            controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
 }
 
@@ -455,7 +476,7 @@ TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& 
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
-    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project, controls.laws);
+    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
     for (const SpringPath& spring : springs_)
         spring.add_hessian(view(state.x), model_->free_index(), pattern, values, project);
@@ -474,7 +495,7 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
     }
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
-        if (multiplier != 0)
+        if (multiplier != 0 || actuators_[a].gaps() != nullptr)
             actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project,
                                       controls.shares[a]);
     }

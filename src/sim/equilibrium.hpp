@@ -22,7 +22,6 @@ struct Controls {
     Eigen::VectorXd external_N;         ///< (3n) dead loads and gravity
     std::vector<double> support_share;  ///< (supports) of their prescribed motion
     std::vector<Drive> drives;          ///< (actuators)
-    std::vector<material::Law> laws;    ///< (materials) where target shapes change with time; else empty
     /// (actuators) how the tension of a cable with friction drops along it, frozen at some state of this step; empty
     /// lists where there is no friction.
     std::vector<std::vector<double>> shares;
@@ -81,8 +80,7 @@ class Equilibrium {
 public:
     explicit Equilibrium(const Model& model);
 
-    /// `stretch` (actuators): scale of the target shapes that each one drives, 1 at rest.
-    [[nodiscard]] Controls controls(double time, std::span<const double> stretch = {}) const;
+    [[nodiscard]] Controls controls(double time) const;
     /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
     /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
     /// wanted.
@@ -91,8 +89,6 @@ public:
     /// Largest error of the true lengths of cables with friction, relative to rest.
     [[nodiscard]] double cable_friction_error(const State& state, std::span<const Drive> wanted) const;
     [[nodiscard]] bool has_cable_friction() const;
-    /// Where an actuator is driven by its measure: what it shall be, relative to rest.
-    [[nodiscard]] double wanted_ratio(std::size_t actuator, double time) const;
     [[nodiscard]] State rest() const;
     /// Puts the nodes of the supports where `controls` wants them.
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
@@ -165,7 +161,7 @@ private:
     void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void add_plates(double stiffness_Pa, double volume_m3);
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
-    [[nodiscard]] std::vector<material::Law> laws_at(std::span<const double> stretch) const;
+    [[nodiscard]] std::optional<GapElements> gap_elements_of(std::size_t cable) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
     /// Energy of an actuator whose measure is not driven, at measure g > 0.
@@ -190,7 +186,6 @@ private:
     std::vector<SpringPath> springs_;
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share
-    std::vector<bool> grows_;        ///< (actuators) drives target shapes, and has no force of its own
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
     bool conservative_ = true;
     bool met_ = false;        ///< the robot has met itself

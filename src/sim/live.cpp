@@ -46,6 +46,17 @@ struct Place {
     Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
 };
 
+/// Largest stiffness of the softest material; meshed space that actuators drive is none.
+double softest_body_Pa(const Description& d) {
+    double softest = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < d.materials.size(); ++m) {
+        const auto is_space = [&](const Growth& growth) { return growth.material == static_cast<int>(m); };
+        if (std::none_of(d.growths.begin(), d.growths.end(), is_space))
+            softest = std::min(softest, material::stiffness_bound(d.materials[m].law));
+    }
+    return softest;
+}
+
 bool same_point(const Attachment& a, const Attachment& b) {
     return a.nodes == b.nodes && a.weights == b.weights;
 }
@@ -60,9 +71,7 @@ public:
           system_(model),
           laplacian_(system_),
           chain_(make_chain(program.solver, system_, laplacian_)) {
-        double softest = std::numeric_limits<double>::infinity();
-        for (const Material& m : model.description().materials)
-            softest = std::min(softest, material::stiffness_bound(m.law));
+        const double softest = softest_body_Pa(model.description());
         const double length = std::cbrt(mesh::volume(model.mesh()));
         tension_unit_ = strain_share * softest * length * length;
         pressure_unit_ = strain_share * softest;
@@ -271,7 +280,7 @@ private:
         system_.place_supports(controls, state.x);
         const Eigen::VectorXd motion = state.x - state_.x;
         if (motion.squaredNorm() > 0) system_.add_free(laplacian_.follow(system_, motion), 1, state.x);
-        if (!(model_.elements().evaluate(view(state.x), {}, controls.laws).min_J > 0))
+        if (!(model_.elements().evaluate(view(state.x), {}).min_J > 0))
             return "the prescribed motion turns a tetrahedron inside out";
         return passes(state, controls) ? "" : "the prescribed motion passes through something in one go";
     }
@@ -285,7 +294,7 @@ private:
         state.x = laplacian_.turn(system_, turning);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             double& tension = state.multiplier[static_cast<Eigen::Index>(c)];
-            tension = std::max(tension, 0.0);
+            if (system_.actuators()[c].only_pulls()) tension = std::max(tension, 0.0);
         }
         Evaluation there = system_.evaluate(state, controls);
         if (!(there.min_J > 0) || !(there.error() < worst_start) || !passes(state, controls)) return std::nullopt;
@@ -420,9 +429,6 @@ Live::~Live() = default;
 Live::Live(Live&&) noexcept = default;
 Live& Live::operator=(Live&&) noexcept = default;
 
-bool Live::supports(const Model& model) {
-    return model.description().growths.empty();
-}
 LiveTarget Live::target_at(double time) const {
     return walk_->target_at(time);
 }

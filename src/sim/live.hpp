@@ -47,14 +47,11 @@ struct LiveProgress {
 /// calls.
 class Live {
 public:
-    /// Starts at rest. `model` must outlive it. Precondition: supports(model).
+    /// Starts at rest. `model` must outlive it.
     Live(const Model& model, const Program& program);
     ~Live();
     Live(Live&&) noexcept;
     Live& operator=(Live&&) noexcept;
-
-    /// The thesis' actuators scale target shapes along a whole program; they cannot be steered.
-    [[nodiscard]] static bool supports(const Model& model);
 
     /// What the program asks for at `time`.
     [[nodiscard]] LiveTarget target_at(double time) const;
@@ -62,7 +59,7 @@ public:
     [[nodiscard]] Drive hold(std::size_t a, Drive::Kind kind) const;
 
     /// One piece of the way to `target`, as large as lately went well. Precondition: as many drives as cables and
-    /// chambers; finite values.
+    /// chambers; finite values; those that act through elements (Growth) are driven by their measure.
     [[nodiscard]] LiveProgress advance(const LiveTarget& target, const Progress& progress);
     void return_to_rest();
 

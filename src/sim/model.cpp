@@ -129,14 +129,26 @@ Status check_plates(const Description& d) {
 }
 
 Status check_growths(const Description& d) {
+    const auto cables = static_cast<int>(d.cables.size());
+    const auto actuators = cables + static_cast<int>(d.chambers.size());
     for (const Growth& growth : d.growths) {
-        const bool driven =
-            growth.material >= 0 && growth.material < static_cast<int>(d.materials.size()) &&
-            std::holds_alternative<material::ScaledTarget>(d.materials[static_cast<std::size_t>(growth.material)].law);
-        if (!driven) return input_error("a growth needs a material whose law is scaled-target");
-        const auto actuators = static_cast<int>(d.cables.size() + d.chambers.size());
+        if (growth.material < 0 || growth.material >= static_cast<int>(d.materials.size()))
+            return input_error("a growth names material {} of {}", growth.material, d.materials.size());
         if (growth.actuator < 0 || growth.actuator >= actuators)
             return input_error("a growth names actuator {} of {}", growth.actuator, actuators);
+        if (!(growth.weight_Pa > 0) || !std::isfinite(growth.weight_Pa))
+            return input_error("a growth needs a weight above zero");
+        const auto a = static_cast<std::size_t>(growth.actuator);
+        if (growth.actuator >= cables) {
+            const auto kind = d.chambers[a - d.cables.size()].target.kind;
+            if (kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
+                return input_error("chamber \"{}\": elements know volumes only", d.chambers[a - d.cables.size()].name);
+            continue;
+        }
+        if (d.cables[a].target.kind == CableTarget::Kind::tension_N || d.cables[a].friction > 0)
+            return input_error("cable \"{}\": gap elements know neither tension nor friction", d.cables[a].name);
+        if (!(growth.length_m > 0) || !(std::fabs(norm(growth.direction) - 1) < 1e-6))
+            return input_error("cable \"{}\": a gap needs a direction and a length", d.cables[a].name);
     }
     return {};
 }

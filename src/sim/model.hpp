@@ -128,13 +128,17 @@ struct Chamber {
     ChamberTarget target;
 };
 
-/// How the thesis' actuators drive the target shape of one material (a material::ScaledTarget): its rest shape is
-/// scaled along `direction` or, where that is zero, in all directions, by as much as it takes for the actuator's
-/// measure (a cable's length, a chamber's volume) to be what its target wants. The actuator itself then has no force.
+/// The thesis' actuators (T3.5, T3.6): a cable or chamber that is driven by its length or volume acts through the
+/// elements of one material, meshed empty space. They are scaled along `direction` or, where that is zero, in volume by
+/// as much as it takes for the actuator's measure to be what its target wants (actuated_space.hpp). Where several cables
+/// pass one gap, each has the tets that are nearest to it.
 struct Growth {
-    int material = 0;
-    Vec3 direction;    ///< of length 1, or zero
-    int actuator = 0;  ///< first the cables, then the chambers
+    int material = 0;      ///< of air: air_law(), of a gap: gap_law()
+    Vec3 direction;        ///< of a gap: along the cable, of length 1
+    int actuator = 0;      ///< first the cables, then the chambers
+    double weight_Pa = 0;  ///< above 0: how hard the elements are held to their target
+    double length_m = 0;   ///< of a gap: of the cable in it at rest, above 0
+    Vec3 center_m;         ///< of a gap: a point of that cable
 };
 
 /// Nodes that something rigid is glued to: they keep their shape and move as one.

@@ -31,14 +31,11 @@ constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 constexpr double worst_start = 0.2;
 constexpr double good_start = 0.03;
 
-constexpr double largest_growth = 0.01;  // of a target's scale in one go (T3.5)
 constexpr int friction_rounds = 30;
 constexpr double sudden = 5;         // times as far as in the step before
 constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
 constexpr double long_first = 0.03;  // likewise: no step before tells whether the first one is sudden
 constexpr int most_pushes = 5;
-constexpr double growth_tolerance = 1e-4;
-constexpr int growth_rounds = 1000;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -62,7 +59,6 @@ public:
         Box3 box;
         for (const Vec3& p : model.mesh().points) box.add(p);
         size_ = box.diagonal();
-        if (!model.description().growths.empty()) stretch_.assign(system_.actuators().size(), 1.0);
     }
 
     [[nodiscard]] std::string_view solver_name() const { return name(solvers_.first()); }
@@ -75,10 +71,7 @@ public:
         while (time_ < time) {
             const double target = time_ + piece >= time - 1e-9 * whole ? time : time_ + piece;
             State next = state_;
-            const std::vector<double> stretch = stretch_;
-            const StepOutcome outcome =
-                stretch_.empty() ? attempt(target, next, progress) : grow(target, next, progress);
-            if (!outcome.converged) stretch_ = stretch;
+            const StepOutcome outcome = attempt(target, next, progress);
             step.iterations += outcome.iterations;
             note(outcome.history, step.index, target);
             if (outcome.converged && system_.meets_itself(state_, controls_, next, solved_controls_)) {
@@ -111,7 +104,7 @@ public:
 
     /// What a program that stopped before `time` should do instead; empty if nothing is known.
     [[nodiscard]] std::string advice(double time, const Progress& progress) {
-        if (program_.dynamics || !stretch_.empty() || progress.cancelled()) return {};
+        if (program_.dynamics || !model_.description().growths.empty() || progress.cancelled()) return {};
         const auto limit = find_pressure_limit(system_, solvers_, controls_, system_.controls(time),
                                                {program_.tolerance, program_.iteration_limit}, state_, progress);
         if (!limit) return {};
@@ -293,7 +286,7 @@ private:
             stiffness->pattern = &body_layout_->pattern;
             stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
             const std::span<const double> x(state_.x.data(), static_cast<std::size_t>(state_.x.size()));
-            model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true, controls_.laws);
+            model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true);
         }
         return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history_, dt, damping,
                                                std::move(stiffness));
@@ -312,61 +305,8 @@ private:
         history_ = std::move(now);
     }
 
-    /// The thesis' actuators: target shapes are scaled in small steps until every constraint holds (T3.5, T3.6).
-    StepOutcome grow(double time, State& next, const Progress& progress) {
-        StepOutcome outcome = attempt(time, next, progress);
-        std::vector<double> slope(stretch_.size(), 0.0);
-        for (int round = 0; outcome.converged && round < growth_rounds; ++round) {
-            const std::vector<double> before = growth_errors(time, next);
-            if (std::all_of(before.begin(), before.end(), [](double e) { return std::fabs(e) <= growth_tolerance; }))
-                return outcome;
-            std::vector<double> change(stretch_.size(), 0.0);
-            for (std::size_t a = 0; a < stretch_.size(); ++a) {
-                const double wanted = slope[a] > 0 ? -before[a] / slope[a] : -before[a];
-                change[a] = std::clamp(wanted, -largest_growth, largest_growth);
-                stretch_[a] += change[a];
-                if (!(stretch_[a] > largest_growth)) {
-                    outcome.converged = false;
-                    outcome.reason = "the space that drives the actuator would have to vanish";
-                    return outcome;
-                }
-            }
-            Controls controls = system_.controls(time, stretch_);
-            controls.inertia = solved_controls_.inertia;
-            const StepOutcome more = settle(controls, next, progress);
-            outcome.converged = more.converged;
-            outcome.loose = more.loose;
-            outcome.evaluation = more.evaluation;
-            outcome.reason = more.reason;
-            outcome.iterations += more.iterations;
-            outcome.solver = more.solver;
-            outcome.history.insert(outcome.history.end(), more.history.begin(), more.history.end());
-            const std::vector<double> after = growth_errors(time, next);
-            for (std::size_t a = 0; a < stretch_.size(); ++a) {
-                if (change[a] != 0) slope[a] = (after[a] - before[a]) / change[a];
-            }
-        }
-        if (outcome.converged) {
-            outcome.converged = false;
-            outcome.reason = "scaling its target shapes does not bring an actuator where it is wanted";
-        }
-        return outcome;
-    }
-
-    /// Measured minus wanted ratio of the actuators that scale target shapes; 0 for all others.
-    [[nodiscard]] std::vector<double> growth_errors(double time, const State& state) const {
-        std::vector<double> errors(stretch_.size(), 0.0);
-        const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
-        for (const Growth& growth : model_.description().growths) {
-            const auto a = static_cast<std::size_t>(growth.actuator);
-            const Actuator& actuator = system_.actuators()[a];
-            errors[a] = actuator.measure(x) / actuator.rest_measure() - system_.wanted_ratio(a, time);
-        }
-        return errors;
-    }
-
     StepOutcome attempt(double time, State& next, const Progress& progress) {
-        Controls controls = system_.controls(time, stretch_);
+        Controls controls = system_.controls(time);
         if (program_.dynamics) controls.inertia = make_inertia(time - time_);
         StepOutcome outcome;
         Evaluation known;
@@ -432,7 +372,7 @@ private:
         next.x = laplacian_.turn(system_, turning);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             double& tension = next.multiplier[static_cast<Eigen::Index>(c)];
-            tension = std::max(tension, 0.0);
+            if (system_.actuators()[c].only_pulls()) tension = std::max(tension, 0.0);
         }
         return next;
     }
@@ -488,12 +428,11 @@ private:
     Evaluation evaluation_;
     History history_;                           ///< of a motion in time
     std::optional<TangentLayout> body_layout_;  ///< made when damping by stiffness first needs it
-    std::vector<double> stretch_;   ///< (actuators) scale of the target shapes that they drive; empty if none does
-    std::set<std::size_t> warned_;  ///< cables
-    Moment reported_;               ///< after the last step of the program
-    double last_way_ = 0;           ///< that this step took
-    std::vector<std::size_t> before_jump_;  ///< steps
-    double size_ = 0;                       ///< of the robot at rest
+    std::set<std::size_t> warned_;              ///< cables
+    Moment reported_;                           ///< after the last step of the program
+    double last_way_ = 0;                       ///< that this step took
+    std::vector<std::size_t> before_jump_;      ///< steps
+    double size_ = 0;                           ///< of the robot at rest
     std::vector<IterationRecord> iterations_;
 };
 

@@ -76,7 +76,9 @@ SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLa
                 }};
     };
     if (asked != Solver::automatic) return SolverChain({link(asked)});
-    if (system.model().elements().has_energy()) return SolverChain({link(Solver::newton), link(Solver::quasi_newton)});
+    const bool by_elements = !system.model().description().growths.empty();
+    if (by_elements || system.model().elements().has_energy())
+        return SolverChain({link(Solver::newton), link(Solver::quasi_newton)});
     return SolverChain({link(Solver::quasi_newton), link(Solver::anderson)});
 }
 

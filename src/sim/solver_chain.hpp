@@ -39,8 +39,8 @@ private:
     std::vector<std::unique_ptr<Curvature>> made_;  ///< (links)
 };
 
-/// `asked` alone or, for automatic, newton with quasi-newton to stand in; where the forces have no energy, quasi-newton
-/// with anderson.
+/// `asked` alone or, for automatic, newton with quasi-newton to stand in; where the laws have no energy and no
+/// elements actuate, quasi-newton with anderson.
 [[nodiscard]] SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian);
 
 }  // namespace pliant::sim

@@ -86,6 +86,7 @@ public:
             if (controls.drives[a].kind == Drive::Kind::multiplier) continue;
             solved_.push_back(static_cast<Eigen::Index>(a));
             only_pull_.push_back(system.actuators()[a].only_pulls());
+            by_gaps_ = by_gaps_ || system.actuators()[a].gaps() != nullptr;
         }
         prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
         if (evaluation_.possible()) state_.multiplier = evaluation_.multiplier;
@@ -117,14 +118,16 @@ private:
         return {v.data(), static_cast<std::size_t>(v.size())};
     }
 
-    /// Gradients of the relative measures g / rest g whose multipliers are unknown, on free nodes: (3 free, solved).
-    [[nodiscard]] Eigen::MatrixXd constraint_gradients() const {
+    using AddGradient = void (Actuator::*)(std::span<const double>, double, std::span<double>,
+                                           std::span<const double>) const;
+    /// Of the actuators whose multipliers are unknown, on free nodes: (3 free, solved), over the measure at rest.
+    [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient) const {
         Eigen::MatrixXd gradients(3 * system_.model().free_count(), static_cast<Eigen::Index>(solved_.size()));
         for (std::size_t k = 0; k < solved_.size(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
-            actuator(solved_[k])
-                .add_gradient(view(state_.x), 1 / actuator(solved_[k]).rest_measure(),
-                              {full.data(), static_cast<std::size_t>(full.size())});
+            const Actuator& one = actuator(solved_[k]);
+            (one.*add_gradient)(view(state_.x), 1 / one.rest_measure(),
+                                {full.data(), static_cast<std::size_t>(full.size())}, {});
             gradients.col(static_cast<Eigen::Index>(k)) = system_.restrict_to_free(full);
         }
         return gradients;
@@ -154,10 +157,11 @@ private:
 
     [[nodiscard]] Direction find_direction() {
         const Eigen::VectorXd gradient = system_.restrict_to_free(evaluation_.out_of_balance);
-        const Eigen::MatrixXd A = constraint_gradients();
+        const Eigen::MatrixXd forces = gradients_of(&Actuator::add_gradient);
+        const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : forces;
         Eigen::MatrixXd columns(gradient.size(), 1 + A.cols());
         columns.col(0) = gradient;
-        columns.rightCols(A.cols()) = A;
+        columns.rightCols(A.cols()) = forces;
         curvature_.solve(columns);
 
         Direction direction;
@@ -180,7 +184,7 @@ private:
             }
             for (std::size_t k = 0; k < solved_.size(); ++k) {
                 const auto i = static_cast<Eigen::Index>(k);
-                if (drives_measure(solved_[k])) energy_gradient -= A.col(i) * now[i];
+                if (drives_measure(solved_[k])) energy_gradient -= forces.col(i) * now[i];
             }
         }
         direction.slope_J = energy_gradient.dot(direction.dx);
@@ -317,6 +321,7 @@ private:
     Evaluation::Flaw obstacle_ = Evaluation::Flaw::none;
     std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
     std::vector<bool> only_pull_;       ///< (solved)
+    bool by_gaps_ = false;              ///< the force of one of them is not the gradient of its measure
     Eigen::VectorXd prices_;            ///< (actuators)
     std::deque<double> errors_;         ///< of the last steps
 };

@@ -268,10 +268,6 @@ void SimulationSession::build(RobotText source) {
     if (!mesh) return refuse(mesh.error());
     Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
     if (!model) return refuse(model.error());
-    if (!sim::Live::supports(*model))
-        return refuse({Cause::input, fmt::format("{}: cables with gap elements and chambers of elements cannot be "
-                                                 "steered live; pliant simulate runs their program",
-                                                 source.file.filename().string())});
     const std::shared_ptr<const Built> before = this->built();
     auto built = std::make_shared<const Built>(std::move(source), std::move(*robot), std::move(*model), ++revision_);
     live_.reset();
@@ -358,6 +354,11 @@ bool SimulationSession::set_actuator(const ActuatorValue& value) {
     const std::vector<double> rest = live_->rest_measures();
     const double v = value.value;
     bool possible = false;
+    // The thesis' elements know lengths and volumes only.
+    const auto by_elements = [&](std::size_t a) {
+        return std::any_of(d.growths.begin(), d.growths.end(),
+                           [&](const sim::Growth& growth) { return growth.actuator == static_cast<int>(a); });
+    };
     const auto set = [&](sim::Drive& drive, const char* kind, bool can_be, const sim::Drive& next) {
         if (value.kind != kind || !can_be) return;
         drive = next;
@@ -368,7 +369,7 @@ bool SimulationSession::set_actuator(const ActuatorValue& value) {
         sim::Drive& drive = target_.drives[c];
         set(drive, "length_ratio", v > 0, {Kind::measure, v * rest[c]});
         set(drive, "shortening_mm", v / mm < rest[c], {Kind::measure, rest[c] - v / mm});
-        set(drive, "tension_N", true, {Kind::multiplier, std::max(v, 0.0)});
+        set(drive, "tension_N", !by_elements(c), {Kind::multiplier, std::max(v, 0.0)});
     }
     for (std::size_t k = 0; k < d.chambers.size(); ++k) {
         if (d.chambers[k].name != value.name) continue;
@@ -376,8 +377,8 @@ bool SimulationSession::set_actuator(const ActuatorValue& value) {
         sim::Drive& drive = target_.drives[a];
         set(drive, "volume_ratio", v > 0, {Kind::measure, v * rest[a]});
         set(drive, "volume_change_mm3", rest[a] + 1e-9 * v > 0, {Kind::measure, rest[a] + 1e-9 * v});
-        set(drive, "pressure_kPa", true, {Kind::multiplier, 0 - 1e3 * v});
-        set(drive, "gas_ratio", v > 0, {Kind::gas, v * d.ambient_pressure_Pa * rest[a]});
+        set(drive, "pressure_kPa", !by_elements(a), {Kind::multiplier, 0 - 1e3 * v});
+        set(drive, "gas_ratio", v > 0 && !by_elements(a), {Kind::gas, v * d.ambient_pressure_Pa * rest[a]});
     }
     return possible;
 }
