@@ -42,8 +42,7 @@ double tip_of(const Problem& problem, Vec3 u) {
     return 1e3 * (problem.sideways ? u.x : u.z);
 }
 
-std::optional<double> actuation_of(const Description& d, const Step& step) {
-    if (!d.growths.empty()) return {};  // scaled targets have no force that could be measured
+std::optional<double> actuation_of(const Step& step) {
     if (!step.cables.empty()) return step.cables[0].tension_N;
     if (!step.chambers.empty()) return step.chambers[0].pressure_Pa / 1e3;
     if (step.supports.size() > 1) return step.supports[1].force_N.x;
@@ -57,7 +56,7 @@ Cell ours(const Problem& problem, int order, bool blend, Drive drive) {
     Progress silent;
     const Trajectory t = run(*model, {.steps = 5, .tolerance = 1e-5}, silent);
     if (!t.converged) return fmt::print(stderr, "{}: {}\n", problem.name, t.message), std::nullopt;
-    return Outcome{tip_of(problem, comparison::tip_displacement(d, t.steps.back())), actuation_of(d, t.steps.back()),
+    return Outcome{tip_of(problem, comparison::tip_displacement(d, t.steps.back())), actuation_of(t.steps.back()),
                    t.setup_s + t.solve_s};
 }
 

@@ -172,6 +172,26 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
 }
 
+TEST_CASE("expanding elements are steered by volume, and know no pressure") {
+    const Project project;
+    std::ofstream(project.base / "project" / "bar.toml", std::ios::app)
+        << "[[chamber]]\nname = \"air\"\nmodel = \"elements\"\ntarget = { volume_ratio = 1.2 }\n"
+           "geometry = { box = [[5, 3, 2], [35, 7, 5]] }\n";
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    studio.receive(page, R"({"type":"drive","tag":1,"actuators":[{"name":"air","kind":"volume_ratio","value":1.15}]})");
+    const Json blown = arrived(studio, page, 1);
+    CHECK(blown["chambers"][0]["ratio"].get<double>() == doctest::Approx(1.15).epsilon(1e-5));
+    CHECK(blown["chambers"][0]["pressure_kPa"].get<double>() > 1);
+    studio.receive(page, R"({"type":"drive","tag":2,"actuators":[{"name":"air","kind":"pressure_kPa","value":50}]})");
+    const Json still = arrived(studio, page, 2);
+    CHECK(still["chambers"][0]["ratio"].get<double>() == doctest::Approx(1.15).epsilon(1e-5));
+}
+
 TEST_CASE("a page that comes back hears that there is neither job nor machine") {
     const Project project;
     auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
