@@ -130,8 +130,8 @@ struct Chamber {
 
 /// The thesis' actuators (T3.5, T3.6): a cable or chamber that is driven by its length or volume acts through the
 /// elements of one material, meshed empty space. They are scaled along `direction` or, where that is zero, in volume by
-/// as much as it takes for the actuator's measure to be what its target wants (actuated_space.hpp). Where several cables
-/// pass one gap, each has the tets that are nearest to it.
+/// as much as it takes for the actuator's measure to be what its target wants (actuated_space.hpp). Where several
+/// cables pass one gap, each has the tets that are nearest to it.
 struct Growth {
     int material = 0;      ///< of air: air_law(), of a gap: gap_law()
     Vec3 direction;        ///< of a gap: along the cable, of length 1
