@@ -66,12 +66,9 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
     for (const sim::Step& step : trajectory.steps)
         simulation.cable_points.push_back(sim::cable_points(model, step.positions));
     simulation.region_actuates = report::regions_that_actuate(model);
-    simulation.without_force = report::actuators_without_force(model);
     simulation.obstacles = report::obstacles_of(model, trajectory);
     if (report::has_contact(trajectory)) {
-        simulation.contact_pressure_Pa = [&model](const sim::Step& step) {
-            return sim::contact_pressure(model, step);
-        };
+        simulation.contact_pressure_Pa = [&model](const sim::Step& step) { return sim::contact_pressure(model, step); };
     }
     simulation.tolerance = robot.program.tolerance;
     simulation.peak_memory_MB = peak_memory_MB();
@@ -85,17 +82,12 @@ void print_summary(const sim::Model& model, const report::Simulation& simulation
                model.mesh().order == 2 ? "quadratic" : "linear", trajectory.solver);
     fmt::print("{} steps in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", trajectory.steps.size() - 1,
                trajectory.solve_s, last.residual, last.min_J);
-    for (std::size_t i = 0; i < last.cables.size(); ++i) {
-        const auto& c = last.cables[i];
-        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm{}\n", c.name, c.length_ratio, 1e3 * c.length_m,
-                   report::has_tension(simulation, i) ? fmt::format(", tension {:.3f} N", c.tension_N) : "");
-    }
-    for (std::size_t i = 0; i < last.chambers.size(); ++i) {
-        const auto& c = last.chambers[i];
-        fmt::print(
-            "chamber {}: volume ratio {:.4f}, {:.1f} mm^3{}\n", c.name, c.volume_ratio, 1e9 * c.volume_m3,
-            report::has_pressure(simulation, i) ? fmt::format(", pressure {:.3f} kPa", 1e-3 * c.pressure_Pa) : "");
-    }
+    for (const auto& c : last.cables)
+        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
+                   1e3 * c.length_m, c.tension_N);
+    for (const auto& c : last.chambers)
+        fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
+                   1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
     for (const auto& s : last.springs)
         fmt::print("spring {}: {:.2f} mm, force {:.4f} N\n", s.name, 1e3 * s.length_m, s.force_N);
     for (const auto& c : last.contacts) {

@@ -181,7 +181,6 @@ Moduli moduli(const Law& law) {
         }
         Moduli operator()(const Corotated& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
         Moduli operator()(const Linear& l) const { return {l.shear_Pa, l.lame_Pa + 2 * l.shear_Pa / 3}; }
-        Moduli operator()(const ScaledTarget& l) const { return {l.weight_Pa / 2, l.weight_Pa / 3}; }
     };
     return std::visit(Of{}, law);
 }
@@ -201,7 +200,6 @@ std::string_view name(const Law& law) {
         std::string_view operator()(const Ogden&) const { return "ogden"; }
         std::string_view operator()(const Corotated&) const { return "corotated"; }
         std::string_view operator()(const Linear&) const { return "linear"; }
-        std::string_view operator()(const ScaledTarget&) const { return "scaled-target"; }
     };
     return std::visit(Name{}, law);
 }

@@ -97,16 +97,7 @@ struct Linear {
     double lame_Pa;  ///< lambda = K - 2 mu / 3
 };
 
-/// The thesis' actuators (T3.5, T3.6): empty space that is meshed, whose target shape is its rest shape scaled by G.
-/// psi = w/2 |F - R G|^2, where R is the rotation that aligns the two best: that nearest to F G^T. The unstressed shape
-/// is F = G. Small strains from G = I: mu = w/2, lambda = 0. Preconditions: w > 0, G symmetric and positive definite.
-struct ScaledTarget {
-    double weight_Pa;
-    Matrix3 target = Matrix3::Identity();  ///< G
-};
-
-using Law =
-    std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, Corotated, ScaledTarget, Linear>;
+using Law = std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, Corotated, Linear>;
 
 [[nodiscard]] NeoHookean neo_hookean(double youngs_modulus_Pa, double poisson_ratio);
 [[nodiscard]] StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio);

@@ -24,7 +24,6 @@ const std::vector<std::pair<std::string, Law>> laws = {
     {"ogden, three terms", Ogden{3, {1.5e6, 0.02e6, -0.3e6}, {1.3, 5.0, -2.0}, 18e6}},
     {"corotated", corotated(12e6, 0.45)},
     {"linear", linear(12e6, 0.45)},
-    {"scaled-target, unscaled", ScaledTarget{3e6}},
 };
 
 /// Deformations with det F between about 0.3 and 3, some far from rest.
@@ -293,22 +292,4 @@ TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches 
 TEST_CASE("shape parameters of the thesis' example, 12 and 45 MPa") {
     CHECK(shape_parameter_of_thesis(45.0 / 12) == doctest::Approx(7.08).scale(0).epsilon(1e-3));
     CHECK(shape_parameter_small_strain(45.0 / 12) == doctest::Approx(5.125));
-}
-
-TEST_CASE("the scaled target: no stress at the scaled shape, stress and tangent are derivatives of the energy") {
-    Matrix3 G = Eigen::Vector3d(0.6, 1, 1).asDiagonal();
-    const Matrix3 turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.2, 1, -1).normalized()).toRotationMatrix();
-    G = (turn * G * turn.transpose()).eval();
-    const Law law = ScaledTarget{2e6, G};
-    CHECK(stress(law, some_rotation() * G).norm() < 1e-9 * scale(law));
-    for (const Matrix3& F : deformations()) {
-        const Matrix3 P = stress(law, F);
-        const Matrix9 H = tangent(law, F);
-        CHECK((stress(law, some_rotation() * F) - some_rotation() * P).norm() < 1e-9 * scale(law));
-        CHECK((H - H.transpose()).norm() < 1e-9 * H.norm());
-        for (int k = 0; k < 9; ++k) {
-            CHECK(std::fabs(energy_difference(law, F, k) - P.data()[k]) < 1e-6 * scale(law));
-            CHECK((stress_difference(law, F, k) - H.col(k)).norm() < 1e-5 * (scale(law) + H.norm()));
-        }
-    }
 }

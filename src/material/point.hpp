@@ -59,8 +59,4 @@ std::optional<double> psi(const Linear& law, const Matrix3& F);
 Matrix3 first_piola(const Linear& law, const Matrix3& F);
 Matrix9 first_piola_gradient(const Linear& law, const Matrix3& F);
 
-std::optional<double> psi(const ScaledTarget& law, const Matrix3& F);
-Matrix3 first_piola(const ScaledTarget& law, const Matrix3& F);
-Matrix9 first_piola_gradient(const ScaledTarget& law, const Matrix3& F);
-
 }  // namespace pliant::material

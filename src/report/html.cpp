@@ -79,16 +79,13 @@ std::string tiles(const Simulation& s) {
     for (std::size_t i = 0; i < std::min(shown, last.cables.size()); ++i) {
         const auto& c = last.cables[i];
         const std::string length = fmt::format("{:.1f} %", 100 * c.length_ratio);
-        out += has_tension(s, i)
-                   ? html_tile(fmt::format("{:.4g} N", c.tension_N), fmt::format("{} at {} length", c.name, length))
-                   : html_tile(length, fmt::format("length of {}", c.name));
+        out += html_tile(fmt::format("{:.4g} N", c.tension_N), fmt::format("{} at {} length", c.name, length));
     }
     for (std::size_t i = 0; i < std::min(shown, last.chambers.size()); ++i) {
         const auto& c = last.chambers[i];
         const std::string volume = fmt::format("{:.1f} %", 100 * c.volume_ratio);
-        out += has_pressure(s, i) ? html_tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa),
-                                              fmt::format("{} at {} volume", c.name, volume))
-                                  : html_tile(volume, fmt::format("volume of {}", c.name));
+        out +=
+            html_tile(fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa), fmt::format("{} at {} volume", c.name, volume));
     }
     for (std::size_t i = 0; i < std::min(shown, last.contacts.size()); ++i) {
         const auto& c = last.contacts[i];
@@ -163,13 +160,13 @@ std::string actuators_section(const Simulation& s) {
         const auto& c = last.cables[i];
         rows.push_back({c.name, "cable", fmt::format("{:.2f} mm", 1e3 * rest.cables[i].length_m),
                         fmt::format("{:.2f} mm", 1e3 * c.length_m), fmt::format("{:.4f}", c.length_ratio),
-                        has_tension(s, i) ? fmt::format("{:.4g} N", c.tension_N) : "–"});
+                        fmt::format("{:.4g} N", c.tension_N)});
     }
     for (std::size_t i = 0; i < last.chambers.size(); ++i) {
         const auto& c = last.chambers[i];
         rows.push_back({c.name, "chamber", fmt::format("{:.1f} mm³", 1e9 * rest.chambers[i].volume_m3),
                         fmt::format("{:.1f} mm³", 1e9 * c.volume_m3), fmt::format("{:.4f}", c.volume_ratio),
-                        has_pressure(s, i) ? fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa) : "–"});
+                        fmt::format("{:.4g} kPa", 1e-3 * c.pressure_Pa)});
     }
     if (rows.empty()) return "";
     return "<h2>Actuators</h2>\n" +
@@ -227,11 +224,8 @@ std::string steps_section(const Simulation& s) {
         rows.push_back({fmt::format("{}", step.index), fmt::format("{:.4g}", step.time),
                         step.index == 0 ? "–" : std::string(sim::name(step.solver)), fmt::format("{}", step.iterations),
                         fmt::format("{:.2e}", step.residual), seconds(step.wall_s), fmt::format("{:.4f}", step.min_J)});
-        for (std::size_t i = 0; i < step.cables.size(); ++i)
-            rows.back().push_back(has_tension(s, i) ? fmt::format("{:.4g}", step.cables[i].tension_N) : "–");
-        for (std::size_t i = 0; i < step.chambers.size(); ++i)
-            rows.back().push_back(has_pressure(s, i) ? fmt::format("{:.4g}", 1e-3 * step.chambers[i].pressure_Pa)
-                                                     : "–");
+        for (const auto& c : step.cables) rows.back().push_back(fmt::format("{:.4g}", c.tension_N));
+        for (const auto& c : step.chambers) rows.back().push_back(fmt::format("{:.4g}", 1e-3 * c.pressure_Pa));
         for (const auto& o : step.contacts) rows.back().push_back(vector_text(o.force_N));
     }
     return "<h2>Steps</h2>\n<details><summary>Every step in numbers</summary>\n" + table("", header, rows) +

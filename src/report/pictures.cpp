@@ -28,18 +28,16 @@ std::string step_title(const Simulation& s, const sim::Step& step) {
 }
 
 /// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
-std::string actuators_line(const Simulation& s, const sim::Step& step) {
+std::string actuators_line(const sim::Step& step) {
     constexpr std::size_t named = 2;
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(named, step.cables.size()); ++i) {
         const auto& c = step.cables[i];
-        const std::string tension = has_tension(s, i) ? fmt::format(", {:.3g} N", c.tension_N) : "";
-        parts.push_back(fmt::format("{} {:.3g} %{}", c.name, 100 * c.length_ratio, tension));
+        parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, c.tension_N));
     }
     for (std::size_t i = 0; i < std::min(named, step.chambers.size()); ++i) {
         const auto& c = step.chambers[i];
-        const std::string pressure = has_pressure(s, i) ? fmt::format(", {:.3g} kPa", 1e-3 * c.pressure_Pa) : "";
-        parts.push_back(fmt::format("{} {:.4g} %{}", c.name, 100 * c.volume_ratio, pressure));
+        parts.push_back(fmt::format("{} {:.4g} %, {:.3g} kPa", c.name, 100 * c.volume_ratio, 1e-3 * c.pressure_Pa));
     }
     return fmt::format("{}", fmt::join(parts, " · "));
 }
@@ -239,7 +237,7 @@ Result<Picture> Painter::stages() {
         canvas.image(*image, x, y);
         const sim::Step& step = s_.result.steps[layout.steps[i]];
         draw_panel_caption(canvas, {x / unit_px, y / unit_px}, layout.panel_width_px / unit_px, step_title(s_, step),
-                           actuators_line(s_, step));
+                           actuators_line(step));
     }
     draw_heading(canvas, s_.robot, "");
     return finished(canvas, "stages.png", "On the way");
@@ -295,7 +293,7 @@ double nice_ceiling(double value) {
 }
 
 std::string step_line(const Simulation& s, std::size_t step) {
-    const std::string actuators = actuators_line(s, s.result.steps[step]);
+    const std::string actuators = actuators_line(s.result.steps[step]);
     return step_title(s, s.result.steps[step]) + (actuators.empty() ? "" : " · " + actuators);
 }
 

@@ -233,9 +233,6 @@ TEST_CASE("cancelling stops a picture") {
 TEST_CASE("captions and round numbers") {
     const auto robot = test::bent_bar(10, 1);
     CHECK(step_line(robot.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 35.5 N");
-    Simulation elements = robot.simulation();
-    elements.without_force = {true};
-    CHECK(step_line(elements, 5) == "step 5 of 10 · flexor 96.7 %");
     CHECK(nice_ceiling(557) == doctest::Approx(600));
     CHECK(nice_ceiling(600) == doctest::Approx(600));
     CHECK(nice_ceiling(0.081) == doctest::Approx(0.1));

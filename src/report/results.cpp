@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Status write_data(const fs::path& folder, const Simulation& s, const Surface& surface, Progress& progress) {
-    if (Status status = write_file(folder / "steps.csv", steps_csv(s)); !status) return status;
+    if (Status status = write_file(folder / "steps.csv", steps_csv(s.result)); !status) return status;
     if (Status status = write_file(folder / "markers.csv", markers_csv(s.result)); !status) return status;
     if (Status status = write_file(folder / "iterations.csv", iterations_csv(s.result)); !status) return status;
     if (Status status = write_frames(folder, s, progress); !status) return status;

@@ -89,10 +89,6 @@ Status check(const Simulation& s) {
     for (std::size_t i = 0; i < s.result.steps.size(); ++i) {
         if (Status status = check_step(s, i); !status) return status;
     }
-    const sim::Step& rest = s.result.steps.front();
-    if (!s.without_force.empty() && s.without_force.size() != rest.cables.size() + rest.chambers.size())
-        return input_error("report: without_force has {} actuators of {}", s.without_force.size(),
-                           rest.cables.size() + rest.chambers.size());
     if (!s.region_actuates.empty() && s.region_actuates.size() != s.mesh.region_names.size())
         return input_error("report: region_actuates has {} regions of {}", s.region_actuates.size(),
                            s.mesh.region_names.size());
@@ -107,14 +103,6 @@ bool has_contact(const sim::Trajectory& result) {
     });
 }
 
-bool has_tension(const Simulation& simulation, std::size_t cable) {
-    return simulation.without_force.empty() || !simulation.without_force[cable];
-}
-
-bool has_pressure(const Simulation& simulation, std::size_t chamber) {
-    return has_tension(simulation, simulation.result.steps.front().cables.size() + chamber);
-}
-
 std::vector<bool> regions_that_actuate(const sim::Model& model) {
     const sim::Description& d = model.description();
     std::vector<bool> regions;
@@ -122,13 +110,6 @@ std::vector<bool> regions_that_actuate(const sim::Model& model) {
         regions.push_back(std::any_of(d.growths.begin(), d.growths.end(),
                                       [&](const sim::Growth& growth) { return growth.material == material; }));
     return regions;
-}
-
-std::vector<bool> actuators_without_force(const sim::Model& model) {
-    const sim::Description& d = model.description();
-    std::vector<bool> actuators(d.cables.size() + d.chambers.size());
-    for (const sim::Growth& growth : d.growths) actuators[static_cast<std::size_t>(growth.actuator)] = true;
-    return actuators;
 }
 
 Colour colour_of(const Simulation& simulation, int material) {

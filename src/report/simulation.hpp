@@ -57,8 +57,6 @@ struct Simulation {
     Timing timing{};
     /// (regions), true of empty space whose elements drive an actuator: its edges are drawn. May be empty.
     std::vector<bool> region_actuates{};
-    /// (cables, then chambers), true of those that elements drive: they have no tension or pressure. May be empty.
-    std::vector<bool> without_force{};
     std::vector<MeasuredPath> measured{};  ///< of markers of the result; may be empty
 };
 
@@ -68,13 +66,8 @@ struct Simulation {
 /// Whether anything could touch: there is an obstacle, or the robot came near itself.
 [[nodiscard]] bool has_contact(const sim::Trajectory& result);
 
-/// Whether the model gives a tension to a cable, and a pressure to a chamber.
-[[nodiscard]] bool has_tension(const Simulation& simulation, std::size_t cable);
-[[nodiscard]] bool has_pressure(const Simulation& simulation, std::size_t chamber);
-
-/// What the model says of the two: which regions' elements drive an actuator, and which actuators they drive.
+/// Which regions' elements drive an actuator.
 [[nodiscard]] std::vector<bool> regions_that_actuate(const sim::Model& model);
-[[nodiscard]] std::vector<bool> actuators_without_force(const sim::Model& model);
 
 /// The material's own colour or that of the palette.
 [[nodiscard]] Colour colour_of(const Simulation& simulation, int material);

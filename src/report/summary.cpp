@@ -14,40 +14,33 @@ Json vector_json(const Vec3& v, double factor) {
     return Json::array({factor * v.x, factor * v.y, factor * v.z});
 }
 
-/// null where the model has no such force.
-Json force_json(bool has, double value) {
-    return has ? Json(value) : Json(nullptr);
-}
-
-Json actuators_json(const Simulation& s, const sim::Step& step) {
+Json actuators_json(const sim::Step& step) {
     Json out;
     out["cables"] = Json::object();
-    for (std::size_t i = 0; i < step.cables.size(); ++i) {
-        const auto& cable = step.cables[i];
+    for (const auto& cable : step.cables) {
         out["cables"][cable.name] = {{"length_ratio", cable.length_ratio},
                                      {"length_mm", mm_per_m * cable.length_m},
-                                     {"tension_N", force_json(has_tension(s, i), cable.tension_N)}};
+                                     {"tension_N", cable.tension_N}};
     }
     out["chambers"] = Json::object();
-    for (std::size_t i = 0; i < step.chambers.size(); ++i) {
-        const auto& chamber = step.chambers[i];
+    for (const auto& chamber : step.chambers) {
         out["chambers"][chamber.name] = {{"volume_ratio", chamber.volume_ratio},
                                          {"volume_mm3", mm3_per_m3 * chamber.volume_m3},
-                                         {"pressure_kPa", force_json(has_pressure(s, i), 1e-3 * chamber.pressure_Pa)}};
+                                         {"pressure_kPa", 1e-3 * chamber.pressure_Pa}};
     }
     for (const auto& spring : step.springs)
         out["springs"][spring.name] = {{"length_mm", mm_per_m * spring.length_m}, {"force_N", spring.force_N}};
     return out;
 }
 
-Json step_json(const Simulation& s, const sim::Step& step, bool contact) {
+Json step_json(const sim::Step& step, bool contact) {
     Json out = {{"index", step.index},           {"time", step.time},
                 {"converged", step.converged},   {"reason", step.reason},
                 {"iterations", step.iterations}, {"substeps", step.substeps},
                 {"residual", step.residual},     {"wall_ms", 1e3 * step.wall_s},
                 {"min_J", step.min_J},           {"solver", step.index == 0 ? "" : sim::name(step.solver)},
                 {"energy_J", step.energy_J},     {"kinetic_energy_J", step.kinetic_energy_J}};
-    out.update(actuators_json(s, step));
+    out.update(actuators_json(step));
     out["supports"] = Json::object();
     for (const auto& support : step.supports) {
         out["supports"][support.name] = {{"force_N", vector_json(support.force_N, 1)}};
@@ -85,10 +78,10 @@ std::string summary_json(const Simulation& s, int indent) {
                 {"tolerance", s.tolerance},      {"converged", s.result.converged},
                 {"message", s.result.message},   {"warnings", s.result.warnings}};
     const bool contact = has_contact(s.result);
-    out["rest"] = step_json(s, s.result.steps.front(), contact);
+    out["rest"] = step_json(s.result.steps.front(), contact);
     out["steps"] = Json::array();
     for (std::size_t i = 1; i < s.result.steps.size(); ++i)
-        out["steps"].push_back(step_json(s, s.result.steps[i], contact));
+        out["steps"].push_back(step_json(s.result.steps[i], contact));
     for (const Deviation& d : deviations(s.measured, s.result)) {
         out["measured"][d.marker] = {{"points", d.points},
                                      {"mean_mm", mm_per_m * d.mean_m},

@@ -52,9 +52,7 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     return row.line();
 }
 
-/// `without_force` as in Simulation.
-std::string steps_row(const sim::Step& step, const std::vector<bool>& without_force, bool contact) {
-    const auto has_force = [&](std::size_t i) { return without_force.empty() || !without_force[i]; };
+std::string steps_row(const sim::Step& step, bool contact) {
     Row row;
     row.number(step.index);
     row.number(step.time);
@@ -65,17 +63,15 @@ std::string steps_row(const sim::Step& step, const std::vector<bool>& without_fo
     row.number(1e3 * step.wall_s);
     row.number(step.min_J);
     row.text(step.index == 0 ? "" : sim::name(step.solver));
-    for (std::size_t i = 0; i < step.cables.size(); ++i) {
-        const auto& c = step.cables[i];
+    for (const auto& c : step.cables) {
         row.number(c.length_ratio);
         row.number(1e3 * c.length_m);
-        has_force(i) ? row.number(c.tension_N) : row.text("");
+        row.number(c.tension_N);
     }
-    for (std::size_t i = 0; i < step.chambers.size(); ++i) {
-        const auto& c = step.chambers[i];
+    for (const auto& c : step.chambers) {
         row.number(c.volume_ratio);
         row.number(1e9 * c.volume_m3);
-        has_force(step.cables.size() + i) ? row.number(1e-3 * c.pressure_Pa) : row.text("");
+        row.number(1e-3 * c.pressure_Pa);
     }
     for (const auto& s : step.springs) {
         row.number(1e3 * s.length_m);
@@ -93,13 +89,6 @@ std::string steps_row(const sim::Step& step, const std::vector<bool>& without_fo
     return row.line();
 }
 
-std::string all_steps(const sim::Trajectory& result, const std::vector<bool>& without_force) {
-    const bool contact = has_contact(result);
-    std::string out = steps_header(result.steps.front(), contact);
-    for (const sim::Step& step : result.steps) out += steps_row(step, without_force, contact);
-    return out;
-}
-
 }  // namespace
 
 std::string csv_field(std::string_view text) {
@@ -114,12 +103,11 @@ std::string csv_field(std::string_view text) {
     return quoted + "\"";
 }
 
-std::string steps_csv(const Simulation& simulation) {
-    return all_steps(simulation.result, simulation.without_force);
-}
-
 std::string steps_csv(const sim::Trajectory& result) {
-    return all_steps(result, {});
+    const bool contact = has_contact(result);
+    std::string out = steps_header(result.steps.front(), contact);
+    for (const sim::Step& step : result.steps) out += steps_row(step, contact);
+    return out;
 }
 
 std::string markers_csv(const sim::Trajectory& result) {

@@ -12,10 +12,9 @@ namespace pliant::report {
 /// One row per step, the rest state first (index 0). Columns: index, time, converged, iterations, substeps, residual,
 /// wall_ms, min_J, solver, then per cable NAME_length_ratio, NAME_length_mm, NAME_tension_N, per chamber
 /// NAME_volume_ratio, NAME_volume_mm3, NAME_pressure_kPa, per support NAME_force_x_N, .._y_N, .._z_N, per obstacle the
-/// same three: its force on the robot. Of an actuator that elements drive, tension or pressure stays empty. Where
-/// anything could touch, self_contact_N and smallest_distance_mm (empty while nothing is near) follow.
-[[nodiscard]] std::string steps_csv(const Simulation& simulation);
-[[nodiscard]] std::string steps_csv(const sim::Trajectory& result);  ///< all actuators have forces
+/// same three: its force on the robot. Where anything could touch, self_contact_N and smallest_distance_mm (empty while
+/// nothing is near) follow.
+[[nodiscard]] std::string steps_csv(const sim::Trajectory& result);
 
 /// One row per step, the rest state first. Columns: index, time, then per marker NAME_x_mm, NAME_y_mm, NAME_z_mm.
 [[nodiscard]] std::string markers_csv(const sim::Trajectory& result);

@@ -86,13 +86,3 @@ TEST_CASE("decimal points do not depend on the locale") {
     }
     std::setlocale(LC_ALL, before.c_str());
 }
-
-TEST_CASE("an actuator that elements drive has no tension: an empty cell, not a zero") {
-    const auto robot = test::bent_bar(2, 1);
-    Simulation simulation = robot.simulation();
-    const std::string with = steps_csv(simulation);
-    CHECK(with == steps_csv(robot.result));
-    simulation.without_force = {true};
-    const auto lines = lines_of(steps_csv(simulation));
-    CHECK(lines[1] == "0,0,1,0,1,0,0,1,,1,120,,-0,0,0.5");
-}

@@ -16,7 +16,6 @@ struct ConstantsOf {
     }
     Constants operator()(const material::NeoHookean&) const { return two_moduli(); }
     Constants operator()(const material::ShapeBlend&) const { return two_moduli(); }
-    Constants operator()(const material::ScaledTarget&) const { return two_moduli(); }  // of actuators, never listed
     Constants operator()(const material::StVenantKirchhoff&) const { return two_moduli(); }
     Constants operator()(const material::Corotated&) const { return two_moduli(); }
     Constants operator()(const material::Linear&) const { return two_moduli(); }

@@ -223,8 +223,8 @@ contact::Surface surface_of_bodies(const Description& d) {
         const int material = d.material_of_tet.empty()
                                  ? d.material_of_region[static_cast<std::size_t>(d.mesh.region[t])]
                                  : d.material_of_tet[t];
-        if (std::holds_alternative<material::ScaledTarget>(d.materials[static_cast<std::size_t>(material)].law))
-            continue;
+        const auto fills = [&](const Growth& growth) { return growth.material == material; };
+        if (std::any_of(d.growths.begin(), d.growths.end(), fills)) continue;
         const std::span<const int> tet = d.mesh.tet(t);
         bodies.nodes.insert(bodies.nodes.end(), tet.begin(), tet.end());
     }

@@ -158,10 +158,10 @@ struct Obstacle {
 struct ContactRules {
     contact::Surface surface;    ///< of the robot's bodies
     contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
+    std::vector<Obstacle> obstacles;
     /// With settings.self: the robot touches itself only from the first step on in which its surfaces would pass
     /// through each other. Until then its contact with itself costs next to nothing and exerts no force.
     bool self_when_met = false;
-    std::vector<Obstacle> obstacles;
 };
 
 /// A point of the material whose position is reported.

@@ -129,8 +129,6 @@ PrincipalForm principal_form(const material::Law& law) {
                 return blend_form(m);
             } else if constexpr (std::is_same_v<L, material::Linear>) {
                 return linear_form(m);
-            } else if constexpr (std::is_same_v<L, material::ScaledTarget>) {
-                return {law, {}, {}};  // empty space, not a body
             } else {
                 return from_energy(law, [m](std::array<Number, 3> l) { return psi(m, l); });
             }

@@ -77,7 +77,6 @@ public:
             if (outcome.converged && system_.meets_itself(state_, controls_, next, solved_controls_)) {
                 system_.set_met(true);
                 controls_.met = true;
-                stretch_ = stretch;
                 continue;
             }
             if (outcome.converged) {
