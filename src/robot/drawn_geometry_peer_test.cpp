@@ -70,6 +70,8 @@ TEST_CASE("a notched bar bends alike under a cable that crosses its notches") {
         "0, to = 12 } }";
     check_same(head + body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, " + notches + "] }") +
                    "[[cable]]\nname = \"flexor\"\npoints = [[38, 6, 10], [2, 6, 10]]\neyelet_radius = \"0 mm\"\n"
-                   "target = { tension = \"1.5 N\" }\n",
+                   "target = { tension = \"1.5 N\" }\n"
+                   // The flanks of the notches would meet, and CalculiX's deck has no contact.
+                   "[contact]\nself = false\n",
                same);
 }
