@@ -422,7 +422,7 @@ bool Equilibrium::meets_itself(const State& state, const Controls& now, const St
     std::vector<double> motion(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) motion[i] = end[i] - x[i];
     if (contact.largest_step(x, motion) < 1) return true;
-    (void)contact.find(end);  // where nothing is near, contact remembers how far everything is
+    contact.note_clearance(end);
     return false;
 }
 

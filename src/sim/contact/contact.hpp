@@ -103,6 +103,10 @@ public:
     /// 0 if a pair touches already. `dx`: (3 nodes).
     [[nodiscard]] double largest_step(std::span<const double> x, std::span<const double> dx) const;
 
+    /// Finds out how far apart everything is at x, if nothing is within its reach and the last states suggest that it
+    /// is worth knowing: steps from there are then answered quickly.
+    void note_clearance(std::span<const double> x) const;
+
     /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`.
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
                                   std::span<const double> step_start) const;
@@ -139,9 +143,7 @@ private:
     [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
     /// True only if nothing is within its reach at x, nor comes too near on the way along dx, and the last states tell.
     [[nodiscard]] bool is_clear(std::span<const double> x, std::span<const double> dx) const;
-    /// Finds out how far apart everything is at x, where nothing is within its reach, if the last states suggest that
-    /// it is worth knowing.
-    void note_clearance(std::span<const double> x) const;
+    void wait_for_clearance() const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
     void add_obstacles();
     void draw_in_obstacles();

@@ -267,6 +267,8 @@ struct Contact::Memory {
         int served = 0;           ///< calls that it has answered
         int wait = 0;             ///< searches before it is worth trying again
         int patience = 1;
+
+        void grow_patience() { wait = patience = std::min(2 * patience, 64); }
     } clear;
 };
 
@@ -274,7 +276,6 @@ namespace {
 
 /// A clearance that answers fewer calls than this has cost more than it spared.
 constexpr int worth_knowing = 4;
-constexpr int most_patience = 64;
 
 }  // namespace
 
@@ -313,12 +314,18 @@ bool Contact::is_clear(std::span<const double> x, std::span<const double> dx) co
         return true;
     }
     if (clear.known != known) return false;
-    const bool paid = clear.served >= worth_knowing;
-    clear.patience = paid ? 1 : std::min(2 * clear.patience, most_patience);
-    clear.wait = paid ? 0 : clear.patience;
+    if (clear.served >= worth_knowing)
+        clear.patience = 1, clear.wait = 0;
+    else
+        clear.grow_patience();
     clear.known.reset();
     clear.end.clear();
     return false;
+}
+
+void Contact::wait_for_clearance() const {
+    const std::lock_guard lock(memory_->mutex);
+    memory_->clear.grow_patience();
 }
 
 void Contact::note_clearance(std::span<const double> x) const {
@@ -345,6 +352,7 @@ void Contact::note_clearance(std::span<const double> x) const {
         for (const Seen& seen : piece) {
             const int obstacle = obstacle_of(seen.candidate.nodes);
             const bool robot_first = obstacle_of_node_[seen.candidate.nodes[0]] < 0;
+            if (seen.now_m <= reach(obstacle, seen.rest_m)) return wait_for_clearance();
             const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
             clearance.offer(obstacle < 0 ? 1 : 0, robot_first ? first : second, robot_first ? second : first,
                             seen.now_m, reach(obstacle, seen.rest_m));
