@@ -333,10 +333,6 @@ void Contact::note_clearance(std::span<const double> x) const {
         const std::lock_guard lock(memory_->mutex);
         if (memory_->clear.known || memory_->clear.wait-- > 0) return;
     }
-    const std::array<Clearance::Side, 2> sides{
-        {{&robot_.surface, robot_.regions}, {&others_.surface, others_.regions}}};
-    const std::array<Clearance::Meeting, 2> meetings{{{0, 1}, {0, 0}}};
-    Clearance clearance(sides, std::span(meetings).first(settings_.self ? 2 : 1), x, seen_m_, settings_.distance_m);
     struct Seen {
         Search::Candidate candidate;
         double now_m, rest_m;  ///< apart
@@ -348,15 +344,20 @@ void Contact::note_clearance(std::span<const double> x) const {
             seen.push_back({c, now, rest});
     };
     const Search search(*this, x, {}, seen_m_, Search::What::pairs, settings_.self);
-    for (const std::vector<Seen>& piece : search.run(std::vector<Seen>{}, look)) {
-        for (const Seen& seen : piece) {
-            const int obstacle = obstacle_of(seen.candidate.nodes);
-            const bool robot_first = obstacle_of_node_[seen.candidate.nodes[0]] < 0;
-            if (seen.now_m <= reach(obstacle, seen.rest_m)) return wait_for_clearance();
-            const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
-            clearance.offer(obstacle < 0 ? 1 : 0, robot_first ? first : second, robot_first ? second : first,
-                            seen.now_m, reach(obstacle, seen.rest_m));
-        }
+    std::vector<Seen> all;
+    for (const std::vector<Seen>& piece : search.run(std::vector<Seen>{}, look))
+        all.insert(all.end(), piece.begin(), piece.end());
+    const auto reach_of = [&](const Seen& s) { return reach(obstacle_of(s.candidate.nodes), s.rest_m); };
+    if (std::ranges::any_of(all, [&](const Seen& s) { return s.now_m <= reach_of(s); })) return wait_for_clearance();
+    const std::array<Clearance::Side, 2> sides{
+        {{&robot_.surface, robot_.regions}, {&others_.surface, others_.regions}}};
+    const std::array<Clearance::Meeting, 2> meetings{{{0, 1}, {0, 0}}};
+    Clearance clearance(sides, std::span(meetings).first(settings_.self ? 2 : 1), x, seen_m_, settings_.distance_m);
+    for (const Seen& seen : all) {
+        const bool robot_first = obstacle_of_node_[seen.candidate.nodes[0]] < 0;
+        const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
+        clearance.offer(obstacle_of(seen.candidate.nodes) < 0 ? 1 : 0, robot_first ? first : second,
+                        robot_first ? second : first, seen.now_m, reach_of(seen));
     }
     const std::lock_guard lock(memory_->mutex);
     memory_->clear.known = std::make_shared<const Clearance>(std::move(clearance));
