@@ -1,10 +1,8 @@
 #include "report/wash_picture.hpp"
 
-#include <cairo.h>
 #include <doctest/doctest.h>
 
-#include <cstring>
-
+#include "report/test_pixels.hpp"
 #include "wash/test_parts.hpp"
 
 using namespace pliant;
@@ -17,28 +15,18 @@ struct Reddest {
 
 /// Pixels of the part's left or right view that are as red as what stays wet, and those as pale as what is clean.
 Reddest count(std::string_view png, bool right) {
-    const auto read = [](void* from, unsigned char* to, unsigned int length) {
-        auto& left = *static_cast<std::string_view*>(from);
-        if (length > left.size()) return CAIRO_STATUS_READ_ERROR;
-        std::memcpy(to, left.data(), length);
-        left.remove_prefix(length);
-        return CAIRO_STATUS_SUCCESS;
-    };
-    cairo_surface_t* surface = cairo_image_surface_create_from_png_stream(read, &png);
-    REQUIRE(cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS);
-    REQUIRE(cairo_image_surface_get_width(surface) == 1600);
-    const unsigned char* bytes = cairo_image_surface_get_data(surface);
-    const int stride = cairo_image_surface_get_stride(surface);
+    const report::test::Pixels pixels = report::test::decode(png);
+    REQUIRE(pixels.width == 1600);
+    const auto* bytes = reinterpret_cast<const unsigned char*>(pixels.bytes.data());
     Reddest found;
     for (int y = 170; y < 800; ++y) {
         for (int x = right ? 800 : 0; x < (right ? 1600 : 800); ++x) {
-            const unsigned char* p = bytes + y * stride + 4 * x;
+            const unsigned char* p = bytes + y * pixels.stride + 4 * x;
             const bool grey = std::abs(p[2] - p[0]) < 40;
             if (p[2] > p[0] + 90) ++found.red;
             if (grey && p[2] < 245) ++found.pale;
         }
     }
-    cairo_surface_destroy(surface);
     return found;
 }
 
