@@ -13,20 +13,12 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <limits>
-
-#include "sim/element_lanes-inl.hpp"
+#include "sim/element_sums-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Of F with the cofactors G.
-HWY_INLINE V determinant_by(const Matrix& F, const Matrix& G) {
-    return hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
-}
 
 /// The rotation nearest to F, det F > 0, by Newton's iteration (Higham 1986), which halves a large stretch at first and
 /// then doubles its digits.
@@ -62,61 +54,41 @@ struct Blend {
         G = cofactor(F);
         J = determinant_by(F, G);
     }
-    HWY_INLINE void set_target(double a) {
+    HWY_INLINE void set_law(const material::ShapeBlend& law) {
         const Tag d;
         R = nearest_rotation(F);
-        soft = hn::Mul(set(1 - a), hn::Exp(d, hn::Mul(set(-1.0 / 3), hn::Log(d, J))));
+        soft = hn::Mul(set(1 - law.a), hn::Exp(d, hn::Mul(set(-1.0 / 3), hn::Log(d, J))));
+    }
+    /// F - T.
+    [[nodiscard]] HWY_INLINE Matrix off(const material::ShapeBlend& law) const {
+        Matrix off;
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) {
+                const V target = hn::MulAdd(soft, F.m[j][i], hn::Mul(set(law.a), R.m[j][i]));
+                off.m[j][i] = hn::Sub(F.m[j][i], target);
+            }
+        }
+        return off;
+    }
+    /// The blend has an energy only where nothing of it is soft.
+    [[nodiscard]] HWY_INLINE V add_energy(const material::ShapeBlend& law, V volume, V sum) const {
+        if (law.a != 1) return sum;
+        V square = hn::Zero(Tag());
+        const Matrix gap = off(law);
+        for (const auto& column : gap.m) {
+            for (const V& entry : column) square = hn::MulAdd(entry, entry, square);
+        }
+        return hn::MulAdd(hn::Mul(set(0.5), hn::Mul(set(law.weight_Pa), volume)), square, sum);
+    }
+    [[nodiscard]] HWY_INLINE Matrix stress(const material::ShapeBlend& law, V volume) const {
+        const V weight = hn::Mul(set(law.weight_Pa), volume);
+        Matrix P = off(law);
+        for (auto& column : P.m) {
+            for (V& entry : column) entry = hn::Mul(weight, entry);
+        }
+        return P;
     }
 };
-
-template <int nodes>
-BatchResult blend_forces_of(const TetBatch& batch, const material::ShapeBlend& law, const double* x, double* forces) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    HWY_ALIGN double energies[batch_lanes] = {};
-    double min_J = std::numeric_limits<double>::infinity();
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        V sum[nodes][3];
-        for (auto& row : sum) {
-            for (V& entry : row) entry = hn::Zero(d);
-        }
-        V energy = hn::Zero(d);
-        for (int q = 0; q < batch.points; ++q) {
-            Blend point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            // Written so that a NaN counts as inside out.
-            if (!hn::AllTrue(d, hn::Gt(point.J, hn::Zero(d)))) return {0, -1};
-            min_J = std::min(min_J, hn::GetLane(hn::MinOfLanes(d, point.J)));
-            point.set_target(law.a);
-            const V weight = hn::Mul(set(law.weight_Pa), hn::Load(d, batch.volumes + q * batch_lanes + part));
-            Matrix P;
-            V square = hn::Zero(d);
-            for (int j = 0; j < 3; ++j) {
-                for (int i = 0; i < 3; ++i) {
-                    const V target = hn::MulAdd(point.soft, point.F.m[j][i], hn::Mul(set(law.a), point.R.m[j][i]));
-                    const V off = hn::Sub(point.F.m[j][i], target);
-                    square = hn::MulAdd(off, off, square);
-                    P.m[j][i] = hn::Mul(weight, off);
-                }
-            }
-            if (law.a == 1) energy = hn::MulAdd(hn::Mul(set(0.5), weight), square, energy);
-            if (forces == nullptr) continue;
-            for (int a = 0; a < nodes; ++a) {
-                const Vector f = times(P, gradient(batch, q, a, part));
-                for (int k = 0; k < 3; ++k) sum[a][k] = hn::Add(sum[a][k], f.v[k]);
-            }
-        }
-        hn::Store(energy, d, energies + part);
-        for (int a = 0; forces != nullptr && a < nodes; ++a) {
-            for (int k = 0; k < 3; ++k) hn::Store(sum[a][k], d, forces + (3 * a + k) * batch_lanes + part);
-        }
-    }
-    BatchResult result{0, min_J};
-    for (const double energy : energies) result.energy_J += energy;
-    return result;
-}
 
 HWY_INLINE Matrix inverse_of(const Matrix& A) {
     const Matrix G = cofactor(A);
@@ -190,42 +162,14 @@ struct BlendTangent {
     }
 };
 
-template <int nodes>
-void blend_stiffness_of(const TetBatch& batch, const material::ShapeBlend& law, const double* x, double* blocks) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        for (int q = 0; q < batch.points; ++q) {
-            Blend point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            point.set_target(law.a);
-            const BlendTangent tangent(point, law, hn::Load(d, batch.volumes + q * batch_lanes + part));
-            BlendTangent::OfNode node[nodes];
-            for (int a = 0; a < nodes; ++a) node[a] = tangent.of_node(gradient(batch, q, a, part));
-            double* out = blocks + part;
-            for (int b = 0; b < nodes; ++b) {
-                for (int a = 0; a <= b; ++a, out += 9 * batch_lanes) {
-                    V block[3][3];
-                    for (int k = 0; k < 9; ++k)
-                        block[k / 3][k % 3] = q == 0 ? hn::Zero(d) : hn::Load(d, out + k * batch_lanes);
-                    tangent.add_pair(node[a], node[b], block);
-                    for (int k = 0; k < 9; ++k) hn::Store(block[k / 3][k % 3], d, out + k * batch_lanes);
-                }
-            }
-        }
-    }
-}
-
 BatchResult blend_forces(const TetBatch& batch, const material::ShapeBlend& law, const double* x, double* forces) {
-    return batch.nodes_per_tet == 4 ? blend_forces_of<4>(batch, law, x, forces)
-                                    : blend_forces_of<10>(batch, law, x, forces);
+    return batch.nodes_per_tet == 4 ? forces_of<Blend, 4>(batch, law, x, forces)
+                                    : forces_of<Blend, 10>(batch, law, x, forces);
 }
 
 void blend_stiffness(const TetBatch& batch, const material::ShapeBlend& law, const double* x, double* blocks) {
-    batch.nodes_per_tet == 4 ? blend_stiffness_of<4>(batch, law, x, blocks)
-                             : blend_stiffness_of<10>(batch, law, x, blocks);
+    batch.nodes_per_tet == 4 ? stiffness_of<Blend, BlendTangent, 4>(batch, law, x, blocks)
+                             : stiffness_of<Blend, BlendTangent, 10>(batch, law, x, blocks);
 }
 
 }  // namespace pliant::sim::HWY_NAMESPACE

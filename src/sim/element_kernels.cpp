@@ -9,67 +9,12 @@
 // After foreach_target, as it asks.
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "sim/element_point-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <int nodes, bool second>
-BatchResult forces_of(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* forces) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    HWY_ALIGN double energies[batch_lanes] = {};
-    double min_J = std::numeric_limits<double>::infinity();
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        V sum[nodes][3];
-        for (auto& row : sum) {
-            for (V& entry : row) entry = hn::Zero(d);
-        }
-        V energy = hn::Zero(d);
-        for (int q = 0; q < batch.points; ++q) {
-            Point<second> point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            // Written so that a NaN counts as inside out.
-            if (!hn::AllTrue(d, hn::Gt(point.J, hn::Zero(d)))) return {0, -1};
-            min_J = std::min(min_J, hn::GetLane(hn::MinOfLanes(d, point.J)));
-            point.set_invariants(law);
-            const V volume = hn::Load(d, batch.volumes + q * batch_lanes + part);
-            energy = hn::MulAdd(volume, point.energy(law), energy);
-            if (forces == nullptr) continue;
-            const V along_F = hn::Mul(volume, point.along_F());
-            const V along_G = hn::Mul(volume, point.along_G(law));
-            Matrix P;
-            for (int j = 0; j < 3; ++j) {
-                for (int i = 0; i < 3; ++i)
-                    P.m[j][i] = hn::MulAdd(along_F, point.F.m[j][i], hn::Mul(along_G, point.G.m[j][i]));
-            }
-            if constexpr (second) {
-                const V along_E = hn::Mul(volume, point.along_E(law));
-                for (int j = 0; j < 3; ++j) {
-                    for (int i = 0; i < 3; ++i) P.m[j][i] = hn::MulAdd(along_E, point.E.m[j][i], P.m[j][i]);
-                }
-            }
-            for (int a = 0; a < nodes; ++a) {
-                const Vector f = times(P, gradient(batch, q, a, part));
-                for (int k = 0; k < 3; ++k) sum[a][k] = hn::Add(sum[a][k], f.v[k]);
-            }
-        }
-        hn::Store(energy, d, energies + part);
-        for (int a = 0; forces != nullptr && a < nodes; ++a) {
-            for (int k = 0; k < 3; ++k) hn::Store(sum[a][k], d, forces + (3 * a + k) * batch_lanes + part);
-        }
-    }
-    BatchResult result{0, min_J};
-    for (const double energy : energies) result.energy_J += energy;
-    return result;
-}
 
 /// The stiffness of one point as it is.
 template <bool second>
@@ -119,11 +64,15 @@ struct TangentForm {
     }
 };
 
+template <int nodes>
+BatchResult forces_by_law(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* result) {
+    return law.c01_Pa != 0 ? forces_of<Point<true>, nodes>(batch, law, x, result)
+                           : forces_of<Point<false>, nodes>(batch, law, x, result);
+}
+
 BatchResult forces(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* result) {
-    const bool second = law.c01_Pa != 0;
-    if (batch.nodes_per_tet == 4)
-        return second ? forces_of<4, true>(batch, law, x, result) : forces_of<4, false>(batch, law, x, result);
-    return second ? forces_of<10, true>(batch, law, x, result) : forces_of<10, false>(batch, law, x, result);
+    return batch.nodes_per_tet == 4 ? forces_by_law<4>(batch, law, x, result)
+                                    : forces_by_law<10>(batch, law, x, result);
 }
 
 void tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {

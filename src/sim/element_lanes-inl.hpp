@@ -90,6 +90,11 @@ HWY_INLINE Matrix cofactor(const Matrix& F) {
     return G;
 }
 
+/// Of F with the cofactors G.
+HWY_INLINE V determinant_by(const Matrix& F, const Matrix& G) {
+    return hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
+}
+
 /// F^T F, or F F^T of the transposed loop: entries (i, j).
 HWY_INLINE Matrix right_cauchy(const Matrix& F) {
     Matrix C;

@@ -17,7 +17,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "sim/element_lanes-inl.hpp"
+#include "sim/element_sums-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace pliant::sim::HWY_NAMESPACE {
@@ -35,9 +35,9 @@ struct Point {
     HWY_INLINE void set_shape(const Matrix& deformation) {
         F = deformation;
         G = cofactor(F);
-        J = hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
+        J = determinant_by(F, G);
     }
-    HWY_INLINE void set_invariants(const material::InvariantForm& law) {
+    HWY_INLINE void set_law(const material::InvariantForm& law) {
         const Tag d;
         I1 = hn::Zero(d);
         for (const auto& column : F.m) {
@@ -62,11 +62,11 @@ struct Point {
             }
         }
     }
-    [[nodiscard]] HWY_INLINE V energy(const material::InvariantForm& law) const {
-        const V volume = hn::Sub(J, set(1));
+    [[nodiscard]] HWY_INLINE V add_energy(const material::InvariantForm& law, V volume, V sum) const {
+        const V grown = hn::Sub(J, set(1));
         V psi = hn::Mul(x, hn::MulAdd(x, hn::MulAdd(x, set(law.c30_Pa), set(law.c20_Pa)), set(law.c10_Pa)));
         if constexpr (second) psi = hn::MulAdd(set(law.c01_Pa), hn::MulSub(hn::Mul(s, s), I2, set(3)), psi);
-        return hn::MulAdd(hn::Mul(set(0.5 * law.bulk_Pa), volume), volume, psi);
+        return hn::MulAdd(volume, hn::MulAdd(hn::Mul(set(0.5 * law.bulk_Pa), grown), grown, psi), sum);
     }
     /// p_F, p_E, p_G.
     [[nodiscard]] HWY_INLINE V along_F() const { return hn::Mul(hn::Add(W1, W1), s); }
@@ -77,6 +77,21 @@ struct Point {
         V sum = hn::Mul(set(2.0 / 3), hn::Mul(W1, hn::Mul(s, I1)));
         if constexpr (second) sum = hn::MulAdd(set(4.0 / 3), hn::Mul(along_E(law), I2), sum);
         return hn::MulSub(set(law.bulk_Pa), hn::Sub(J, set(1)), hn::Div(sum, J));
+    }
+    [[nodiscard]] HWY_INLINE Matrix stress(const material::InvariantForm& law, V volume) const {
+        const V of_F = hn::Mul(volume, along_F());
+        const V of_G = hn::Mul(volume, along_G(law));
+        Matrix P;
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) P.m[j][i] = hn::MulAdd(of_F, F.m[j][i], hn::Mul(of_G, G.m[j][i]));
+        }
+        if constexpr (second) {
+            const V of_E = hn::Mul(volume, along_E(law));
+            for (int j = 0; j < 3; ++j) {
+                for (int i = 0; i < 3; ++i) P.m[j][i] = hn::MulAdd(of_E, E.m[j][i], P.m[j][i]);
+            }
+        }
+        return P;
     }
 };
 
@@ -113,41 +128,10 @@ struct Factors {
     }
 };
 
-/// Blocks of the stiffness of each pair of nodes, summed over the points of each tet. A Form is made of a Point, its
-/// law and its volume; `Form::OfNode` keeps what it wants of a node, form.of_node(gradient) makes that, and
-/// form.add_pair(a, b, block) adds what two nodes share to their block, by columns.
-template <class Form, bool second, int nodes>
-void stiffness_of(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    const Tag d;
-    constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
-    for (int part = 0; part < batch_lanes; part += N) {
-        V positions[nodes][3];
-        load_positions<nodes>(batch, x, part, positions);
-        for (int q = 0; q < batch.points; ++q) {
-            Point<second> point;
-            point.set_shape(deformation_gradient<nodes>(batch, q, part, positions));
-            point.set_invariants(law);
-            const Form form(point, law, hn::Load(d, batch.volumes + q * batch_lanes + part));
-            typename Form::OfNode node[nodes];
-            for (int a = 0; a < nodes; ++a) node[a] = form.of_node(gradient(batch, q, a, part));
-            double* out = blocks + part;
-            for (int b = 0; b < nodes; ++b) {
-                for (int a = 0; a <= b; ++a, out += 9 * batch_lanes) {
-                    V block[3][3];
-                    for (int k = 0; k < 9; ++k)
-                        block[k / 3][k % 3] = q == 0 ? hn::Zero(d) : hn::Load(d, out + k * batch_lanes);
-                    form.add_pair(node[a], node[b], block);
-                    for (int k = 0; k < 9; ++k) hn::Store(block[k / 3][k % 3], d, out + k * batch_lanes);
-                }
-            }
-        }
-    }
-}
-
 template <template <bool second> class Form, bool second>
 void stiffness_by_nodes(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks) {
-    batch.nodes_per_tet == 4 ? stiffness_of<Form<second>, second, 4>(batch, law, x, blocks)
-                             : stiffness_of<Form<second>, second, 10>(batch, law, x, blocks);
+    batch.nodes_per_tet == 4 ? stiffness_of<Point<second>, Form<second>, 4>(batch, law, x, blocks)
+                             : stiffness_of<Point<second>, Form<second>, 10>(batch, law, x, blocks);
 }
 
 template <template <bool second> class Form>
