@@ -35,6 +35,10 @@ bool check_poisson_ratio(Reader& reader, double nu) {
     return false;
 }
 
+/// The largest R_omega. Of a target shape that is softer still less than a thousandth of the rest shape is left: it
+/// resists a change of volume and nothing else, so that no shape is better than another and no solver finds one.
+constexpr double softest_R = 1000;
+
 /// R_omega of a ratio of moduli, R_m >= 1, by the name of a map.
 double shape_parameter_by(Reader& reader, const std::string& map, double R_m) {
     if (map == "calibrated") {
@@ -63,7 +67,14 @@ material::ShapeBlend read_named_blend(Reader& reader, double E) {
         reader.problem("stiffest", "is below youngs_modulus; the stiffest material counts as rigid");
         return {1, 1};
     }
-    return {stiffest, stiffest == E ? 1 : 1 / shape_parameter_by(reader, map, stiffest / E)};
+    const double R = stiffest == E ? 1 : shape_parameter_by(reader, map, stiffest / E);
+    if (!(R <= softest_R)) {
+        reader.problem("stiffest", fmt::format("is {:.4g} times youngs_modulus, which takes R_omega {:.4g}; above {:g} "
+                                               "hardly anything holds a shape. Bring the two nearer to each other",
+                                               stiffest / E, R, softest_R));
+        return {1, 1};
+    }
+    return {stiffest, 1 / R};
 }
 
 material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
@@ -84,11 +95,18 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     material::ShapeBlend blend = material::shape_blend(material.youngs_modulus_Pa, nu);
     if (given != nullptr) {
         // The thesis' way: one weight for all materials, R_omega tells them apart.
-        const double R = reader.number("shape_parameter");
-        if (!(R >= 1))
-            reader.problem("shape_parameter", "R_omega is 1 (rigid) or more");
-        else
+        const double R = reader.number("shape_parameter", 1);
+        if (R >= 1 && R <= softest_R)
             blend.a = 1 / R;
+        else
+            reader.problem("shape_parameter",
+                           fmt::format("{:g} is not possible; R_omega is from 1 (rigid) to {:g}, with 7.08 for "
+                                       "materials of 45 and 12 MPa, and 50 for hardly more than a kept volume",
+                                       R, softest_R));
+    } else if (nu >= 0 && !(blend.a >= 1 / softest_R)) {
+        reader.problem("poisson_ratio", fmt::format("{} leaves the shape blend nothing that holds a shape; at most "
+                                                    "{:.4f}, rubber is 0.45 to 0.499",
+                                                    nu, (softest_R - 1) / (2 * softest_R + 1)));
     }
     return blend;
 }

@@ -36,6 +36,8 @@ constexpr double sudden = 5;         // times as far as in the step before
 constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
 constexpr double long_first = 0.03;  // likewise: no step before tells whether the first one is sudden
 constexpr int most_pushes = 5;
+constexpr double extremely_soft = 100;  // a shape parameter
+constexpr int most_in_vain = 3000;      // iterations, as quasi-newton may take for one attempt
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -67,6 +69,7 @@ public:
     bool advance(double time, Step& step, const Progress& progress, std::string& message) {
         const double whole = program_.duration / program_.steps;
         double piece = time - time_;
+        int in_vain = 0;  // iterations of the attempts since the last that arrived
         step.substeps = 0;
         while (time_ < time) {
             const double target = time_ + piece >= time - 1e-9 * whole ? time : time_ + piece;
@@ -90,19 +93,36 @@ public:
                 step.solver = outcome.solver;
                 if (outcome.loose) note_loose(outcome, step);
                 ++step.substeps;
+                in_vain = 0;
                 continue;
             }
             message = outcome.reason;
             piece *= 0.5;
-            if (progress.cancelled() || piece < smallest_share * whole) return false;
+            in_vain += outcome.iterations;
+            if (progress.cancelled() || piece < smallest_share * whole || is_hopeless(in_vain)) return false;
         }
         return true;
+    }
+
+    /// Laws without an energy promise no descent, however short the step is: where as many iterations as one attempt
+    /// may take have led nowhere, more of them do not either.
+    [[nodiscard]] bool is_hopeless(int in_vain) const {
+        return !model_.elements().has_energy() && in_vain >= std::max(most_in_vain, program_.iteration_limit);
     }
 
     [[nodiscard]] std::vector<IterationRecord> take_iterations() { return std::move(iterations_); }
 
     /// What a program that stopped before `time` should do instead; empty if nothing is known.
     [[nodiscard]] std::string advice(double time, const Progress& progress) {
+        if (progress.cancelled()) return {};
+        for (const Material& material : model_.description().materials) {
+            const auto* blend = std::get_if<material::ShapeBlend>(&material.law);
+            if (blend != nullptr && blend->a * extremely_soft < 1 - 1e-9)
+                return fmt::format(
+                    ". Material \"{}\" has a shape parameter of {:.4g}, of which hardly anything but the volume is "
+                    "kept: with {:g} or less a solution is far easier to find",
+                    material.name, 1 / blend->a, extremely_soft);
+        }
         if (program_.dynamics || !model_.description().growths.empty() || progress.cancelled()) return {};
         const auto limit = find_pressure_limit(system_, solvers_, controls_, system_.controls(time),
                                                {program_.tolerance, program_.iteration_limit}, state_, progress);

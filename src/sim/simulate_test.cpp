@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -409,4 +410,22 @@ TEST_CASE("what rounding pulls at a body without load is balance, a load of a na
         CHECK(system.evaluate(state, system.controls(0)).residual == 0);
         CHECK(system.evaluate(state, system.controls(1)).residual > 1e-4);
     }
+}
+
+TEST_CASE("target shapes that hold nothing are given up after as many iterations as one attempt may take") {
+    Description d = bar(1, material::ShapeBlend{1e6, 1e-9});
+    const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+    d.supports.push_back({"end", end, {0, 0, 0}});
+    d.supports.back().turn = {std::numbers::pi / 2, {1, 0, 0}, {0, side / 2, side / 2}};
+    const Trajectory result = solve(d, {.steps = 3});
+    REQUIRE_FALSE(result.converged);
+    const auto before_the_last_attempt = [&](const IterationRecord& record) {
+        return record.iteration > 0 && record.time != result.iterations.back().time;
+    };
+    CHECK(std::count_if(result.iterations.begin(), result.iterations.end(), before_the_last_attempt) < 3000);
+    CHECK_MESSAGE(result.message.find("Material \"A\" has a shape parameter of 1e+09") != std::string::npos,
+                  result.message);
+    // One that is soft, but holds a shape, arrives.
+    d.materials[0].law = material::ShapeBlend{1e6, 1.0 / 100};
+    CHECK(solve(d, {.steps = 3}).converged);
 }
