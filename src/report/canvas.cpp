@@ -123,6 +123,15 @@ void Canvas::line(std::span<const Point2> points, double width, const Colour& co
     cairo_stroke(cairo);
 }
 
+void Canvas::area(std::span<const Point2> border, const Colour& colour, double opacity) {
+    cairo_t* cairo = state_->cairo.get();
+    cairo_new_path(cairo);
+    for (const Point2& p : border) cairo_line_to(cairo, p.x, p.y);
+    cairo_close_path(cairo);
+    cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+    cairo_fill(cairo);
+}
+
 void Canvas::box(const Point2& corner, double width, double height, const Colour& colour, double radius,
                  double opacity) {
     cairo_t* cairo = state_->cairo.get();

@@ -44,6 +44,8 @@ public:
     void text(const Point2& at, std::string_view text, const Font& font);
     [[nodiscard]] double text_width(std::string_view text, const Font& font) const;
     void line(std::span<const Point2> points, double width, const Colour& colour, double opacity = 1);
+    /// What a closed border surrounds.
+    void area(std::span<const Point2> border, const Colour& colour, double opacity = 1);
     void box(const Point2& corner, double width, double height, const Colour& colour, double radius = 0,
              double opacity = 1);
     void disc(const Point2& centre, double radius, const Colour& colour);

@@ -46,7 +46,8 @@ inline Colour mix(const Colour& a, const Colour& b, double t) {
 /// What cables are drawn in, sRGB: stands out from every colour of the palette.
 inline constexpr Colour cable_colour = {0.80, 0.10, 0.14};
 inline constexpr Colour obstacle_colour = {0.70, 0.72, 0.75};
-inline constexpr Colour element_colour = {0.10, 0.55, 0.38};   ///< of empty space that drives an actuator
+inline constexpr Colour element_colour = {0.10, 0.55, 0.38};  ///< of empty space that drives an actuator
+inline constexpr Colour element_edge_colour = {0.03, 0.24, 0.16};
 inline constexpr Colour measured_colour = {0.80, 0.12, 0.40};  ///< of measured markers
 
 /// OKLab lightness of an sRGB colour, 0 black to 1 white.

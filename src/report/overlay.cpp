@@ -2,8 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <set>
-#include <utility>
 
 namespace pliant::report {
 namespace {
@@ -118,24 +116,6 @@ void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajecto
         const double x = end.x + 20 + width > canvas.width() - 8 ? end.x - 20 - width : end.x + 20;
         canvas.box({x - 8, end.y - 20}, width + 16, 34, white, 8, 0.78);
         canvas.text({x, end.y + 5}, name, font);
-    }
-}
-
-void draw_elements(Canvas& canvas, const Camera& camera, const Simulation& s, std::size_t step) {
-    if (s.region_actuates.empty()) return;
-    std::set<std::pair<int, int>> edges;
-    for (std::size_t t = 0; t < s.mesh.tet_count(); ++t) {
-        if (!s.region_actuates[static_cast<std::size_t>(s.mesh.region[t])]) continue;
-        const auto nodes = s.mesh.tet(t);
-        for (std::size_t a = 0; a < 4; ++a) {
-            for (std::size_t b = a + 1; b < 4; ++b) edges.insert(std::minmax(nodes[a], nodes[b]));
-        }
-    }
-    const std::vector<Vec3>& at = s.result.steps[step].positions;
-    for (const auto& [a, b] : edges) {
-        const std::array<Point2, 2> line = {place_of(canvas, camera, at[static_cast<std::size_t>(a)]),
-                                            place_of(canvas, camera, at[static_cast<std::size_t>(b)])};
-        canvas.line(line, 1.2, element_colour, 0.55);
     }
 }
 

@@ -29,9 +29,6 @@ void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const
 /// The way of each marker over all steps, with its name at the end.
 void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajectory& result);
 
-/// The edges of the elements of empty space that drive actuators, seen through the body.
-void draw_elements(Canvas& canvas, const Camera& camera, const Simulation& simulation, std::size_t step);
-
 /// Measured points as rings, with a thin line through those of a marker.
 void draw_measured(Canvas& canvas, const Camera& camera, const std::vector<MeasuredPath>& paths);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report/canvas.hpp"
+#include "report/drawn_elements.hpp"
 #include "report/gltf.hpp"
 #include "report/overlay.hpp"
 #include "report/raycast.hpp"
@@ -195,11 +196,15 @@ Result<Canvas> Painter::drawn(const Scene& scene, const Camera& camera) const {
     return canvas;
 }
 
+Frame whole(const Canvas& canvas) {
+    return {{0, 0}, canvas.width(), canvas.height()};
+}
+
 Result<Picture> Painter::rest() {
     const Camera camera = whole_camera(plain_margins);
     auto canvas = drawn(scene_of(0), camera);
     if (!canvas) return tl::unexpected(canvas.error());
-    draw_elements(*canvas, camera, s_, 0);
+    draw_elements(*canvas, whole(*canvas), camera, s_, 0);
     draw_heading(*canvas, s_.robot, step_line(s_, 0));
     draw_legend(*canvas, legend());
     draw_scale_bar(*canvas, camera, box_.center());
@@ -212,7 +217,7 @@ Result<Picture> Painter::final() {
     if (last() > 0) scene.ghost = pose(surface_, s_.result.steps.front().positions);
     auto canvas = drawn(scene, camera);
     if (!canvas) return tl::unexpected(canvas.error());
-    draw_elements(*canvas, camera, s_, last());
+    draw_elements(*canvas, whole(*canvas), camera, s_, last());
     draw_heading(*canvas, s_.robot, step_line(s_, last()));
     draw_measured(*canvas, camera, s_.measured);
     draw_marker_paths(*canvas, camera, s_.result);
@@ -235,9 +240,11 @@ Result<Picture> Painter::stages() {
         const int x = static_cast<int>(i) % layout.columns * layout.panel_width_px;
         const int y = heading_px + static_cast<int>(i) / layout.columns * layout.panel_height_px;
         canvas.image(*image, x, y);
+        const Frame panel{
+            {x / unit_px, y / unit_px}, layout.panel_width_px / unit_px, layout.panel_height_px / unit_px};
+        draw_elements(canvas, panel, layout.camera, s_, layout.steps[i]);
         const sim::Step& step = s_.result.steps[layout.steps[i]];
-        draw_panel_caption(canvas, {x / unit_px, y / unit_px}, layout.panel_width_px / unit_px, step_title(s_, step),
-                           actuators_line(step));
+        draw_panel_caption(canvas, panel.corner, panel.width, step_title(s_, step), actuators_line(step));
     }
     draw_heading(canvas, s_.robot, "");
     return finished(canvas, "stages.png", "On the way");

@@ -183,7 +183,8 @@ TEST_CASE("the pictures are PNG files that hold something, each time the same") 
     }
 }
 
-TEST_CASE("elements of empty space are drawn as edges, measured points as rings, and the markers have a plot") {
+TEST_CASE(
+    "elements of empty space are drawn as faces with edges, measured points as rings, and the markers have a plot") {
     const auto robot = test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     const auto drawn = [&] {
@@ -198,13 +199,44 @@ TEST_CASE("elements of empty space are drawn as edges, measured points as rings,
     CHECK(count_of(plain, measured_colour) == 0);
     s.region_actuates.assign(s.mesh.region_names.size(), false);
     s.region_actuates.back() = true;
-    CHECK(count_of(pixels_of(drawn().front().png), element_colour) > 20);
+    CHECK(count_of(plain, element_edge_colour) == 0);
+    CHECK(count_of(pixels_of(drawn().front().png), element_edge_colour) > 100);
     s.region_actuates.clear();
     s.measured = {{"tip", {s.result.steps.back().markers.front().position_m + Vec3{0, 0, 0.02}}}};
     const auto pictures = drawn();
     REQUIRE(pictures.size() == 2);
     CHECK(pictures[1].file == "measured.png");
     CHECK(count_of(pixels_of(pictures[0].png), measured_colour) > 20);
+}
+
+TEST_CASE("elements are in every stage, where the body stands there") {
+    const auto robot = test::bent_bar(4, 1);
+    Simulation s = robot.simulation();
+    const auto stages = [&] {
+        Progress progress;
+        const auto pictures =
+            draw_pictures(s, outer_surface(s.mesh, s.region_material), {PictureSet::all, {800, 500}}, progress);
+        REQUIRE(pictures.has_value());
+        return pixels_of(pictures->at(2).png);
+    };
+    const auto plain = stages();
+    s.region_actuates.assign(s.mesh.region_names.size(), true);
+    const auto with = stages();
+    // Four panels, two by two: in each of them edges, and nothing changes beside the robot.
+    for (const int right : {0, 1}) {
+        for (const int below : {0, 1}) {
+            int edges = 0, changed = 0;
+            for (int y = 60 + below * 220; y < 60 + below * 220 + 220; ++y) {
+                for (int x = right * 400; x < right * 400 + 400; ++x) {
+                    const auto at = static_cast<std::size_t>(y * 800 + x);
+                    changed += plain[at] != with[at] ? 1 : 0;
+                    edges += count_of({with[at]}, element_edge_colour);
+                }
+            }
+            CHECK(edges > 50);
+            CHECK(changed < 400 * 220 / 2);
+        }
+    }
 }
 
 TEST_CASE("a picture may be seen from where it is wanted") {
