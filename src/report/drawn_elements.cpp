@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace pliant::report {
 namespace {
 
-constexpr double tint = 0.45, edge_opacity = 0.85, edge_width = 1.3;
+constexpr double tint = 0.45, edge_opacity = 0.85, edge_width = 1.3;  // of a picture that fills the canvas
 
 /// A face in the picture: its border in order, and how far away it is.
 struct DrawnFace {
@@ -53,9 +54,10 @@ void draw_elements(Canvas& canvas, const Frame& frame, const Camera& camera, con
     }
     std::stable_sort(faces.begin(), faces.end(),
                      [](const DrawnFace& a, const DrawnFace& b) { return a.depth_m > b.depth_m; });
+    const double width = edge_width * std::sqrt(frame.height / canvas.height());  // thinner, but still seen
     for (const DrawnFace& face : faces) {
         canvas.area(face.border, element_colour, tint);
-        canvas.line(face.border, edge_width, element_edge_colour, edge_opacity);
+        canvas.line(face.border, width, element_edge_colour, edge_opacity);
     }
 }
 

@@ -31,10 +31,12 @@ std::string step_title(const Simulation& s, const sim::Step& step) {
 /// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
 std::string actuators_line(const sim::Step& step) {
     constexpr std::size_t named = 2;
+    constexpr double no_force_N = 1e-9;  // gap elements at rest pull with what rounding leaves
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(named, step.cables.size()); ++i) {
         const auto& c = step.cables[i];
-        parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, c.tension_N));
+        const double tension_N = std::fabs(c.tension_N) < no_force_N ? 0 : c.tension_N;
+        parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, tension_N));
     }
     for (std::size_t i = 0; i < std::min(named, step.chambers.size()); ++i) {
         const auto& c = step.chambers[i];

@@ -222,18 +222,17 @@ TEST_CASE("elements are in every stage, where the body stands there") {
     const auto plain = stages();
     s.region_actuates.assign(s.mesh.region_names.size(), true);
     const auto with = stages();
-    // Four panels, two by two: in each of them edges, and nothing changes beside the robot.
+    // Four panels, two by two: in each of them the robot changes, and what is beside it does not.
     for (const int right : {0, 1}) {
         for (const int below : {0, 1}) {
-            int edges = 0, changed = 0;
+            int changed = 0;
             for (int y = 60 + below * 220; y < 60 + below * 220 + 220; ++y) {
                 for (int x = right * 400; x < right * 400 + 400; ++x) {
                     const auto at = static_cast<std::size_t>(y * 800 + x);
                     changed += plain[at] != with[at] ? 1 : 0;
-                    edges += count_of({with[at]}, element_edge_colour);
                 }
             }
-            CHECK(edges > 50);
+            CHECK(changed > 300);
             CHECK(changed < 400 * 220 / 2);
         }
     }
@@ -265,6 +264,10 @@ TEST_CASE("cancelling stops a picture") {
 TEST_CASE("captions and round numbers") {
     const auto robot = test::bent_bar(10, 1);
     CHECK(step_line(robot.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 35.5 N");
+    auto rounded = test::bent_bar(10, 1);
+    rounded.result.steps[5].cables[0].tension_N = 2.84e-14;
+    CHECK(step_line(rounded.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 0 N");
+
     CHECK(nice_ceiling(557) == doctest::Approx(600));
     CHECK(nice_ceiling(600) == doctest::Approx(600));
     CHECK(nice_ceiling(0.081) == doctest::Approx(0.1));
