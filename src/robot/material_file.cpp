@@ -105,7 +105,7 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
                                        R, softest_R));
     } else if (nu >= 0 && !(blend.a >= 1 / softest_R)) {
         reader.problem("poisson_ratio", fmt::format("{} leaves the shape blend nothing that holds a shape; at most "
-                                                    "{:.4f}, rubber is 0.45 to 0.499",
+                                                    "{:.5f}, rubber is 0.45 to 0.499",
                                                     nu, (softest_R - 1) / (2 * softest_R + 1)));
     }
     return blend;
