@@ -36,7 +36,7 @@ struct NeoHookean {
     double bulk_Pa;
 };
 
-/// The thesis' target shape (T3.4): P = w (F - T(F)), T = a R + (1 - a) J^(-1/3) F with the rotation R nearest to F.
+/// The thesis' target shape (F3.4): P = w (F - T(F)), T = a R + (1 - a) J^(-1/3) F with the rotation R nearest to F.
 /// a = 1 / R_omega; a = 1 is a rigid target. Not the gradient of an energy unless a = 1.
 /// Small strains: mu = w a / 2, lambda = w (1 - a) / 3.
 struct ShapeBlend {
