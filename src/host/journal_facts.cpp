@@ -191,7 +191,7 @@ std::string write_state(const Interlock::State& state) {
     }
     for (const auto& vat : state.slots) slots += vat_word(vat) + ",";
     return fmt::format("{};{};{};{};{};{}", position, homed, vat_word(state.hooked_vat), state.part_height_um,
-                       state.pump ? 1 : 0, slots);
+                       (state.pump ? 1 : 0) + (state.magnet ? 2 : 0) + (state.fork_out ? 4 : 0), slots);
 }
 
 Result<Interlock::State> read_state(std::string_view word) {
@@ -209,7 +209,12 @@ Result<Interlock::State> read_state(std::string_view word) {
         if (!read_flag(homed.substr(i, 1), state.homed[i])) return wrong();
     }
     if (!read_vat(take(rest, ';'), state.hooked_vat)) return wrong();
-    if (!read_int(take(rest, ';'), state.part_height_um) || !read_flag(take(rest, ';'), state.pump)) return wrong();
+    int outputs = 0;
+    if (!read_int(take(rest, ';'), state.part_height_um) || !read_int(take(rest, ';'), outputs)) return wrong();
+    if (outputs < 0 || outputs > 7) return wrong();
+    state.pump = (outputs & 1) != 0;
+    state.magnet = (outputs & 2) != 0;
+    state.fork_out = (outputs & 4) != 0;
     while (!rest.empty()) {
         if (state.slots.size() == most_slots) return wrong();
         if (!read_vat(take(rest, ','), state.slots.emplace_back())) return wrong();

@@ -17,7 +17,7 @@ using machine::Printer;
 
 /// 0: the vat in use lies under the platform; 1: the carriage is on its way; 2: at the tower. Without a tower always 0.
 int carriage_zone(const Printer& printer, const Interlock& state) {
-    if (printer.store() != machine::Store::tower) return 0;
+    if (!printer.has_carriage()) return 0;
     const int at_um = state.position()[Axis::carriage];
     if (at_um == printer.carriage.tower_um) return 2;
     return at_um >= printer.carriage.print_um && at_um <= printer.carriage.print_um + printer.carriage.shear_um ? 0 : 1;
@@ -70,7 +70,8 @@ std::string home_switch(const Printer& printer, Axis axis) {
 }  // namespace
 
 bool same_phase(const Printer& printer, const Interlock& a, const Interlock& b) {
-    return a.hooked_vat() == b.hooked_vat() && carriage_zone(printer, a) == carriage_zone(printer, b);
+    return a.hooked_vat() == b.hooked_vat() && carriage_zone(printer, a) == carriage_zone(printer, b) &&
+           a.tray_vat() == b.tray_vat() && a.fork_out() == b.fork_out();
 }
 
 Position compare_position(const Printer& printer, const Interlock& state, std::string_view answer) {

@@ -259,7 +259,7 @@ bool PrintRun::wants_to_end() const {
 bool PrintRun::at_safe_point() const {
     const machine::Interlock& state = run_.machine.state();
     if (state.pump_runs()) return false;
-    const bool tower = printer_.store() == machine::Store::tower;
+    const bool tower = printer_.has_carriage();
     if (tower && state.position()[Axis::carriage] != printer_.carriage.print_um) return false;
     return state.position()[Axis::platform] > state.part_height_um();
 }

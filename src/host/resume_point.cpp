@@ -77,6 +77,8 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
             "another program has spoken to the controller since this print was interrupted; if every vat is "
             "where it was then, go on with --assume-vats-untouched");
     }
+    const machine::Switch& magnet = printer.hooks.magnet.coil;
+    const bool needs_power = !magnet.on.empty() && !machine::on_without_power(magnet);
     machine::Followed at{*restored};
     bool on_hooks = false;
     const long carried_out = proven ? last_line - facts.go->line + 1 : static_cast<long>(commands.size());
@@ -87,7 +89,10 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
         if (i > 0 && !same_phase(printer, at.lock, after.lock)) break;
         const bool stroke =
             at.lock.in_hooks_stroke() && after.lock.in_hooks_stroke() && at.lock.position() != after.lock.position();
-        if (!proven && stroke) {
+        const bool dragged =
+            needs_power && at.lock.hooked_vat() && !same_phase(printer, at.lock, after.lock) &&
+            at.lock.position()[machine::Axis::carriage] != after.lock.position()[machine::Axis::carriage];
+        if (!proven && (stroke || dragged)) {
             on_hooks = true;
             break;
         }

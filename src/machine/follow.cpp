@@ -46,8 +46,7 @@ Status Followed::command(const Printer& printer, const Command& c) {
     if ((c.is('M', 84) || c.is('M', 18)) && !c.has('S')) lock.stopped_at(lock.position());
     if (moves_emergency_line(printer, c))
         return input_error("M42 P{}: that pin is the emergency line", printer.emergency_line.pin);
-    if (const auto on = switched(printer.pump, c)) return lock.pump(*on);
-    return {};
+    return lock.output(c);
 }
 
 Status Followed::line(const Printer& printer, std::string_view line) {

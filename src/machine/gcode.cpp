@@ -155,15 +155,30 @@ struct Pin {
     }
 };
 
+/// What its command `on` writes to.
+std::optional<Pin> pin_of(const Switch& device) {
+    if (device.on.empty()) return std::nullopt;
+    const auto parsed = parse_command(device.on);
+    return parsed ? Pin::of(*parsed) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<bool> switched(const Switch& device, const Command& command) {
     const auto pin = Pin::of(command);
-    if (!pin || device.on.empty()) return std::nullopt;
-    const auto parsed = parse_command(device.on);
-    const auto own = parsed ? Pin::of(*parsed) : std::nullopt;
+    const auto own = pin ? pin_of(device) : std::nullopt;
     if (!own || own->fan != pin->fan || own->number != pin->number) return std::nullopt;
     return pin->on == own->on;
+}
+
+bool same_output(const Switch& a, const Switch& b) {
+    const auto one = pin_of(a), other = pin_of(b);
+    return one && other && one->fan == other->fan && one->number == other->number;
+}
+
+bool on_without_power(const Switch& device) {
+    const auto pin = pin_of(device);
+    return pin && !pin->on;
 }
 
 bool moves_emergency_line(const Printer& printer, const Command& command) {

@@ -57,6 +57,10 @@ struct Command {
 /// Whether `command` switches the device of that pin, and to what. Any way of saying so counts: M107 P1 and M106 P1 S0
 /// are the same.
 [[nodiscard]] std::optional<bool> switched(const Switch& device, const Command& command);
+/// Whether both hang on the same output of the board; not if either is missing.
+[[nodiscard]] bool same_output(const Switch& a, const Switch& b);
+/// Whether the device is on while its output is off, as after a loss of power.
+[[nodiscard]] bool on_without_power(const Switch& device);
 /// Whether `command` writes to the board's pin of the emergency line: only the firmware may.
 [[nodiscard]] bool moves_emergency_line(const Printer& printer, const Command& command);
 [[nodiscard]] std::string write_dwell(double seconds);

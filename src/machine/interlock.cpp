@@ -12,14 +12,16 @@ double mm(int um) {
 }  // namespace
 
 Interlock::Interlock(const Printer& printer, const Position& start)
-    : printer_(&printer), position_(start), slots_(static_cast<std::size_t>(printer.slot_count())) {
+    : printer_(&printer),
+      position_(start),
+      slots_(static_cast<std::size_t>(printer.slot_count() + (printer.store() == Store::wall ? 1 : 0))) {
     for (std::size_t i = 0; i < printer.vats.size(); ++i) {
         slots_[static_cast<std::size_t>(printer.vats[i].slot - 1)] = static_cast<int>(i);
     }
 }
 
 Interlock::State Interlock::state() const {
-    return {position_, homed_, slots_, hooked_vat_, part_height_um_, pump_};
+    return {position_, homed_, slots_, hooked_vat_, part_height_um_, pump_, magnet_, fork_out_};
 }
 
 Result<Interlock> Interlock::restored(const Printer& printer, const State& state) {
@@ -34,6 +36,8 @@ Result<Interlock> Interlock::restored(const Printer& printer, const State& state
     lock.hooked_vat_ = state.hooked_vat;
     lock.part_height_um_ = state.part_height_um;
     lock.pump_ = state.pump;
+    lock.magnet_ = state.magnet;
+    lock.fork_out_ = state.fork_out;
     return lock;
 }
 
@@ -47,8 +51,15 @@ bool Interlock::in_print_window(int carriage_um) const {
     return carriage_um >= c.print_um && carriage_um <= c.print_um + c.shear_um;
 }
 
-/// The slot of the tower before the carriage whose level is at most one hook stroke above the tower.
+/// The slot of the tower before the carriage whose level is at most one hook stroke above the tower. Of a wall the one
+/// behind its last: the tray, if it stands before the carriage.
 std::optional<int> Interlock::slot_in_hook_stroke(const Position& at) const {
+    if (printer_->store() == Store::wall) {
+        const int below = printer_->wall.bay_lift_um - at[Axis::tower];
+        const bool here = at[Axis::table] == printer_->wall.bay_rail_um && !fork_out_;
+        return here && below >= 0 && below <= printer_->hooks.travel_um ? std::optional(printer_->slot_count() + 1)
+                                                                        : std::nullopt;
+    }
     const int slots = printer_->tower.slots;
     for (int first = 1; first <= printer_->slot_count(); first += slots) {
         if (!printer_->table_at(at[Axis::table], printer_->station_um(first))) continue;
@@ -78,18 +89,19 @@ std::optional<int> Interlock::vat_at_station(int table_um) const {
 }
 
 std::optional<int> Interlock::hooked_vat() const {
-    if (printer_->store() == Store::tower) return hooked_vat_;
+    if (printer_->has_carriage()) return hooked_vat_;
     return vat_at_station(position_[Axis::table]);
 }
 
 bool Interlock::vat_under_platform() const {
     if (!hooked_vat()) return false;
-    return printer_->store() != Store::tower || position_[Axis::carriage] == printer_->carriage.print_um;
+    return !printer_->has_carriage() || position_[Axis::carriage] == printer_->carriage.print_um;
 }
 
 bool Interlock::over_drain(const Position& at) const {
     switch (printer_->store()) {
         case Store::tower:
+        case Store::wall:
             return at[Axis::carriage] >= printer_->drain_begin_um() &&
                    at[Axis::carriage] <= printer_->carriage.tower_um;
         case Store::table:
@@ -105,13 +117,17 @@ Status Interlock::home(Axis axis) {
     if (pump_) return failure("homing while the pump runs");
     const bool platform_up = homed(Axis::platform) && position_[Axis::platform] >= printer_->clear_um(part_height_um_);
     if (axis != Axis::platform && !platform_up) {
-        return failure("homing the {} before the platform is homed and clear of the vat", axis_name(axis));
+        return failure("homing the {} before the platform is homed and clear of the vat", name(axis));
     }
-    const bool stores = axis == Axis::tower || (axis == Axis::table && printer_->store() == Store::tower);
+    const bool stores = axis == Axis::tower || (axis == Axis::table && printer_->has_carriage());
     if (stores && (!homed(Axis::carriage) || !(tower_free(position_) || vat_out_of_tower()))) {
-        return failure("homing the {} before the carriage stands back without a vat", axis_name(axis));
+        return failure("homing the {} before the carriage stands back without a vat", name(axis));
     }
+    if (stores && fork_out_) return failure("homing the {} with the fork in the wall", name(axis));
     const bool held = hooked_vat_ && !in_print_window(position_[Axis::carriage]) && !level_slot(position_);
+    if (axis == Axis::carriage && hooked_vat_ && printer_->hooks.magnet.present() && !magnet_) {
+        return failure("homing the carriage with a vat that its magnet does not hold");
+    }
     if (axis == Axis::carriage && held) {
         return failure("homing the carriage with a vat in the tower, which does not stand level");
     }
@@ -124,9 +140,9 @@ Status Interlock::check_travel(const Position& to) const {
     for (const Axis axis : all_axes) {
         if (to[axis] == position_[axis]) continue;
         const AxisSpec& spec = printer_->axis(axis);
-        if (!homed(axis)) return failure("the {} moves before it is homed", axis_name(axis));
+        if (!homed(axis)) return failure("the {} moves before it is homed", name(axis));
         if (to[axis] < spec.min_um || to[axis] > spec.max_um) {
-            return failure("the {} would go to {:.3f} {}, outside its travel of {:.3f} to {:.3f}", axis_name(axis),
+            return failure("the {} would go to {:.3f} {}, outside its travel of {:.3f} to {:.3f}", name(axis),
                            mm(to[axis]), spec.rotary ? "deg" : "mm", mm(spec.min_um), mm(spec.max_um));
         }
     }
@@ -163,7 +179,7 @@ bool Interlock::brushes(const Position& to, int lowest_um) const {
 Status Interlock::check_carriage_in_vat(const Position& to) const {
     const double lowest = mm(std::min(to[Axis::platform], position_[Axis::platform]));
     const double clear = mm(printer_->clear_um(part_height_um_));
-    if (printer_->store() == Store::tower) {
+    if (printer_->has_carriage()) {
         if (in_print_window(to[Axis::carriage]) && in_print_window(position_[Axis::carriage])) return {};
         return failure("the platform is down at {:.3f} mm (clear from {:.3f} mm) while the carriage is not at print",
                        lowest, clear);
@@ -194,28 +210,28 @@ bool Interlock::takes_vat_back(const Position& to) const {
 }
 
 bool Interlock::in_hooks_stroke() const {
-    return printer_->store() == Store::tower && position_[Axis::carriage] == printer_->carriage.tower_um &&
-           slot_in_hook_stroke(position_).has_value();
+    return printer_->has_carriage() && printer_->hooks.travel_um > 0 &&
+           position_[Axis::carriage] == printer_->carriage.tower_um && slot_in_hook_stroke(position_).has_value();
 }
 
 Status Interlock::check_tower(const Position& to) const {
     if (position_[Axis::tower] == to[Axis::tower]) return {};
-    if (tower_free(to) || takes_vat_back(to)) return {};
+    if (printer_->store() == Store::wall ? retriever_free(to) : tower_free(to) || takes_vat_back(to)) return {};
     const bool at_tower = to[Axis::carriage] == printer_->carriage.tower_um &&
                           position_[Axis::carriage] == printer_->carriage.tower_um &&
                           to[Axis::table] == position_[Axis::table];
     const auto slot = slot_in_hook_stroke(position_);
     if (at_tower && slot && slot == slot_in_hook_stroke(to)) return {};
-    return failure("the tower moves while {}",
+    return failure("the {} moves while {}", name(Axis::tower),
                    hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands at it");
 }
 
 Status Interlock::check_table(const Position& to) const {
-    if (position_[Axis::table] == to[Axis::table] || printer_->store() != Store::tower || tower_free(to)) return {};
+    if (position_[Axis::table] == to[Axis::table] || !printer_->has_carriage() || tower_free(to)) return {};
     // On the way back to the tower that a vat came from; which slot it will be, the tower's move says.
     if (vat_out_of_tower() && in_print_window(to[Axis::carriage])) return {};
-    return failure("the table moves while {}",
-                   hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands at a tower");
+    return failure("the {} moves while {}", name(Axis::table),
+                   hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands before it");
 }
 
 Status Interlock::check_carriage(const Position& to) const {
@@ -224,14 +240,16 @@ Status Interlock::check_carriage(const Position& to) const {
     const bool touches_tower = hooked_vat_ ? !in_print_window(nearest)
                                            : nearest > printer_->carriage.tower_um - printer_->carriage.back_off_um;
     if (!touches_tower) return {};
-    if (!homed(Axis::tower)) return failure("the carriage goes to the tower before that is homed");
+    const std::string_view store = printer_->store() == Store::wall ? "retriever" : "tower";
+    if (!homed(Axis::tower)) return failure("the carriage goes to the {} before that is homed", store);
     if (!hooked_vat_) {
-        return hooks_clear(position_) ? Status{} : failure("the carriage meets the tower with the hooks not clear");
+        return hooks_clear(position_) ? Status{} : failure("the carriage meets the {} with the hooks not clear", store);
     }
     const auto slot = level_slot(position_);
     if (!slot) return failure("the carriage moves a vat while no slot is level with it");
-    if (vat_in_slot(*slot)) return failure("slot {} is taken already", *slot);
-    return {};
+    if (!vat_in_slot(*slot)) return {};
+    if (printer_->store() == Store::wall) return failure("the tray holds a vat already");
+    return failure("slot {} is taken already", *slot);
 }
 
 Status Interlock::check_pump(const Position& to) const {
@@ -247,7 +265,9 @@ Status Interlock::pump(bool on) {
 
 /// At the tower, a level slot gives its vat to the hooks; a lowered one keeps it.
 void Interlock::take_or_leave_vat() {
-    if (printer_->store() != Store::tower || position_[Axis::carriage] != printer_->carriage.tower_um) return;
+    if (!printer_->has_carriage() || printer_->hooks.magnet.present() ||
+        position_[Axis::carriage] != printer_->carriage.tower_um)
+        return;
     const auto slot = slot_in_hook_stroke(position_);
     if (!slot) return;
     auto& place = slots_[static_cast<std::size_t>(*slot - 1)];
@@ -262,12 +282,14 @@ void Interlock::take_or_leave_vat() {
 
 Status Interlock::move(const Position& to) {
     if (light_) return failure("a move while the light is on");
-    for (const auto check : {&Interlock::check_travel, &Interlock::check_platform, &Interlock::check_tower,
-                             &Interlock::check_table, &Interlock::check_carriage, &Interlock::check_pump}) {
+    for (const auto check :
+         {&Interlock::check_travel, &Interlock::check_platform, &Interlock::check_tower, &Interlock::check_table,
+          &Interlock::check_fork, &Interlock::check_hold, &Interlock::check_carriage, &Interlock::check_pump}) {
         if (Status status = (this->*check)(to); !status) return status;
     }
     position_ = to;
     take_or_leave_vat();
+    take_or_leave_in_wall();
     return {};
 }
 
@@ -289,6 +311,7 @@ void Interlock::stopped_at(const Position& position) {
     position_ = position;
     homed_.fill(false);
     pump_ = false;
+    magnet_ = false;
 }
 
 }  // namespace pliant::machine

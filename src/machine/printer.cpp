@@ -20,9 +20,10 @@ const CleaningPair* find_pair(const Printer& printer, int from_vat, int to_vat) 
 
 }  // namespace
 
-std::string_view axis_name(Axis axis) {
+std::string_view axis_name(Axis axis, Store store) {
     constexpr std::string_view names[axis_count] = {"carriage", "platform", "tower", "table"};
-    return names[static_cast<std::size_t>(axis)];
+    constexpr std::string_view of_wall[axis_count] = {"carriage", "platform", "lift", "rail"};
+    return (store == Store::wall ? of_wall : names)[static_cast<std::size_t>(axis)];
 }
 
 std::string_view method_name(CleaningMethod method) {
@@ -40,6 +41,8 @@ int Printer::slot_count() const {
     switch (store()) {
         case Store::tower:
             return tower.slots * std::max(1, stations);
+        case Store::wall:
+            return wall.rows * wall.columns;
         case Store::table:
             return stations;
         case Store::none:
@@ -49,6 +52,7 @@ int Printer::slot_count() const {
 }
 
 int Printer::station_um(int slot) const {
+    if (store() == Store::wall) return wall.bay_rail_um;
     if (table.stations_um.empty()) return 0;
     const int station = store() == Store::tower ? (slot - 1) / tower.slots : slot - 1;
     return table.stations_um[static_cast<std::size_t>(station)];

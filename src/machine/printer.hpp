@@ -1,12 +1,13 @@
 // The printer file: everything that Pliant knows about a machine, as one plain value. docs/reference/printer.md
 // describes the file; examples/printers holds the machines of the thesis (chapter 4, appendix B) and its peers.
 //
-// A platform goes up and down over a vat. Where the other vats are is the store, of one of three kinds:
+// A platform goes up and down over a vat. Where the other vats are is the store, of one of four kinds:
 //   tower  A carriage carries the cleaning vat and drags the resin vat that is hooked to it: at `print_um` that vat
-//   lies
-//          under the platform, at `tower_um` it is inside the tower and the cleaning vat under the platform. The tower
-//          lifts and lowers all its slots; slot n is level with the carriage at `level_um(n)`. Several towers stand on
-//          a table that brings one of them before the carriage, along a line or (a carousel) in a circle.
+//          lies under the platform, at `tower_um` it is inside the tower and the cleaning vat under the platform. The
+//          tower lifts and lowers all its slots; slot n is level with the carriage at `level_um(n)`. Several towers
+//          stand on a table that brings one of them before the carriage, along a line or (a carousel) in a circle.
+//   wall   The same carriage, but what it meets at `tower_um` is the tray of a retriever: a lift on a rail along a wall
+//          of vats in rows and columns, whose fork takes a vat from its place or puts it there.
 //   table  The vats and a cleaning station stand on a table, one of them under the platform: a turntable or a conveyor.
 //   none   One vat, fixed under the platform.
 // Positions are integer micrometres, those of a rotary axis thousandths of a degree; times seconds.
@@ -24,12 +25,15 @@
 
 namespace pliant::machine {
 
+enum class Store { none, table, tower, wall };
+
+/// Of a wall's retriever `tower` is the lift and `table` the rail.
 enum class Axis { carriage, platform, tower, table };
 inline constexpr std::size_t axis_count = 4;
 inline constexpr std::array<Axis, axis_count> all_axes = {Axis::carriage, Axis::platform, Axis::tower, Axis::table};
 
-/// "carriage", "platform", "tower", "table": the table names of the printer file.
-[[nodiscard]] std::string_view axis_name(Axis axis);
+/// "carriage", "platform", "tower", "table", with a wall "lift" and "rail": the table names of the printer file.
+[[nodiscard]] std::string_view axis_name(Axis axis, Store store = Store::tower);
 
 /// Where every axis is, in micrometres (rotary: 1/1000 degree).
 struct Position {
@@ -113,9 +117,41 @@ struct Table {
     int bath_gap_um = 0;           ///< between the part and the floor of the cleaning station
 };
 
+/// The commands of something that hangs on an auxiliary pin; "" if the machine has none.
+struct Switch {
+    std::string on, off;
+};
+
+/// An electromagnet that holds the vat in place of hooks, which saves their stroke (thesis, chapter 5).
+struct Magnet {
+    Switch coil;            ///< on: it holds
+    double engage_s = 0;    ///< until it holds
+    double release_s = 0;   ///< until it lets go
+    double force_N = 0;     ///< that it holds; 0: not known, and not checked
+    double vat_kg = 0;      ///< of an empty vat
+    double friction = 0.3;  ///< of a vat on its rails
+    double resin_kg_m3 = 1100;
+
+    [[nodiscard]] bool present() const { return !coil.on.empty(); }
+};
+
 struct Hooks {
-    int travel_um = 0;  ///< how far the tower lowers until a vat is off its hooks
+    int travel_um = 0;  ///< how far the tower lowers until a vat is off its hooks; 0 with a magnet
     double speed_mm_s = 0;
+    Magnet magnet{};
+};
+
+/// Vats in rows and columns, and the retriever before them. Slots count along the rows, from the lowest row's first.
+struct Wall {
+    int rows = 0, columns = 0;                     ///< 0: the machine has none
+    int first_row_um = 0, row_pitch_um = 0;        ///< of the lift: level with the places of a row
+    int first_column_um = 0, column_pitch_um = 0;  ///< of the rail
+    int bay_lift_um = 0, bay_rail_um = 0;          ///< the tray is level with the carriage, and before it
+    int lift_off_um = 0;                           ///< stroke of the lift between a vat on its place and on the fork
+    double lift_off_mm_s = 0;
+    int clearance_um = 0;  ///< free height between two vats of a column
+    Switch fork;           ///< on: out, in the wall
+    double fork_s = 0;     ///< that it takes out, or back
 };
 
 struct VatShape {
@@ -211,11 +247,6 @@ struct Sprinkler {
     double flow = 1;                     ///< its part of the solution that is pumped, beside those of the others
 };
 
-/// The commands of something that hangs on an auxiliary pin; "" if the machine has none.
-struct Switch {
-    std::string on, off;
-};
-
 /// A switch at the end of an axis' travel. The controller reads it; its M119 says TRIGGERED while it is pressed.
 struct LimitSwitch {
     Axis axis = Axis::platform;
@@ -255,8 +286,6 @@ struct Limits {
     double cleaning_s = 3600;  ///< longest time that the pump runs at a stretch
 };
 
-enum class Store { none, table, tower };
-
 /// A validated machine. Indices into `vats` are what the planner calls a vat.
 struct Printer {
     std::string name;
@@ -281,20 +310,35 @@ struct Printer {
     Limits limits;
     Solution solution{};
     std::vector<Sprinkler> sprinklers{};  ///< empty: where they are is not known
+    Wall wall{};
 
     [[nodiscard]] const AxisSpec& axis(Axis a) const { return axes[static_cast<std::size_t>(a)]; }
     [[nodiscard]] Store store() const {
         if (tower.slots > 0) return Store::tower;
+        if (wall.rows > 0) return Store::wall;
         return table.stations_um.empty() ? Store::none : Store::table;
     }
-    /// Places for vats: slots of all towers, or stations, or one.
+    /// Whether a carriage drags the vats: from a tower, or from the retriever of a wall.
+    [[nodiscard]] bool has_carriage() const { return store() == Store::tower || store() == Store::wall; }
+    /// Whether the table has a place for each slot, tower or, as the rail, the bay of the retriever.
+    [[nodiscard]] bool has_table() const { return axis(Axis::table).present(); }
+    /// Places for vats: slots of all towers, places of the wall, stations, or one.
     [[nodiscard]] int slot_count() const;
-    /// Tower position at which `slot` (from 1) is level with the carriage.
+    /// Tower position at which `slot` (from 1) is level with the carriage; of a wall the lift's at the bay.
     [[nodiscard]] int level_um(int slot) const {
+        if (store() == Store::wall) return wall.bay_lift_um;
         return tower.first_slot_um + (slot - 1) % tower.slots * tower.pitch_um;
     }
-    /// Table position at which `slot` (its vat, or its tower) is in place; of a rotary table that within one turn.
+    /// Table position at which `slot` (its vat, or its tower) is in place; of a rotary table that within one turn; of a
+    /// wall the rail's at the bay.
     [[nodiscard]] int station_um(int slot) const;
+    /// Where lift and rail of a wall's retriever stand with the tray level with the place of `slot`.
+    [[nodiscard]] int row_um(int slot) const {
+        return wall.first_row_um + (slot - 1) / wall.columns * wall.row_pitch_um;
+    }
+    [[nodiscard]] int column_um(int slot) const {
+        return wall.first_column_um + (slot - 1) % wall.columns * wall.column_pitch_um;
+    }
     /// The table position equal to `target_um` (a full turn more or less on a rotary table) that is nearest to
     /// `from_um`, within the axis' travel.
     [[nodiscard]] int nearest_um(int target_um, int from_um) const;
@@ -304,7 +348,7 @@ struct Printer {
     [[nodiscard]] int clear_um(int part_height_um) const {
         return part_height_um + vat_shape.wall_um + platform.clearance_um;
     }
-    [[nodiscard]] bool has_brush() const { return cleaning.brush && store() == Store::tower; }
+    [[nodiscard]] bool has_brush() const { return cleaning.brush && has_carriage(); }
     /// Platform position at which a vat is put away: the brush reaches the part; without one it is clear_um().
     [[nodiscard]] int push_um(int part_height_um) const {
         return has_brush() ? part_height_um + vat_shape.wall_um + cleaning.brush_um : clear_um(part_height_um);

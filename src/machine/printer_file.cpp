@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "core/config.hpp"
-#include "machine/gcode.hpp"
 #include "machine/printer.hpp"
 #include "machine/printer_reading.hpp"
-#include "machine/switches.hpp"
 
 namespace pliant::machine {
 namespace {
@@ -19,15 +17,6 @@ namespace {
 using config::Problems;
 using config::Reader;
 using namespace reading;
-
-/// A position of the table: a length, or an angle as thousandths of a degree.
-int place_um(Reader& r, std::string_view key, double value, bool rotary) {
-    return checked_um(r, key, rotary ? value * degrees * 1e-3 : value);
-}
-
-Dimension place_dimension(bool rotary) {
-    return rotary ? Dimension::angle : Dimension::length;
-}
 
 char read_letter(Reader& r, Dialect dialect) {
     const std::string_view known = dialect == Dialect::marlin ? "XYZABCUVW" : "XYZE";
@@ -107,18 +96,6 @@ Controller read_controller(Reader r) {
     return c;
 }
 
-Carriage read_carriage(Reader r) {
-    Carriage c;
-    c.print_um = length_um(r, "print_position", static_cast<int>(-longest_um));
-    c.tower_um = length_um(r, "tower_position", static_cast<int>(-longest_um));
-    c.back_off_um = length_um(r, "back_off", 1);
-    c.shear_um = length_um(r, "shear");
-    c.shear_speed_mm_s = speed(r, "shear_speed");
-    c.along_y = r.choice("along", {"x", "y"}, "x") == "y";
-    r.finish();
-    return c;
-}
-
 Platform read_platform(Reader r) {
     Platform p;
     const auto size = r.quantities("size", Dimension::length, 2);
@@ -136,44 +113,6 @@ Platform read_platform(Reader r) {
     p.settle_s = not_negative(r, "settle", Dimension::time);
     r.finish();
     return p;
-}
-
-Tower read_tower(Reader r) {
-    Tower t;
-    t.slots = whole(r, "slots", 1, 1000);
-    t.first_slot_um = length_um(r, "first_slot", static_cast<int>(-longest_um));
-    t.pitch_um = length_um(r, "pitch", 1);
-    t.clearance_um = length_um(r, "clearance");
-    if (r.has("pitch") && t.pitch_um > longest_um / t.slots) r.problem("pitch", "makes a tower over 100 m");
-    r.finish();
-    return t;
-}
-
-/// Stations are a list of any length; the reader wants to know how long.
-std::vector<int> read_stations(Reader& r, bool rotary) {
-    std::vector<int> stations;
-    const config::Value* raw = r.raw("stations");
-    const auto* list = raw != nullptr ? std::get_if<config::Array>(&raw->data) : nullptr;
-    constexpr std::size_t most = 1000;
-    if (list == nullptr || list->empty() || list->size() > most) {
-        r.problem("stations", "must be a list of 1 to 1000 positions such as [\"0 mm\", \"180 mm\"]");
-        return stations;
-    }
-    for (const double place : r.quantities("stations", place_dimension(rotary), list->size())) {
-        stations.push_back(place_um(r, "stations", place, rotary));
-    }
-    return stations;
-}
-
-Table read_table(Reader r, bool rotary, bool has_tower) {
-    Table t;
-    t.stations_um = read_stations(r, rotary);
-    if (!has_tower) {
-        t.cleaning_um = place_um(r, "cleaning", r.quantity("cleaning", place_dimension(rotary)), rotary);
-        t.bath_gap_um = length_um(r, "bath_gap", 1);
-    }
-    r.finish();
-    return t;
 }
 
 VatShape read_vat_shape(Reader r) {
@@ -291,112 +230,23 @@ Limits read_limits(Reader r) {
     return limits;
 }
 
-/// A switch may only switch: a motion hidden in the printer file would pass every interlock of the planner.
-Switch read_switch(Reader r) {
-    Switch s{r.text("on", ""), r.text("off", "")};
-    for (const auto& [key, text] : {std::pair{"on", s.on}, std::pair{"off", s.off}}) {
-        if (text.empty()) continue;
-        const auto command = parse_command(text);
-        const bool switches = command && command->letter == 'M' &&
-                              (command->number == 106 || command->number == 107 || command->number == 42);
-        if (!switches) r.problem(key, "must be an M106, M107 or M42 command such as \"M106 P1 S255\"");
-    }
-    if (s.on.empty() != s.off.empty()) r.problem("on", "and \"off\" go together");
-    r.finish();
-    return s;
-}
-
-std::string command_key(const Switch& s) {
-    const auto parsed = parse_command(s.on);
-    return parsed ? fmt::format("{}{}", parsed->number == 42 ? "pin " : "fan ", parsed->value('P').value_or(0)) : s.on;
-}
-
-/// [[fan]], one table each; [fans] is the older form of a single one.
-void read_fans(Reader& root, Printer& p) {
-    if (root.has("fans") && root.has("fan")) root.problem("fans", "is the older form of [[fan]]; keep one of them");
-    const Switch single = read_switch(root.table("fans", false));
-    if (!single.on.empty()) p.fans.push_back(single);
-    if (!root.has("fan")) return;
-    for (Reader& r : root.tables("fan")) {
-        Switch fan = read_switch(r);
-        const auto same = [&](const Switch& other) { return command_key(other) == command_key(fan); };
-        if (fan.on.empty())
-            root.problem("fan", "needs \"on\" and \"off\"");
-        else if (std::any_of(p.fans.begin(), p.fans.end(), same) || (!p.pump.on.empty() && same(p.pump)))
-            root.problem("fan", fmt::format("\"{}\" is the output of another fan or of the pump", fan.on));
-        else
-            p.fans.push_back(std::move(fan));
-    }
-}
-
-LimitSwitch read_limit_switch(Reader& r, const Printer& p) {
-    const std::string axis = r.choice("axis", {"carriage", "platform", "tower", "table"});
-    LimitSwitch s;
-    for (const Axis a : all_axes) {
-        if (axis_name(a) == axis) s.axis = a;
-    }
-    s.at_max = r.choice("end", {"min", "max"}) == "max";
-    s.inverted = r.boolean("inverted", false);
-    if (r.has("axis") && !p.axis(s.axis).present()) r.problem("axis", fmt::format("the machine has no {}", axis));
-    for (const LimitSwitch& other : p.limit_switches) {
-        if (other.axis == s.axis && other.at_max == s.at_max) r.problem("end", "stands twice for this axis");
-    }
-    r.finish();
-    return s;
-}
-
-void read_limit_switches(Reader& root, Printer& p) {
-    if (!root.has("limit_switch")) return;
-    for (Reader& r : root.tables("limit_switch")) p.limit_switches.push_back(read_limit_switch(r, p));
-}
-
-DoorSwitch read_door(Reader r, const Printer& p) {
-    DoorSwitch door;
-    door.input = r.choice("input", {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "z_probe", "filament"});
-    door.inverted = r.boolean("inverted", false);
-    for (const LimitSwitch& s : switches_of(p)) {
-        const auto names = switch_names(p, s);
-        if (std::find(names.begin(), names.end(), door.input) != names.end())
-            r.problem("input", fmt::format("{} is the limit switch of the {}", door.input, axis_name(s.axis)));
-    }
-    r.finish();
-    return door;
-}
-
-EmergencyLine read_emergency_line(Reader r) {
-    using Signal = EmergencyLine::Signal;
-    constexpr int last_pin = 69;  // of a Mega 2560
-    EmergencyLine line;
-    const std::string signal = r.choice("signal", {"controller", "dtr", "rts", "file"});
-    for (const Signal s : {Signal::controller, Signal::dtr, Signal::rts, Signal::file}) {
-        if (signal_name(s) == signal) line.signal = s;
-    }
-    if (line.signal == Signal::controller) {
-        line.pin = whole(r, "pin", 0, last_pin);
-    } else {
-        line.device = r.text("device");
-        if (r.has("device") && line.device.empty()) r.problem("device", "must name a serial port or a file");
-    }
-    if (line.signal == Signal::file) line.stop_high = r.choice("stop", {"high", "low"}, "high") == "high";
-    r.finish();
-    return line;
-}
-
 /// Which axes there are follows from where the vats are kept.
-void read_axes(Reader r, Printer& printer, bool has_tower, bool has_table) {
+void read_axes(Reader r, Printer& printer, const StoreTables& has) {
+    const auto name = [&](Axis axis) { return axis_name(axis, has.names()); };
     for (const Axis axis : all_axes) {
-        const bool wanted = axis == Axis::platform || (axis == Axis::table ? has_table : has_tower);
+        const bool on_table = has.table || has.wall;
+        const bool wanted = axis == Axis::platform || (axis == Axis::table ? on_table : has.carriage());
         if (!wanted) {
-            if (r.has(axis_name(axis))) {
-                r.problem(axis_name(axis), fmt::format("needs a [{}] table", axis == Axis::table ? "table" : "tower"));
+            if (r.has(name(axis))) {
+                r.problem(name(axis), fmt::format("needs a [{}] table", axis == Axis::table ? "table" : "tower"));
             }
             continue;
         }
         auto& spec = printer.axes[static_cast<std::size_t>(axis)];
-        spec = read_axis(r.table(axis_name(axis)), printer.controller.dialect, axis == Axis::table);
+        spec = read_axis(r.table(name(axis)), printer.controller.dialect, axis == Axis::table && !has.wall);
         for (const Axis other : all_axes) {
             if (other < axis && printer.axis(other).letter == spec.letter && spec.letter != '?') {
-                r.problem(axis_name(axis), fmt::format("has the letter of the {} axis", axis_name(other)));
+                r.problem(name(axis), fmt::format("has the letter of the {} axis", name(other)));
             }
         }
     }
@@ -407,72 +257,6 @@ void read_vats(Reader& root, Printer& printer) {
     auto vats = root.tables("vat");
     if (vats.empty()) root.problem("vat", "at least one [[vat]] is needed");
     for (Reader& r : vats) printer.vats.push_back(read_vat(r, printer));
-}
-
-/// Every station must lie within the travel of its axis.
-void check_stations(Reader& root, const Printer& p) {
-    const auto within = [&](Axis axis, int um, std::string_view what) {
-        const AxisSpec& a = p.axis(axis);
-        if (um >= a.min_um && um <= a.max_um) return;
-        root.problem(fmt::format("axis.{}.travel", axis_name(axis)),
-                     fmt::format("{} at {:.3f} mm is outside", what, um / 1000.0));
-    };
-    for (const int station_um : p.table.stations_um) within(Axis::table, station_um, "a station");
-    if (p.store() == Store::table) within(Axis::table, p.table.cleaning_um, "the cleaning station");
-    within(Axis::platform, 0, "the floor of the vat");
-    within(Axis::platform, p.clear_um(p.platform.build_height_um) + p.cleaning.stroke_z_um,
-           "the tallest part, lifted clear of the vat for cleaning,");
-    if (p.store() != Store::tower) return;
-    within(Axis::carriage, p.carriage.print_um, "the print position");
-    within(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, "the shear stroke");
-    within(Axis::carriage, p.carriage.tower_um, "the tower position");
-    within(Axis::tower, p.level_um(1) - p.hooks.travel_um, "slot 1, lowered,");
-    within(Axis::tower, p.level_um(p.tower.slots), "the last slot");
-}
-
-void check_tower_geometry(Reader& root, const Printer& p) {
-    const Carriage& c = p.carriage;
-    if (c.print_um + c.shear_um + p.cleaning.stroke_x_um + c.back_off_um >= c.tower_um) {
-        root.problem("carriage.tower_position", "leaves no room for shear, back_off and the cleaning stroke");
-    }
-    if (p.hooks.travel_um >= p.tower.clearance_um) {
-        root.problem("hooks.travel", "must be less than the tower's clearance");
-    }
-    if (p.axis(Axis::carriage).home_um() > c.tower_um - c.back_off_um) {
-        root.problem("axis.carriage.home", "ends at the tower, which then could not be homed");
-    }
-}
-
-void check_geometry(Reader& root, const Printer& p) {
-    if (p.store() == Store::tower) check_tower_geometry(root, p);
-    if (p.axis(Axis::platform).home_um() < p.clear_um(0)) {
-        root.problem("axis.platform.home", "must end clear of the vat (home = \"max\")");
-    }
-    const auto& stations = p.table.stations_um;
-    for (std::size_t i = 0; i < stations.size(); ++i) {
-        const bool on_cleaning = p.store() == Store::table && p.table_at(stations[i], p.table.cleaning_um);
-        if (on_cleaning) root.problem("table.stations", fmt::format("station {} is the cleaning station", i + 1));
-        for (std::size_t k = 0; k < i; ++k) {
-            if (p.table_at(stations[i], stations[k])) {
-                root.problem("table.stations", fmt::format("stations {} and {} are the same place", k + 1, i + 1));
-            }
-        }
-    }
-}
-
-/// A list of limit switches must be whole: an axis without the one that it homes to would run into its end.
-void check_limit_switches(Reader& root, const Printer& p) {
-    if (p.limit_switches.empty()) return;
-    for (const Axis axis : all_axes) {
-        const AxisSpec& spec = p.axis(axis);
-        if (!spec.present() || spec.homes_by_hand) continue;
-        const bool listed = std::any_of(p.limit_switches.begin(), p.limit_switches.end(), [&](const LimitSwitch& s) {
-            return s.axis == axis && s.at_max == spec.homes_to_max;
-        });
-        if (!listed)
-            root.problem("limit_switch", fmt::format("the {} homes to a switch at its {} that is not listed",
-                                                     axis_name(axis), spec.homes_to_max ? "max" : "min"));
-    }
 }
 
 /// Resins that a cleaning pair names must be known, or a slip would go unnoticed.
@@ -486,29 +270,14 @@ void check_pairs(Reader& root, const Printer& p) {
     }
 }
 
-/// The store: a tower with its carriage and hooks, a table, both, or nothing.
-void read_store(Reader& root, Printer& p, bool has_tower, bool has_table) {
-    if (has_tower) {
-        p.carriage = read_carriage(root.table("carriage"));
-        p.tower = read_tower(root.table("tower"));
-        Reader hooks = root.table("hooks");
-        p.hooks = {length_um(hooks, "travel", 1), speed(hooks, "speed")};
-        hooks.finish();
-    }
-    if (has_table) p.table = read_table(root.table("table"), p.axis(Axis::table).rotary, has_tower);
-    if (p.slot_count() > 1000) root.problem("tower.slots", "makes more than 1000 places for vats");
-}
-
-Printer read_printer(Reader& root) {
+Printer read_printer(Reader& root, const StoreTables& has) {
     Printer p;
     p.name = root.text("name");
     if (root.has("layer_height")) p.layer_um = length_um(root, "layer_height", 1);
     p.controller = read_controller(root.table("controller"));
-    const bool has_tower = root.has("tower") || root.has("carriage") || root.has("hooks");
-    const bool has_table = root.has("table");
-    read_axes(root.table("axis"), p, has_tower, has_table);
+    read_axes(root.table("axis"), p, has);
     p.platform = read_platform(root.table("platform"));
-    read_store(root, p, has_tower, has_table);
+    read_store(root, p, has);
     p.vat_shape = read_vat_shape(root.table("vat_shape"));
     for (auto& [name, r] : root.named_tables("resin")) p.resins.push_back(read_resin(name, r));
     read_vats(root, p);
@@ -519,11 +288,7 @@ Printer read_printer(Reader& root) {
         if (p.store() == Store::none) root.problem("solution", "belongs to a machine that cleans: one with more vats");
     }
     read_sprinklers(root, p);
-    p.pump = read_switch(root.table("pump", false));
-    read_fans(root, p);
-    read_limit_switches(root, p);
-    if (root.has("door")) p.door = read_door(root.table("door"), p);
-    if (root.has("emergency_line")) p.emergency_line = read_emergency_line(root.table("emergency_line"));
+    read_switches(root, p);
     p.limits = read_limits(root.table("limits", false));
     root.finish();
     return p;
@@ -532,12 +297,14 @@ Printer read_printer(Reader& root) {
 Result<Printer> from_document(const config::Document& document) {
     Problems problems(document.file.string());
     Reader root(document.root, problems);
-    Printer printer = read_printer(root);
+    const StoreTables has = store_tables(root);
+    if (auto status = problems.status(); !status) return tl::unexpected(status.error());
+    Printer printer = read_printer(root, has);
     if (problems.empty()) {
-        check_stations(root, printer);
-        check_geometry(root, printer);
+        check_store(root, printer);
+        check_magnet(root, printer);
         check_pairs(root, printer);
-        check_limit_switches(root, printer);
+        check_switches(root, printer);
     }
     if (auto status = problems.status(); !status) return tl::unexpected(status.error());
     return printer;

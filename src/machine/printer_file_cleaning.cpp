@@ -30,8 +30,8 @@ double cloth_share() {
 /// The brush stands in the vats of a tower. On a table the part would pass over the brushes of other resins.
 void read_brush(Reader& r, Store store, int clearance_um, Cleaning& c) {
     c.brush = r.boolean("brush", false);
-    if (c.brush && store != Store::tower)
-        r.problem("brush", "needs a [tower]: on a table the brushes of other vats would wipe the part too");
+    if (c.brush && store != Store::tower && store != Store::wall)
+        r.problem("brush", "needs a [tower] or a [wall]: on a table the brushes of other vats would wipe the part too");
     c.brush_um = r.has("brush_height") ? length_um(r, "brush_height") : clearance_um / 2;
     if (c.brush_um > clearance_um)
         r.problem("brush_height", fmt::format("is above platform.clearance, {:g} mm: there the part is out of reach",
@@ -81,7 +81,7 @@ Cleaning read_cleaning(Reader r, Store store, int clearance_um) {
     }
     c.method = read_method(r);
     c.spray_s = not_negative(r, r.has("duration") ? "duration" : "spray", Dimension::time);
-    if (store == Store::tower) c.stroke_x_um = length_um(r, "stroke_x", 1);
+    if (store == Store::tower || store == Store::wall) c.stroke_x_um = length_um(r, "stroke_x", 1);
     c.stroke_z_um = length_um(r, "stroke_z");
     c.speed_mm_s = speed(r, "speed");
     c.dry_s = not_negative(r, "dry", Dimension::time);

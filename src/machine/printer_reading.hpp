@@ -58,11 +58,50 @@ inline double speed(Reader& r, std::string_view key) {
 
 inline constexpr double degrees = 180 / std::numbers::pi;
 
+inline double not_negative_number(Reader& r, std::string_view key, double fallback) {
+    const double value = r.number(key, fallback);
+    if (!(value >= 0 && value <= 1e6)) r.problem(key, "must not be negative");
+    return value;
+}
+
 inline double share(Reader& r, std::string_view key, double fallback) {
     const double value = r.number(key, fallback);
     if (!(value >= 0 && value <= 1)) r.problem(key, "must be a share from 0 to 1");
     return value;
 }
+
+/// A position of the table: a length, or an angle as thousandths of a degree.
+inline int place_um(Reader& r, std::string_view key, double value, bool rotary) {
+    return checked_um(r, key, rotary ? value * degrees * 1e-3 : value);
+}
+
+inline Dimension place_dimension(bool rotary) {
+    return rotary ? Dimension::angle : Dimension::length;
+}
+
+/// Which tables of a store the file has.
+struct StoreTables {
+    bool tower = false, wall = false, table = false;
+
+    [[nodiscard]] bool carriage() const { return tower || wall; }
+    [[nodiscard]] Store names() const { return wall ? Store::wall : Store::tower; }  ///< for axis_name()
+};
+[[nodiscard]] StoreTables store_tables(Reader& root);
+/// [carriage], [tower], [wall], [hooks], [table]; needs the axes.
+void read_store(Reader& root, Printer& p, const StoreTables& tables);
+/// What a magnet must hold; needs the vats.
+void check_magnet(Reader& root, const Printer& p);
+/// Every station lies within the travel of its axis, and none where another is.
+void check_store(Reader& root, const Printer& p);
+
+/// A switch may only switch: a motion hidden in the printer file would pass every interlock of the planner.
+[[nodiscard]] Switch read_switch(Reader r);
+/// The same of commands that stand among other keys.
+void check_switch_commands(Reader& r, const Switch& s);
+/// [pump], [[fan]], [[limit_switch]], [door], [emergency_line].
+void read_switches(Reader& root, Printer& p);
+/// That no output is switched by two devices, and that limit switches are all listed, or none.
+void check_switches(Reader& root, const Printer& p);
 
 /// [cleaning]; `clearance_um` is the platform's.
 [[nodiscard]] Cleaning read_cleaning(Reader r, Store store, int clearance_um);

@@ -5,6 +5,7 @@
 
 #include "machine/gcode.hpp"
 #include "machine/motion.hpp"
+#include "machine/settling.hpp"
 
 namespace pliant::plan {
 namespace {
@@ -21,6 +22,7 @@ struct Reading {
     double clock_s = 0;
     double pump_since_s = 0;
     const Watch& watch;
+    machine::Settling settling;
     int line = 0;
 };
 
@@ -45,6 +47,7 @@ Status run_move(Reading& r, const Command& command) {
     if (!target) return tl::unexpected(target.error());
     if (const auto feed = command.value('F'); feed && *feed > 0) r.feed_mm_s = *feed / 60;
     r.moving = true;
+    if (Status status = r.settling.check(r.interlock.position(), *target, r.clock_s); !status) return status;
     r.clock_s += machine::move_seconds(r.printer, r.interlock.position(), *target, r.feed_mm_s);
     if (Status status = r.interlock.move(*target); !status) return status;
     return check_pump_time(r);
@@ -77,6 +80,17 @@ Status run_pump(Reading& r, bool on) {
     if (r.moving) return input_error("the pump is switched while the machine moves: M400 before it is missing");
     if (on && !r.interlock.pump_runs()) r.pump_since_s = r.clock_s;
     return r.interlock.pump(on);
+}
+
+bool latches(const machine::Printer& printer, const Command& command) {
+    return machine::switched(printer.hooks.magnet.coil, command) || machine::switched(printer.wall.fork, command);
+}
+
+/// The magnet, or the fork of a retriever.
+Status run_latch(Reading& r, const Command& command) {
+    if (r.moving) return input_error("magnet or fork is switched while the machine moves: M400 before it is missing");
+    r.settling.note(command, r.clock_s);
+    return r.interlock.output(command);
 }
 
 /// Motors that let go: where the axes are is not known any more.
@@ -118,6 +132,7 @@ Status run_command(Reading& r, const Command& command) {
     if (machine::moves_emergency_line(r.printer, command))
         return input_error("M42 P{}: that pin is the emergency line", r.printer.emergency_line.pin);
     if (const auto pump = machine::switched(r.printer.pump, command)) return run_pump(r, *pump);
+    if (latches(r.printer, command)) return run_latch(r, command);
     if (command.is('G', 90)) r.absolute = true;
     if (command.is('M', 400) || command.is('G', 4)) r.moving = false;
     if (command.is('G', 4)) {
@@ -160,7 +175,7 @@ Status run_directive(Reading& r, std::string_view line) {
 
 Result<machine::Interlock> replay_gcode(std::string_view gcode, const machine::Printer& printer, int lines,
                                         const Watch& watch) {
-    Reading reading{printer, machine::Interlock(printer), false, false, 0, 0, 0, watch};
+    Reading reading{printer, machine::Interlock(printer), false, false, 0, 0, 0, watch, machine::Settling(printer)};
     for (int number = 1; number <= lines && !gcode.empty(); ++number) {
         const std::string_view raw = gcode.substr(0, gcode.find('\n'));
         gcode.remove_prefix(std::min(gcode.size(), raw.size() + 1));

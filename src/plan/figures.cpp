@@ -28,7 +28,9 @@ SwapSteps swap_steps(const Printer& p, int from_slot, int to_slot) {
         if (stretch.device == Device::pump) steps.push_s = stretch.begin_s;
     }
     steps.pull_s = steps.total_s - steps.push_s - steps.clean_s;
-    if (p.store() == Store::tower)
+    if (p.hooks.magnet.present())
+        steps.hooks_s = p.hooks.magnet.release_s;
+    else if (p.has_carriage())
         steps.hooks_s = machine::move_seconds(p, {}, {{0, 0, p.hooks.travel_um}}, p.hooks.speed_mm_s);
     return steps;
 }
@@ -56,8 +58,19 @@ double short_side_mm(const Printer& p) {
     return std::min(p.platform.width_um, p.platform.depth_um) / 1000.0;
 }
 
+/// Vats of a wall, with the bed's side along the wall; the retriever before them takes as much room as they do.
+void measure_wall(const Printer& p, PrinterFigures& f) {
+    const machine::Wall& w = p.wall;
+    const double wide_mm = (p.carriage.along_y ? p.platform.width_um : p.platform.depth_um) / 1000.0;
+    const double vat_mm = (w.row_pitch_um - w.clearance_um) / 1000.0;
+    f.store_mm = (w.columns - 1) * w.column_pitch_um / 1000.0 + wide_mm;
+    const double high_mm = (w.rows - 1) * w.row_pitch_um / 1000.0 + vat_mm;
+    f.packing = w.rows * vat_mm * w.columns * wide_mm / (2 * high_mm * f.store_mm);
+}
+
 void measure_store(const Printer& p, PrinterFigures& f) {
     const int vats = static_cast<int>(p.vats.size());
+    if (p.store() == Store::wall) return measure_wall(p, f);
     if (p.store() == Store::tower) {
         const int in_tower = std::min(p.tower.slots, vats);
         f.packing = tower_packing(p, in_tower);
@@ -132,6 +145,10 @@ Printer with_vats(const Printer& printer, int vats) {
     if (p.store() == Store::tower) {
         p.tower.slots = vats;
         p.axes[static_cast<std::size_t>(Axis::tower)].max_um = p.level_um(vats);
+    } else if (p.store() == Store::wall) {
+        p.wall.columns = (vats + p.wall.rows - 1) / p.wall.rows;
+        int& end_um = p.axes[static_cast<std::size_t>(Axis::table)].max_um;
+        end_um = std::max(end_um, p.column_um(p.wall.columns));
     } else if (p.store() == Store::table && p.axis(Axis::table).rotary) {
         widen_turntable(p, vats);
     } else if (p.store() == Store::table) {
@@ -150,7 +167,7 @@ Printer with_bed(const Printer& printer, double bed, double motors) {
     const auto scaled = [&](int um) { return static_cast<int>(std::lround(um * bed)); };
     for (const Axis axis : {Axis::carriage, Axis::tower, Axis::table})
         p.axes[static_cast<std::size_t>(axis)].speed_mm_s *= motors;
-    if (p.store() == Store::tower) {
+    if (p.has_carriage()) {
         const int longer_um =
             scaled(p.carriage.tower_um - p.carriage.print_um) - (p.carriage.tower_um - p.carriage.print_um);
         p.carriage.tower_um += longer_um;

@@ -34,7 +34,7 @@ double axis_mm_s(const machine::Profile& profile, const Step& step, Axis axis) {
 }
 
 Axis stroke_axis(const Printer& p) {
-    return p.store() == Store::tower ? Axis::carriage : Axis::platform;
+    return p.has_carriage() ? Axis::carriage : Axis::platform;
 }
 
 /// The speed that the stroke axis can reach on this way, at most that of cleaning.
@@ -113,13 +113,13 @@ bool Passage::cleans(const Step& step) const {
 }
 
 bool Passage::asks_for_strokes() const {
-    const bool tower = printer_->store() == Store::tower;
+    const bool tower = printer_->has_carriage();
     return printer_->cleaning.stroke_z_um > 0 || (tower && printer_->cleaning.stroke_x_um > 0);
 }
 
 void Passage::add_cleaning(const Step& step) {
     if (step.seconds <= 0 || !cleans(step)) return;
-    const bool tower = printer_->store() == Store::tower;
+    const bool tower = printer_->has_carriage();
     cleaned_s_ += step.seconds;
     const bool far = (!tower || way_um(step, Axis::carriage) >= printer_->cleaning.stroke_x_um) &&
                      way_um(step, Axis::platform) >= printer_->cleaning.stroke_z_um;
@@ -151,7 +151,7 @@ Status Passage::check_peel(int z_um) const {
     if (!enough(rest_after_light_s_, printer_->projector.delay_s))
         return input_error("the machine moves {:g} s after the light, the projector is dark after {:g} s",
                            rest_after_light_s_, printer_->projector.delay_s);
-    if (printer_->store() == Store::tower && sheared_um_ < printer_->carriage.shear_um)
+    if (printer_->has_carriage() && sheared_um_ < printer_->carriage.shear_um)
         return input_error("the carriage moves {:g} mm aside to loosen the layer, {} asks for {:g} mm",
                            sheared_um_ / 1000.0, printer_->name, printer_->carriage.shear_um / 1000.0);
     if (top_um_ < z_um + platform.lift_um)

@@ -26,6 +26,9 @@ void begin(Sequence& s, const Plan& plan) {
     for (const std::string& line : machine::preamble(p)) s.command(line);
     s.command(p.pump.off);
     for (const machine::Switch& fan : p.fans) s.command(fan.off);
+    s.command(p.hooks.magnet.coil.off);
+    s.command(p.wall.fork.off);
+    s.dwell(p.wall.fork_s);
     for (const Axis axis : machine::homing_order(p)) s.home(axis);
     s.fence();
 }
@@ -42,7 +45,7 @@ void approach(Sequence& s, int z_um) {
 void loosen(Sequence& s, int z_um) {
     const Printer& p = s.printer();
     s.dwell(p.projector.delay_s);
-    if (p.store() == machine::Store::tower) {
+    if (p.has_carriage()) {
         s.move(Axis::carriage, p.carriage.print_um + p.carriage.shear_um, p.carriage.shear_speed_mm_s);
         s.move(Axis::carriage, p.carriage.print_um, p.carriage.shear_speed_mm_s);
     }

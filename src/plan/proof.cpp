@@ -230,14 +230,23 @@ private:
         return all;
     }
 
+    /// A device that is switched on gets what the printer file says.
+    [[nodiscard]] static Status check_value(const machine::Switch& device, const machine::Command& command) {
+        const auto own = machine::parse_command(device.on);
+        constexpr double full = 255;  // where no value is given
+        if (!own || own->value('S').value_or(full) == command.value('S').value_or(full)) return {};
+        return input_error("a switch is not set as the printer file says, {}", device.on);
+    }
+
     /// What runs can be stopped, and runs as hard as the printer file says.
     [[nodiscard]] Status check_switch(const machine::Command& command) const {
+        for (const machine::Switch& device : {printer_.hooks.magnet.coil, printer_.wall.fork}) {
+            if (machine::switched(device, command) != true) continue;
+            if (Status status = check_value(device, command); !status) return status;
+        }
         for (const machine::Switch& device : switches()) {
             if (machine::switched(device, command) != true) continue;
-            const auto own = machine::parse_command(device.on);
-            constexpr double full = 255;  // where no value is given
-            if (own && own->value('S').value_or(full) != command.value('S').value_or(full))
-                return input_error("a switch is not set as the printer file says, {}", device.on);
+            if (Status status = check_value(device, command); !status) return status;
             if (!stops(device)) return input_error("{} has no line \";@stop {}\" before it", device.on, device.off);
         }
         return {};
@@ -265,7 +274,7 @@ private:
     [[nodiscard]] Status check_end(const machine::Interlock& end) const {
         if (end.pump_runs()) return input_error("the program ends with the pump running");
         if (passage_.fans_run()) return input_error("the program ends with a fan running");
-        if (printer_.store() == machine::Store::tower) {
+        if (printer_.has_carriage()) {
             for (std::size_t v = 0; v < printer_.vats.size(); ++v) {
                 const int slot = printer_.vats[v].slot;
                 if (end.vat_in_slot(slot) != static_cast<int>(v))

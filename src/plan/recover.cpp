@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "machine/gcode.hpp"
+#include "plan/retriever.hpp"
 #include "plan/sequence.hpp"
 #include "plan/swap.hpp"
 
@@ -18,10 +19,12 @@ int slot_of(const Printer& p, int vat) {
     return p.vats[static_cast<std::size_t>(vat)].slot;
 }
 
-void wake(Sequence& s) {
+/// The outputs of a controller that has restarted are off; a vat before its magnet must be held again.
+void wake(Sequence& s, const Interlock& state) {
     for (const std::string& line : machine::preamble(s.printer())) s.command(line);
     s.pump(false);
     s.fans(false);
+    s.magnet(state.hooked_vat().has_value());
 }
 
 /// Off the vat's floor as gently as a layer is peeled, as far as it is known where that is.
@@ -37,7 +40,7 @@ void rise(Sequence& s, const Interlock& state) {
 /// The carriage of a tower comes out of wherever it is, with the vat if it has one. All axes are homed.
 void carriage_out(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
-    if (p.store() != Store::tower) return;
+    if (!p.has_carriage()) return;
     if (state.in_hooks_stroke()) {
         // The level above the tower: on the hooks the vat is at that level, off them it stays in its slot.
         for (int slot = 1; slot <= p.slot_count(); ++slot) {
@@ -57,7 +60,7 @@ Status home_all(Sequence& s, const Interlock& state) {
             return failure(
                 "the {} has no limit switch, and the controller has lost its position: nobody knows where it "
                 "stands",
-                machine::axis_name(axis));
+                machine::axis_name(axis, s.printer().store()));
         if (!by_hand) s.home(axis);
     }
     return {};
@@ -66,7 +69,10 @@ Status home_all(Sequence& s, const Interlock& state) {
 /// From a machine that is homed, with the platform clear of a part of `part_um`: the right vat under a clean part.
 void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wanted, int part_um) {
     const Printer& p = s.printer();
-    const std::optional<int> hooked = p.store() == Store::tower ? from.state.hooked_vat() : std::nullopt;
+    std::optional<int> hooked;
+    if (p.has_carriage()) hooked = from.state.hooked_vat();
+    if (const auto tray = from.state.tray_vat(); tray && !from.state.fork_out())
+        ride(s, put_trip(p, slot_of(p, *tray)));
     const bool stained = from.last_lit_vat >= 0 && from.last_lit_vat != wanted.value_or(-1);
     if (hooked) {
         meet_vat(s, slot_of(p, *hooked));
@@ -89,11 +95,12 @@ void approach(Sequence& s, int z_um) {
 /// A sequence that stands as the machine does, the platform clear of everything.
 Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
     if (!state.all_homed()) return failure("the axes must be homed first");
-    if (p.store() == Store::tower && state.position()[Axis::carriage] != p.carriage.print_um)
+    if (p.has_carriage() && state.position()[Axis::carriage] != p.carriage.print_um)
         return failure("the carriage must stand at the print position first");
     Sequence s(p);
     s.stand_at(state.position());
     s.command("G90");
+    clear_retriever(s, state);
     const int clear_um = p.clear_um(state.part_height_um());
     // The strokes of cleaning go up from where the platform is.
     if (state.position()[Axis::platform] < clear_um ||
@@ -105,6 +112,14 @@ Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
 }  // namespace
 
 Result<std::string> resume_program(const Interrupted& from, const Printer& printer) {
+    if (from.on_hooks && printer.hooks.magnet.present())
+        return failure(
+            "the controller restarted while the carriage was on its way with a vat on its magnet, which has let it go "
+            "without power: put the vat into its slot by hand, pull the carriage out, and start the print anew");
+    if (from.state.fork_out() && !from.state.all_homed())
+        return failure(
+            "the controller restarted while the retriever's fork was in the wall: pull it back by hand, with no vat "
+            "half on it, and start the print anew");
     if (from.on_hooks)
         return failure(
             "the controller restarted while the tower stood half-way on the hooks: moving would tear the vat. "
@@ -114,9 +129,12 @@ Result<std::string> resume_program(const Interrupted& from, const Printer& print
     Sequence s(printer);
     s.stand_at(from.state.position());
     s.comment("on with an interrupted print: up, home");
-    wake(s);
+    wake(s, from.state);
     rise(s, from.state);
-    if (from.state.all_homed()) carriage_out(s, from.state);
+    if (from.state.all_homed()) {
+        carriage_out(s, from.state);
+        if (from.state.fork_out()) clear_retriever(s, from.state);
+    }
     if (Status status = home_all(s, from.state); !status) return tl::unexpected(status.error());
     const int part_um = std::max(from.state.part_height_um(), from.finished ? 0 : from.target.part_height_um());
     s.comment("the right vat, and down");
@@ -155,7 +173,7 @@ Result<std::string> clean_program(const Interlock& state, const Printer& printer
         return input_error("{:g} s of cleaning: {} allows up to {:g} s", seconds, printer.name,
                            printer.limits.cleaning_s);
     if (printer.store() == Store::none) return failure("{} has nothing to clean with", printer.name);
-    if (printer.store() == Store::tower && state.hooked_vat()) return failure("the vat must be put away first");
+    if (printer.has_carriage() && state.hooked_vat()) return failure("the vat must be put away first");
     Result<Sequence> s = by_hand(state, printer);
     if (!s) return tl::unexpected(s.error());
     clean_part(*s, seconds);

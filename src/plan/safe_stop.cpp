@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "plan/retriever.hpp"
 #include "plan/sequence.hpp"
+#include "plan/swap.hpp"
 
 namespace pliant::plan {
 namespace {
@@ -27,15 +29,36 @@ int slot_before_carriage(const Interlock& state, const Printer& p) {
     return 0;
 }
 
+/// The retriever of a wall puts away what it has; for a vat under the platform it comes to the bay.
+void ready_retriever(Sequence& s, const Interlock& state) {
+    const Printer& p = s.printer();
+    const bool near = state.position()[Axis::carriage] > p.carriage.tower_um - p.carriage.back_off_um;
+    if (near) return;  // it stands at the bay, with an empty fork
+    clear_retriever(s, state);
+    if (state.hooked_vat()) meet_vat(s, 1);
+}
+
+/// The vat that an emptied carriage has left on the tray, or that stood there before it.
+void put_from_tray(Sequence& s, const Interlock& state) {
+    const Printer& p = s.printer();
+    const bool near = state.position()[Axis::carriage] > p.carriage.tower_um - p.carriage.back_off_um;
+    const auto vat = state.hooked_vat() ? state.hooked_vat() : near ? state.tray_vat() : std::nullopt;
+    if (vat) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
+}
+
 /// A vat on the hooks goes back into the slot that it came from: the tower has not moved since. An empty carriage only
 /// comes out.
 void empty_carriage(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
-    const int slot = slot_before_carriage(state, p);
+    const bool wall = p.store() == machine::Store::wall;
+    if (wall) ready_retriever(s, state);
+    const int slot = wall ? 1 : slot_before_carriage(state, p);
     if (state.hooked_vat()) s.move(Axis::carriage, p.carriage.tower_um);
     const bool in_tower = s.position()[Axis::carriage] == p.carriage.tower_um;
+    if (in_tower) s.magnet(false);
     if (in_tower && slot > 0) s.move(Axis::tower, p.level_um(slot) - p.hooks.travel_um, p.hooks.speed_mm_s);
     s.move(Axis::carriage, p.carriage.print_um);
+    if (wall) put_from_tray(s, state);
 }
 
 void switch_off(Sequence& s) {
@@ -53,7 +76,7 @@ std::string cancel_program(const Interlock& state, const Printer& printer) {
     if (!state.homed(Axis::platform)) return s.text();
     const int up_um = printer.axis(Axis::platform).home_um();
     s.move(Axis::platform, up_um);
-    if (printer.store() == machine::Store::tower && state.all_homed()) empty_carriage(s, state);
+    if (printer.has_carriage() && state.all_homed()) empty_carriage(s, state);
     s.fence();
     return s.text();
 }

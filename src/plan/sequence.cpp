@@ -94,11 +94,8 @@ void Sequence::move_to(const Position& to, double feed_mm_s) {
     if (profile.length_mm == 0) return;
     const double begin_s = seconds_.total;
     spend(profile.seconds());
-    for (const auto& [axis, device] : {std::pair{Axis::platform, Device::platform},
-                                       {Axis::carriage, Device::carriage},
-                                       {Axis::tower, Device::tower},
-                                       {Axis::table, Device::table}}) {
-        if (to[axis] != position_[axis]) note(device, begin_s, seconds_.total);
+    for (const Axis axis : {Axis::platform, Axis::carriage, Axis::tower, Axis::table}) {
+        if (to[axis] != position_[axis]) note(device_of(*printer_, axis), begin_s, seconds_.total);
     }
     if (!muted_) command(machine::write_move(*printer_, position_, to, profile.speed_mm_s));
     position_ = to;
@@ -128,6 +125,23 @@ void Sequence::fans(bool on) {
     fence();
     for (const machine::Switch& fan : printer_->fans) command(on ? fan.on : fan.off);
     note_switch(Device::fans, on, fans_on_s_);
+}
+
+void Sequence::magnet(bool holds) {
+    const machine::Magnet& magnet = printer_->hooks.magnet;
+    if (!magnet.present()) return;
+    const double seconds = holds ? magnet.engage_s : magnet.release_s;
+    fence();
+    command(holds ? magnet.coil.on : magnet.coil.off);
+    note(Device::magnet, seconds_.total, seconds_.total + seconds);
+    dwell(seconds);
+}
+
+void Sequence::fork(bool out) {
+    const machine::Wall& wall = printer_->wall;
+    fence();
+    command(out ? wall.fork.on : wall.fork.off);
+    note(Device::fork, seconds_.total, seconds_.total + wall.fork_s);
 }
 
 void Sequence::expose(const machine::Expose& expose) {

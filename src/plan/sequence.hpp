@@ -51,6 +51,10 @@ public:
     void pump(bool on);
     /// Switches all fans of the machine, in the same way.
     void fans(bool on);
+    /// Switches the magnet, if there is one, and waits until it holds or lets go.
+    void magnet(bool holds);
+    /// Puts the fork of a wall's retriever out, or back; who calls must wait `Wall::fork_s` before the next way.
+    void fork(bool out);
     void expose(const machine::Expose& expose);
 
     [[nodiscard]] const machine::Printer& printer() const { return *printer_; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "machine/motion.hpp"
+#include "plan/retriever.hpp"
 
 namespace pliant::plan {
 namespace {
@@ -25,53 +26,75 @@ int lowered_um(const Printer& p, int slot) {
     return p.level_um(slot) - p.hooks.travel_um;
 }
 
-/// Position after stroke i of n: out and up on odd strokes, back on even ones, the tower evenly on its way.
-Position stroke_end(const Printer& p, const Position& start, int tower_um, int i, int n) {
+/// Where the store goes meanwhile: the tower, or lift and rail of a retriever.
+struct StoreEnd {
+    int tower_um = 0, table_um = 0;
+};
+
+/// Position after stroke i of n: out and up on odd strokes, back on even ones, the store evenly on its way.
+Position stroke_end(const Printer& p, const Position& start, const StoreEnd& store, int i, int n) {
     Position end = start;
     if (i % 2 == 1) {
         end[Axis::carriage] -= p.cleaning.stroke_x_um;
         end[Axis::platform] += p.cleaning.stroke_z_um;
     }
-    const auto way = static_cast<long long>(tower_um - start[Axis::tower]);
-    end[Axis::tower] += static_cast<int>(way * i / n);
+    for (const auto& [axis, to_um] : {std::pair{Axis::tower, store.tower_um}, {Axis::table, store.table_um}}) {
+        const auto way = static_cast<long long>(to_um - start[axis]);
+        end[axis] += static_cast<int>(way * i / n);
+    }
     return end;
 }
 
 /// Feed along the path at which the carriage runs at cleaning speed; without one, the platform.
 double stroke_feed(const Printer& p, const Position& from, const Position& to) {
-    const Axis lead = p.store() == Store::tower ? Axis::carriage : Axis::platform;
+    const Axis lead = p.has_carriage() ? Axis::carriage : Axis::platform;
     const double way_mm = std::abs(to[lead] - from[lead]) / 1000.0;
     return way_mm > 0 ? p.cleaning.speed_mm_s * machine::profile(p, from, to, 0).length_mm / way_mm : 0;
 }
 
-double stroke_seconds(const Printer& p, const Position& start, int tower_um, int n) {
+double stroke_seconds(const Printer& p, const Position& start, const StoreEnd& store, int n) {
     double seconds = 0;
     Position at = start;
     for (int i = 1; i <= n; ++i) {
-        const Position next = stroke_end(p, start, tower_um, i, n);
+        const Position next = stroke_end(p, start, store, i, n);
         seconds += machine::move_seconds(p, at, next, stroke_feed(p, at, next));
         at = next;
     }
     return seconds;
 }
 
-/// As many pairs of strokes as the time allows; at least one pair, which also carries the tower.
-int stroke_count(const Printer& p, const Position& start, int tower_um, double seconds) {
-    int n = 2;
-    while (n + 2 <= most_strokes && stroke_seconds(p, start, tower_um, n + 2) <= seconds) n += 2;
-    return n;
-}
-
-/// Back and forth, at least `seconds` long, and the tower to `tower_um` meanwhile.
-void oscillate(Sequence& s, int tower_um, double seconds) {
+void make_strokes(Sequence& s, const StoreEnd& store, int n) {
     const Printer& p = s.printer();
     const Position start = s.position();
-    const int n = stroke_count(p, start, tower_um, seconds);
     for (int i = 1; i <= n; ++i) {
-        const Position end = stroke_end(p, start, tower_um, i, n);
+        const Position end = stroke_end(p, start, store, i, n);
         s.move_to(end, stroke_feed(p, s.position(), end));
     }
-    s.dwell(seconds - stroke_seconds(p, start, tower_um, n));
+}
+
+StoreEnd store_at(const Sequence& s) {
+    return {s.position()[Axis::tower], s.position()[Axis::table]};
+}
+
+/// Back and forth, at least `seconds` long, and the store to its end meanwhile: as many pairs of strokes as the time
+/// allows, at least one, then a rest.
+void oscillate(Sequence& s, const StoreEnd& store, double seconds) {
+    const Printer& p = s.printer();
+    const Position start = s.position();
+    int n = 2;
+    while (n + 2 <= most_strokes && stroke_seconds(p, start, store, n + 2) <= seconds) n += 2;
+    make_strokes(s, store, n);
+    s.dwell(seconds - stroke_seconds(p, start, store, n));
+}
+
+/// The same without a rest: pairs of strokes until `seconds` are over.
+void oscillate_through(Sequence& s, const StoreEnd& store, double seconds) {
+    const Printer& p = s.printer();
+    const Position start = s.position();
+    int n = 2;
+    while (n + 2 <= most_strokes && stroke_seconds(p, start, store, n) < seconds) n += 2;
+    make_strokes(s, store, n);
+    s.dwell(seconds - stroke_seconds(p, start, store, n));
 }
 
 void pump_off(Sequence& s) {
@@ -95,7 +118,8 @@ void dry_while(Sequence& s, Bring bring) {
     s.activity(Activity::move);
 }
 
-// --- towers --------------------------------------------------------------------------------------------------------
+// --- towers, and what a wall has in common with them
+// --------------------------------------------------------------------------------------------------------
 
 /// When, in seconds of a push, the brush comes under the platform and has passed it. It stands on the far wall of a vat
 /// that is as long as the way into the tower, in the middle of which the platform is.
@@ -118,9 +142,11 @@ void push_vat(Sequence& s) {
     s.move_to(in);
 }
 
-/// The tower lowers the vat off the hooks; meanwhile the platform rises from the brush to where it is clear.
-void lower_off_hooks(Sequence& s, int slot) {
+/// The tower lowers the vat off the hooks, or the magnet lets it go; the platform rises from the brush to where it is
+/// clear.
+void let_go(Sequence& s, int slot) {
     const Printer& p = s.printer();
+    s.magnet(false);
     Position to = s.position();
     const int way_um = std::abs(lowered_um(p, slot) - to[Axis::tower]);
     const int rise_um = p.clear_um(0) - p.push_um(0);
@@ -135,11 +161,12 @@ double push_away(Sequence& s, int slot) {
     s.activity(Activity::swap);
     s.comment(p.has_brush() ? "1 push the vat away, the brush wipes the part" : "1 push the vat away");
     push_vat(s);
-    s.comment("2 spray, lower the vat off the hooks");
+    s.comment(p.hooks.magnet.present() ? "2 spray, the magnet lets the vat go"
+                                       : "2 spray, lower the vat off the hooks");
     s.pump(true);
     s.activity(Activity::clean);
     const double since_s = s.seconds().total;
-    lower_off_hooks(s, slot);
+    let_go(s, slot);
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
     return since_s;
 }
@@ -148,11 +175,20 @@ double push_away(Sequence& s, int slot) {
 void spray(Sequence& s, int to_slot, double since_s, double spray_s, double rest_s) {
     const Printer& p = s.printer();
     s.comment("3 oscillate over the drain while the store brings the next slot");
-    if (!p.table.stations_um.empty()) table_to(s, p.station_um(to_slot));
-    oscillate(s, lowered_um(p, to_slot), spray_s - (s.seconds().total - since_s) - rest_s);
+    if (p.has_table()) table_to(s, p.station_um(to_slot));
+    oscillate(s, {lowered_um(p, to_slot), s.position()[Axis::table]}, spray_s - (s.seconds().total - since_s) - rest_s);
 }
 
-double hook_seconds(const Printer& p) {
+/// The next vat is latched: the tower raises it onto the hooks, or the magnet takes it.
+void take(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    s.move(Axis::tower, p.level_um(slot), p.hooks.speed_mm_s);
+    s.magnet(true);
+}
+
+/// What take() takes.
+double take_seconds(const Printer& p) {
+    if (p.hooks.magnet.present()) return p.hooks.magnet.engage_s;
     return machine::move_seconds(p, {}, {{0, 0, p.hooks.travel_um}}, p.hooks.speed_mm_s);
 }
 
@@ -162,20 +198,25 @@ double back_off_seconds(const Printer& p) {
 
 void load_from_tower(Sequence& s, int slot) {
     const Printer& p = s.printer();
-    if (!p.table.stations_um.empty()) table_to(s, p.station_um(slot));
+    if (p.has_table()) table_to(s, p.station_um(slot));
     s.move(Axis::tower, lowered_um(p, slot));
     s.move(Axis::carriage, p.carriage.tower_um);
-    s.move(Axis::tower, p.level_um(slot), p.hooks.speed_mm_s);
+    take(s, slot);
     s.move(Axis::carriage, p.carriage.print_um);
+}
+
+std::string_view step_4(const Printer& p) {
+    return p.hooks.magnet.present() ? "4 advance, the magnet takes the next vat"
+                                    : "4 advance, raise the next vat onto the hooks";
 }
 
 void swap_by_tower(Sequence& s, int from_slot, int to_slot, double spray_s) {
     const Printer& p = s.printer();
     const double since_s = push_away(s, from_slot);
-    spray(s, to_slot, since_s, spray_s, hook_seconds(p) + back_off_seconds(p));
-    s.comment("4 advance, raise the next vat onto the hooks");
+    spray(s, to_slot, since_s, spray_s, take_seconds(p) + back_off_seconds(p));
+    s.comment(step_4(p));
     s.move(Axis::carriage, p.carriage.tower_um);
-    s.move(Axis::tower, p.level_um(to_slot), p.hooks.speed_mm_s);
+    take(s, to_slot);
     pump_off(s);
     s.comment("5 pull it in, dry the part");
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
@@ -187,6 +228,99 @@ void store_in_tower(Sequence& s, int slot) {
     spray(s, slot, since_s, p.cleaning.spray_s, 0);
     pump_off(s);
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
+}
+
+// --- walls ---------------------------------------------------------------------------------------------------------
+
+/// A way of the retriever while the part is sprayed: in pieces, so that the spray can end on time.
+void ride_way_in_strokes(Sequence& s, const RetrieverStep& way, double end_s) {
+    constexpr double longest_s = 5;
+    const Printer& p = s.printer();
+    const Position start = s.position();
+    Position to = start;
+    to[Axis::tower] = way.lift_um;
+    to[Axis::table] = way.rail_um;
+    const double seconds = machine::move_seconds(p, start, to, way.feed_mm_s);
+    const int pieces = std::max(1, static_cast<int>(std::ceil(seconds / longest_s)));
+    for (int i = 1; i <= pieces && s.seconds().total < end_s; ++i) {
+        const auto part = [&](Axis axis) {
+            return start[axis] + static_cast<int>(static_cast<long long>(to[axis] - start[axis]) * i / pieces);
+        };
+        oscillate_through(s, {part(Axis::tower), part(Axis::table)}, seconds / pieces);
+    }
+}
+
+/// As much of the trip as begins before the spray ends at `end_s`; what is left of it.
+RetrieverTrip ride_in_strokes(Sequence& s, const RetrieverTrip& trip, double end_s) {
+    const Printer& p = s.printer();
+    auto step = trip.begin();
+    for (; step != trip.end() && s.seconds().total < end_s; ++step) {
+        if (step->kind == RetrieverStep::Kind::way) {
+            ride_way_in_strokes(s, *step, end_s);
+            const bool arrived =
+                s.position()[Axis::tower] == step->lift_um && s.position()[Axis::table] == step->rail_um;
+            if (!arrived) break;
+        } else {
+            s.fork(step->kind == RetrieverStep::Kind::fork_out);
+            oscillate_through(s, store_at(s), p.wall.fork_s);
+        }
+    }
+    return {step, trip.end()};
+}
+
+/// Step 3 for `spray_s` since `since_s`, less what step 4 takes if the retriever is done by then; what it still has to
+/// do otherwise, with the pump off.
+RetrieverTrip spray_by_wall(Sequence& s, const RetrieverTrip& trip, double since_s, double spray_s, double rest_s) {
+    s.comment("3 oscillate over the drain, the retriever is on its way");
+    const double end_s = since_s + spray_s;
+    RetrieverTrip left = ride_in_strokes(s, trip, end_s);
+    const double more_s = end_s - s.seconds().total - rest_s;
+    if (left.empty() && more_s > 0) oscillate(s, store_at(s), more_s);
+    if (!left.empty()) pump_off(s);
+    return left;
+}
+
+void load_from_wall(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    ride(s, fetch_trip(p, slot));
+    s.move(Axis::carriage, p.carriage.tower_um);
+    take(s, slot);
+    s.move(Axis::carriage, p.carriage.print_um);
+}
+
+void swap_by_wall(Sequence& s, int from_slot, int to_slot, double spray_s) {
+    const Printer& p = s.printer();
+    const double since_s = push_away(s, from_slot);
+    RetrieverTrip trip = put_trip(p, from_slot);
+    const RetrieverTrip fetch = fetch_trip(p, to_slot);
+    trip.insert(trip.end(), fetch.begin(), fetch.end());
+    const RetrieverTrip left = spray_by_wall(s, trip, since_s, spray_s, take_seconds(p) + back_off_seconds(p));
+    const auto bring = [&] {
+        ride(s, left);
+        s.comment(step_4(p));
+        s.move(Axis::carriage, p.carriage.tower_um);
+        take(s, to_slot);
+    };
+    if (left.empty()) {
+        bring();
+        pump_off(s);
+    }
+    dry_while(s, [&] {
+        if (!left.empty()) bring();
+        s.comment("5 pull it in, dry the part");
+        s.move(Axis::carriage, p.carriage.print_um);
+    });
+}
+
+void store_in_wall(Sequence& s, int slot) {
+    const Printer& p = s.printer();
+    const double since_s = push_away(s, slot);
+    const RetrieverTrip left = spray_by_wall(s, put_trip(p, slot), since_s, p.cleaning.spray_s, 0);
+    if (left.empty()) pump_off(s);
+    dry_while(s, [&] {
+        ride(s, left);
+        s.move(Axis::carriage, p.carriage.print_um);
+    });
 }
 
 // --- tables --------------------------------------------------------------------------------------------------------
@@ -204,7 +338,7 @@ void clean_on_table(Sequence& s, double seconds) {
     s.pump(true);
     s.activity(Activity::clean);
     if (p.cleaning.stroke_z_um > 0)
-        oscillate(s, s.position()[Axis::tower], seconds);
+        oscillate(s, store_at(s), seconds);
     else
         s.dwell(seconds);
     pump_off(s);
@@ -224,6 +358,7 @@ void load_vat(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.activity(Activity::swap);
     if (p.store() == Store::tower) load_from_tower(s, slot);
+    if (p.store() == Store::wall) load_from_wall(s, slot);
     if (p.store() == Store::table) table_to(s, p.station_um(slot));
     s.activity(Activity::move);
 }
@@ -232,12 +367,14 @@ void swap_vat(Sequence& s, int from_slot, int to_slot) {
     const Printer& p = s.printer();
     const double spray_s = p.cleaning_s(vat_of(p, from_slot), vat_of(p, to_slot));
     if (p.store() == Store::tower) swap_by_tower(s, from_slot, to_slot, spray_s);
+    if (p.store() == Store::wall) swap_by_wall(s, from_slot, to_slot, spray_s);
     if (p.store() == Store::table) swap_on_table(s, to_slot, spray_s);
 }
 
 void store_vat(Sequence& s, int slot) {
     const Printer& p = s.printer();
     if (p.store() == Store::tower) store_in_tower(s, slot);
+    if (p.store() == Store::wall) store_in_wall(s, slot);
     if (p.store() == Store::table) {
         clean_on_table(s, p.cleaning.spray_s);
         dry_while(s, [&] { table_to(s, p.station_um(slot)); });
@@ -251,21 +388,21 @@ void clean_part(Sequence& s, double seconds) {
         clean_on_table(s, seconds);
         dry_while(s, [&] { s.move(Axis::table, table_um); });
     }
-    if (p.store() != Store::tower) return;
+    if (!p.has_carriage()) return;
     s.activity(Activity::swap);
     s.comment("clean the part over the drain");
     s.move(Axis::carriage, p.carriage.tower_um - p.carriage.back_off_um);
     s.pump(true);
     s.activity(Activity::clean);
-    oscillate(s, s.position()[Axis::tower], seconds);
+    oscillate(s, store_at(s), seconds);
     pump_off(s);
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
 }
 
 void meet_vat(Sequence& s, int slot) {
     const Printer& p = s.printer();
-    if (p.store() != Store::tower) return;
-    if (!p.table.stations_um.empty()) table_to(s, p.station_um(slot));
+    if (!p.has_carriage()) return;
+    if (p.has_table()) table_to(s, p.station_um(slot));
     s.move(Axis::tower, p.level_um(slot));
 }
 
@@ -274,7 +411,7 @@ Sequence standing_at(const machine::Printer& printer, int slot) {
     s.mute();
     Position at;
     at[Axis::platform] = printer.push_um(0);
-    if (printer.store() == Store::tower) {
+    if (printer.has_carriage()) {
         at[Axis::carriage] = printer.carriage.print_um;
         at[Axis::tower] = printer.level_um(slot);
     }

@@ -10,7 +10,14 @@
 //   5  the vat is pulled in while the fans dry the part
 //
 // The spray lasts from step 2 to step 4: only so do the reported parts (24 + 3 + 15 + 24 s) give the reported 62 to
-// 63 s. A table: it turns or shifts to the cleaning station, the platform lowers the part into it and oscillates, rises
+// 63 s. A magnet is switched instead of the strokes of the hooks in steps 2 and 4, and the tower goes straight from
+// level to level.
+//
+// A wall: the same, but in step 3 the retriever puts the vat into its place, takes the next one out of its own and
+// brings it to the bay. That begins with the spray; where it takes longer the spray ends after its time, and the part
+// dries until the vat comes.
+//
+// A table: it turns or shifts to the cleaning station, the platform lowers the part into it and oscillates, rises
 // again, and the table brings the next vat. A single vat: nothing ever moves.
 //
 // All of it needs the platform clear of the vat before; to put a vat away that has a brush, at Printer::push_um() of
@@ -34,7 +41,8 @@ void store_vat(Sequence& sequence, int slot);
 /// back at the print position afterwards. Nothing on a machine with a single vat.
 void clean_part(Sequence& sequence, double seconds);
 
-/// The vat of `slot` lies under the platform and the tower stands anywhere: brings the tower level with the slot.
+/// The vat of `slot` lies under the platform and the tower stands anywhere: brings the tower level with the slot; of a
+/// wall the empty tray to the bay.
 void meet_vat(Sequence& sequence, int slot);
 
 /// A muted sequence that stands with the vat of `slot` under a platform that is ready for it to be put away.

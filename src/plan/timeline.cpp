@@ -26,12 +26,12 @@ std::vector<std::pair<int, int>> changes(const Plan& plan) {
 
 std::vector<Device> devices_of(const machine::Printer& printer) {
     std::vector<Device> devices;
-    for (const auto& [axis, device] : {std::pair{machine::Axis::platform, Device::platform},
-                                       {machine::Axis::carriage, Device::carriage},
-                                       {machine::Axis::tower, Device::tower},
-                                       {machine::Axis::table, Device::table}}) {
-        if (printer.axis(axis).present()) devices.push_back(device);
+    using machine::Axis;
+    for (const Axis axis : {Axis::platform, Axis::carriage, Axis::tower, Axis::table}) {
+        if (printer.axis(axis).present()) devices.push_back(device_of(printer, axis));
     }
+    if (printer.store() == machine::Store::wall) devices.push_back(Device::fork);
+    if (printer.hooks.magnet.present()) devices.push_back(Device::magnet);
     if (printer.has_brush()) devices.push_back(Device::brush);
     if (!printer.pump.on.empty()) devices.push_back(Device::pump);
     if (!printer.fans.empty()) devices.push_back(Device::fans);
@@ -40,9 +40,25 @@ std::vector<Device> devices_of(const machine::Printer& printer) {
 
 }  // namespace
 
+Device device_of(const machine::Printer& printer, machine::Axis axis) {
+    const bool wall = printer.store() == machine::Store::wall;
+    switch (axis) {
+        case machine::Axis::carriage:
+            return Device::carriage;
+        case machine::Axis::tower:
+            return wall ? Device::lift : Device::tower;
+        case machine::Axis::table:
+            return wall ? Device::rail : Device::table;
+        case machine::Axis::platform:
+            break;
+    }
+    return Device::platform;
+}
+
 std::string_view device_name(Device device) {
     constexpr std::array<std::string_view, device_count> names = {"platform", "cleaning vat", "tower", "table",
-                                                                  "spray",    "fans",         "light", "brush"};
+                                                                  "spray",    "fans",         "light", "brush",
+                                                                  "lift",     "rail",         "fork",  "magnet"};
     return names[static_cast<std::size_t>(device)];
 }
 

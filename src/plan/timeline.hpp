@@ -11,8 +11,11 @@ namespace pliant::plan {
 
 struct Plan;
 
-enum class Device { platform, carriage, tower, table, pump, fans, light, brush };
-inline constexpr int device_count = 8;
+enum class Device { platform, carriage, tower, table, pump, fans, light, brush, lift, rail, fork, magnet };
+inline constexpr int device_count = 12;
+
+/// What drives an axis: of a wall's retriever lift and rail.
+[[nodiscard]] Device device_of(const machine::Printer& printer, machine::Axis axis);
 
 /// What a person calls it.
 [[nodiscard]] std::string_view device_name(Device device);

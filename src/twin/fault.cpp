@@ -10,7 +10,7 @@ namespace {
 
 using Kind = Fault::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 18> kinds = {{{"corrupt-line", Kind::corrupt_byte},
+constexpr std::array<std::pair<std::string_view, Kind>, 20> kinds = {{{"corrupt-line", Kind::corrupt_byte},
                                                                       {"lose-line", Kind::lose_line},
                                                                       {"lose-ok", Kind::lose_ok},
                                                                       {"lose-resend", Kind::lose_resend},
@@ -27,7 +27,9 @@ constexpr std::array<std::pair<std::string_view, Kind>, 18> kinds = {{{"corrupt-
                                                                       {"dark-projector", Kind::dark_projector},
                                                                       {"door-open", Kind::door_open},
                                                                       {"stuck-switch", Kind::stuck_switch},
-                                                                      {"dead-switch", Kind::dead_switch}}};
+                                                                      {"dead-switch", Kind::dead_switch},
+                                                                      {"weak-magnet", Kind::weak_magnet},
+                                                                      {"stuck-fork", Kind::stuck_fork}}};
 
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {

@@ -32,6 +32,8 @@ struct Fault {
         door_open,     ///< half a second into the n-th light somebody opens the door, for `amount` seconds (default 30)
         stuck_switch,  ///< the n-th limit switch of the printer file is always pressed
         dead_switch,   ///< the n-th limit switch of the printer file is never pressed
+        weak_magnet,   ///< the n-th vat that the magnet should take stays where it is
+        stuck_fork,    ///< the n-th time that the retriever's fork should go out it stays in
     };
     Kind kind = Kind::corrupt_byte;
     int n = 1;

@@ -25,7 +25,7 @@ machine::Position unknown_start(const machine::Printer& printer) {
         start[axis] = printer.axis(axis).min_um + (printer.axis(axis).max_um - printer.axis(axis).min_um) / 2;
     }
     start[machine::Axis::carriage] = printer.carriage.print_um;
-    start[machine::Axis::table] = printer.table.stations_um.empty() ? 0 : printer.station_um(1);
+    start[machine::Axis::table] = printer.has_table() ? printer.station_um(1) : 0;
     return start;
 }
 
@@ -183,6 +183,7 @@ void Twin::let_go() {
     lets_go_s_.reset();
     outputs_off();
     log_.power_cut = printer_.emergency_line.signal == machine::EmergencyLine::Signal::controller;
+    drop_vat();
     motors_.release(now_s_);
 }
 
@@ -224,6 +225,7 @@ void Twin::reset() {
     note_push();
     lets_go_s_.reset();
     held_until_s_ = 0;
+    drop_vat();
     motors_.release(now_s_);
     reader_.reset();
     buffer_.clear();

@@ -22,6 +22,7 @@
 #include "machine/brush.hpp"
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
+#include "machine/settling.hpp"
 #include "twin/cure.hpp"
 #include "twin/fault.hpp"
 #include "twin/fluids.hpp"
@@ -168,7 +169,12 @@ private:
     void say_soft_endstops();
     void say_switches();
     [[nodiscard]] bool is_pressed(const machine::LimitSwitch& limit) const;
+    [[nodiscard]] int slot_of(int vat) const { return printer_.vats[static_cast<std::size_t>(vat)].slot; }
     void spray_until(double at_s);
+    void switch_pump(bool on, double at_s);
+    void switch_latch(const machine::Command& command, double at_s);
+    void miss_vat(const std::optional<int>& tray);
+    void drop_vat();
     void switch_fans(const machine::Command& command, double at_s);
     void open_door();
     void note_vat(std::optional<int> before);
@@ -223,8 +229,12 @@ private:
 
     std::array<int, machine::axis_count> slip_um_{};  ///< how far each axis is from where the controller thinks
     int stuck_vat_ = -1;                              ///< on hooks that do not let go
-    int missed_vat_ = -1;                             ///< on hooks that did not catch it
-    int part_vat_ = -1;                               ///< whose resin clings to the part
+    int missed_vat_ = -1;                             ///< on hooks that did not catch it, or fallen off them
+    int left_vat_ = -1;                               ///< stays in the wall, though the retriever thinks it has it
+    bool fork_stuck_ = false;                         ///< stays in the next time that a vat changes its place
+    int takes_ = 0, reaches_ = 0;                     ///< of the magnet; of the fork, out
+    machine::Settling settling_{printer_};
+    int part_vat_ = -1;  ///< whose resin clings to the part
     double residue_ = 0;
     machine::BrushWatch brush_{printer_};
     bool pump_works_ = true;

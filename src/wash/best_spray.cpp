@@ -17,7 +17,7 @@ using machine::Printer;
 /// How far the machine may oscillate: the interlocks' and the printer file's limits.
 Strokes most_strokes(const Printer& p, double part_mm) {
     Strokes most;
-    if (p.store() == machine::Store::tower) {
+    if (p.has_carriage()) {
         const machine::Carriage& c = p.carriage;
         most.x_um = c.tower_um - c.print_um - c.shear_um - c.back_off_um - 1;
     }
@@ -33,17 +33,19 @@ double least_seconds(const Printer& p, const Strokes& strokes) {
     machine::Position far;
     far[Axis::carriage] = strokes.x_um;
     far[Axis::platform] = strokes.z_um;
-    const double lead_um = p.store() == machine::Store::tower ? strokes.x_um : strokes.z_um;
-    if (p.store() == machine::Store::tower) far[Axis::tower] = p.tower.pitch_um / 2;
+    const double lead_um = p.has_carriage() ? strokes.x_um : strokes.z_um;
+    if (p.has_carriage()) far[Axis::tower] = p.tower.pitch_um / 2;
     const double path_um = std::hypot(strokes.x_um, strokes.z_um, far[Axis::tower]);
     const double feed = lead_um > 0 ? p.cleaning.speed_mm_s * path_um / lead_um : 0;
     const double pair_s = 2 * machine::move_seconds(p, {}, far, feed);
-    if (p.store() != machine::Store::tower) return pair_s;
+    if (!p.has_carriage()) return pair_s;
     machine::Position hooks, back;
     hooks[Axis::tower] = p.hooks.travel_um;
     back[Axis::carriage] = p.carriage.back_off_um;
-    return pair_s + 2 * machine::move_seconds(p, {}, hooks, p.hooks.speed_mm_s) +
-           2 * machine::move_seconds(p, {}, back, 0);
+    const machine::Magnet& magnet = p.hooks.magnet;
+    const double latch_s = magnet.present() ? magnet.release_s + magnet.engage_s
+                                            : 2 * machine::move_seconds(p, {}, hooks, p.hooks.speed_mm_s);
+    return pair_s + latch_s + 2 * machine::move_seconds(p, {}, back, 0);
 }
 
 class Search {
@@ -99,7 +101,7 @@ Result<BestSpray> best_spray(const PartCells& part, const Printer& printer, doub
     const Strokes most = most_strokes(printer, part.height_mm());
     Search search(part, printer, wanted);
     constexpr int coarse = 5;
-    const int least_x_um = printer.store() == machine::Store::tower ? 1000 : 0;
+    const int least_x_um = printer.has_carriage() ? 1000 : 0;
     for (int i = 0; i <= coarse; ++i) {
         for (int k = 0; k <= coarse; ++k)
             search.attempt({std::max(least_x_um, rounded_um(0.999 * most.x_um * i / coarse)),

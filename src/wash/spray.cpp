@@ -27,7 +27,7 @@ struct Head {
 std::vector<Head> heads_at(const Printer& p, double part_mm, const Strokes& strokes, double share) {
     double flow = 0;
     for (const machine::Sprinkler& s : p.sprinklers) flow += s.flow;
-    const bool tower = p.store() == machine::Store::tower;
+    const bool tower = p.has_carriage();
     const double back_mm = tower ? (p.carriage.back_off_um + share * strokes.x_um) / 1000 : 0;
     const double hang_um = tower ? p.clear_um(0) : p.table.bath_gap_um;
     const double platform_mm = part_mm + (hang_um + share * strokes.z_um) / 1000;
@@ -92,7 +92,7 @@ double rate_of(const PartCells& part, const Face& face, const Head& head) {
 }  // namespace
 
 Strokes strokes_of(const Printer& printer) {
-    return {printer.store() == machine::Store::tower ? printer.cleaning.stroke_x_um : 0, printer.cleaning.stroke_z_um};
+    return {printer.has_carriage() ? printer.cleaning.stroke_x_um : 0, printer.cleaning.stroke_z_um};
 }
 
 std::vector<double> spray_rates(const PartCells& part, const std::vector<Face>& faces, const Printer& printer,
