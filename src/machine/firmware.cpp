@@ -64,14 +64,15 @@ Status check_drives(const Printer& printer) {
         if (!axis.present()) continue;
         motors += axis.drive.motors;
         if (axis.drive.motors > 1 && axis.letter != 'Z')
-            return input_error("axis.{}.motors: only Z may have two here", axis_name(a));
+            return input_error("axis.{}.motors: only Z may have two here", axis_name(a, printer.store()));
         if (!axis.drive.known())
-            return input_error("axis.{}: steps are not known; give per_turn, microsteps and gear", axis_name(a));
+            return input_error("axis.{}: steps are not known; give per_turn, microsteps and gear",
+                               axis_name(a, printer.store()));
         const double steps_s = axis.speed_mm_s * axis.drive.steps_per_mm();
         if (steps_s > most_steps_s) {
             return input_error(
                 "axis.{}: {:.0f} steps a second at full speed; an 8-bit board makes {:.0f}: fewer microsteps",
-                axis_name(a), steps_s, most_steps_s);
+                axis_name(a, printer.store()), steps_s, most_steps_s);
         }
     }
     if (motors > ramps_outputs) return input_error("{} motors: RAMPS 1.4 has {} outputs", motors, ramps_outputs);
@@ -83,6 +84,7 @@ public:
     void add(std::string name, std::string value, std::string reason = "") {
         settings_.push_back({std::move(name), std::move(value), std::move(reason)});
     }
+    [[nodiscard]] const std::vector<FirmwareSetting>& settings() const { return settings_; }
     std::vector<FirmwareSetting> take() { return std::move(settings_); }
 
 private:
@@ -97,6 +99,17 @@ void add_third_output(List& list, const Printer& printer) {
         const auto command = parse_command(device.on);
         if (command && command->is('M', 106) && command->value('P') == 2.0)
             return list.add("FAN2_PIN", "10", fmt::format("{}: D10, free without an extruder", device.on));
+    }
+}
+
+/// M42 writes to a pin only where the firmware is built for it.
+void add_pin_control(List& list, const Printer& printer) {
+    std::vector<Switch> devices = printer.fans;
+    devices.insert(devices.end(), {printer.pump, printer.hooks.magnet.coil, printer.wall.fork});
+    for (const Switch& device : devices) {
+        const auto command = parse_command(device.on);
+        if (command && command->is('M', 42))
+            return list.add("DIRECT_PIN_CONTROL", "on", fmt::format("{}: M42 switches that pin", device.on));
     }
 }
 
@@ -384,6 +397,24 @@ void add_motion(List& list, const std::vector<Slot>& slots) {
     list.add("HOMING_BUMP_DIVISOR", row(slots, 4, [](const AxisSpec&) { return 4.0; }));
 }
 
+/// A pin that M42 writes to must be nobody else's: Marlin refuses to write to one that it uses.
+Status check_free_pins(const List& list, const Printer& printer) {
+    struct Device {
+        const char* name;
+        const Switch* device;
+    };
+    for (const Device& d : {Device{"hooks", &printer.hooks.magnet.coil}, Device{"wall.fork", &printer.wall.fork}}) {
+        const auto command = parse_command(d.device->on);
+        if (!command || !command->is('M', 42)) continue;
+        const std::string pin = fmt::format("{:g}", command->value('P').value_or(0));
+        for (const FirmwareSetting& s : list.settings()) {
+            if (s.name.ends_with("_PIN") && s.value == pin)
+                return input_error("{}: \"{}\": that pin is {} already", d.name, d.device->on, s.name);
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<std::vector<FirmwareSetting>> firmware_settings(const Printer& printer) {
@@ -399,6 +430,8 @@ Result<std::vector<FirmwareSetting>> firmware_settings(const Printer& printer) {
     if (Status status = add_motors(list, *slots); !status) return tl::unexpected(status.error());
     if (Status status = add_switches(list, *slots, printer); !status) return tl::unexpected(status.error());
     add_emergency_line(list, printer);
+    add_pin_control(list, printer);
+    if (Status status = check_free_pins(list, printer); !status) return tl::unexpected(status.error());
     add_travel(list, *slots);
     add_motion(list, *slots);
     return list.take();

@@ -185,3 +185,26 @@ TEST_CASE("what cannot be built says why") {
     motors.axes[static_cast<std::size_t>(Axis::platform)].drive.motors = 2;  // five in all, but Marlin keeps a Y
     CHECK(firmware_settings(motors).error().message.find("no free socket") != std::string::npos);
 }
+
+TEST_CASE("the list of a machine with a magnet or a fork lets M42 write to their pin, which must be free") {
+    for (const char* name : {"tower_magnet", "wall"}) {
+        Printer printer = load_printer(std::string("examples/printers/") + name + ".toml").value();
+        for (const MarlinRelease release : {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3}) {
+            printer.controller.firmware = release;
+            const auto list = firmware_settings(printer);
+            REQUIRE_MESSAGE(list, (list ? "" : list.error().message));
+            const auto problems = test::marlin_problems(*list, release);
+            CHECK_MESSAGE(problems.empty(), (problems.empty() ? "" : problems.front()));
+            CHECK(std::count_if(list->begin(), list->end(), [](const FirmwareSetting& s) {
+                      return s.name == "DIRECT_PIN_CONTROL" && s.value == "on";
+                  }) == 1);
+        }
+        Switch& device = printer.hooks.magnet.present() ? printer.hooks.magnet.coil : printer.wall.fork;
+        device = {"M42 P26 S255", "M42 P26 S0"};
+        const auto taken = firmware_settings(printer);
+        REQUIRE_FALSE(taken);
+        CHECK(taken.error().message.find("that pin is ") != std::string::npos);
+    }
+    const auto hooks = firmware_settings(load_printer("examples/printers/tower.toml").value()).value();
+    CHECK(std::none_of(hooks.begin(), hooks.end(), [](const auto& s) { return s.name == "DIRECT_PIN_CONTROL"; }));
+}

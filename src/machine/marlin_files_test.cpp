@@ -131,3 +131,68 @@ TEST_CASE("a vendor's configuration is told by its author") {
     const auto settings = firmware_settings(tower8(MarlinRelease::v2_1_2)).value();
     CHECK(configure_marlin(settings, MarlinRelease::v2_1_2, files[0], files[1])->author == "\"(A Vendor, Model 3)\"");
 }
+
+TEST_CASE("settings in all the shapes that Marlin's own files give them") {
+    // In our own words and numbers; read beside the files of 2.1.1: guarded by #ifndef, behind a branch of another
+    // setting, in three branches, redefined for a kit, named in a comment, with one that goes on, as another's value.
+    const char* basic =
+        "/**\n * An example: #define BAUDRATE 9600\n */\n#pragma once\n#define CONFIGURATION_H_VERSION 02010100\n"
+        "#ifndef MOTHERBOARD\n  #define MOTHERBOARD BOARD_SOME\n#endif\n"
+        "#define BAUDRATE 250000\n//#define BAUDRATE_2 250000   // overrides BAUDRATE\n"
+        "//#define CUSTOM_MACHINE_NAME \"A printer\"\n"
+        "#ifdef I_DRIVER_TYPE\n  #define AXIS4_NAME 'A' // :['A', 'B']\n  #define AXIS4_ROTATES\n#endif\n"
+        "#if ENABLED(PSU_CONTROL)\n  #define PSU_ACTIVE_STATE LOW      // or 'HIGH'\n"
+        "  //#define PSU_DEFAULT_OFF               // not at once\n#endif\n"
+        "#define X_BED_SIZE 200\n#define X_MAX_POS X_BED_SIZE\n//#define I_MAX_POS 50\n"
+        "//#define NO_MOTION_BEFORE_HOMING // Also see HOME_AFTER_DEACTIVATE\n"
+        "                                // for more safety.\n"
+        "#define HOMING_FEEDRATE_MM_M { (50*60), (50*60), (4*60) }\n#define TEMP_SENSOR_BED 1\n";
+    const char* advanced =
+        "#pragma once\n#define CONFIGURATION_ADV_H_VERSION 02010100\n"
+        "#if ENABLED(SOME_KIT)\n  #undef TEMP_SENSOR_BED\n  #define TEMP_SENSOR_BED 70\n#endif\n"
+        "#if BOTH(CARD, STEPS)\n  #define BLOCK_BUFFER_SIZE  8\n#elif ENABLED(CARD)\n  #define BLOCK_BUFFER_SIZE 32\n"
+        "#else\n  #define BLOCK_BUFFER_SIZE 16\n#endif\n"
+        "//#define RX_BUFFER_SIZE 1024\n#if RX_BUFFER_SIZE >= 1024\n  //#define SERIAL_XON_XOFF\n#endif\n"
+        "//\n// M42 writes to pins\n//\n//#define DIRECT_PIN_CONTROL\n"
+        "#define SLOWDOWN\n#if ENABLED(SLOWDOWN)\n  #define SLOWDOWN_DIVISOR 2\n#endif\n";
+    const std::vector<FirmwareSetting> settings = {{"MOTHERBOARD", "BOARD_RAMPS_14_EFF", ""},
+                                                   {"BAUDRATE", "115200", ""},
+                                                   {"CUSTOM_MACHINE_NAME", "\"tower\"", ""},
+                                                   {"AXIS4_NAME", "'B'", ""},
+                                                   {"AXIS4_ROTATES", "off", ""},
+                                                   {"PSU_ACTIVE_STATE", "HIGH", ""},
+                                                   {"PSU_DEFAULT_OFF", "off", ""},
+                                                   {"X_MAX_POS", "358", ""},
+                                                   {"I_MAX_POS", "1460", ""},
+                                                   {"NO_MOTION_BEFORE_HOMING", "on", ""},
+                                                   {"HOMING_FEEDRATE_MM_M", "{ 480, 1200, 600, 1200 }", ""},
+                                                   {"TEMP_SENSOR_BED", "0", ""},
+                                                   {"BLOCK_BUFFER_SIZE", "16", ""},
+                                                   {"RX_BUFFER_SIZE", "128", ""},
+                                                   {"DIRECT_PIN_CONTROL", "on", ""},
+                                                   {"SLOWDOWN", "off", ""}};
+    const auto made = configure_marlin(settings, MarlinRelease::v2_1_1, {"a", basic}, {"b", advanced});
+    REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+    CHECK(made->configuration ==
+          "/**\n * An example: #define BAUDRATE 9600\n */\n#pragma once\n#define CONFIGURATION_H_VERSION 02010100\n"
+          "#ifndef MOTHERBOARD\n  #define MOTHERBOARD BOARD_RAMPS_14_EFF\n#endif\n"
+          "#define BAUDRATE 115200\n//#define BAUDRATE_2 250000   // overrides BAUDRATE\n"
+          "#define CUSTOM_MACHINE_NAME \"tower\"\n"
+          "#ifdef I_DRIVER_TYPE\n  #define AXIS4_NAME 'B' // :['A', 'B']\n  //#define AXIS4_ROTATES\n#endif\n"
+          "#if ENABLED(PSU_CONTROL)\n  #define PSU_ACTIVE_STATE HIGH      // or 'HIGH'\n"
+          "  //#define PSU_DEFAULT_OFF               // not at once\n#endif\n"
+          "#define X_BED_SIZE 200\n#define X_MAX_POS 358\n#define I_MAX_POS 1460\n"
+          "#define NO_MOTION_BEFORE_HOMING // Also see HOME_AFTER_DEACTIVATE\n"
+          "                                // for more safety.\n"
+          "#define HOMING_FEEDRATE_MM_M { 480, 1200, 600, 1200 }\n#define TEMP_SENSOR_BED 0\n");
+    CHECK(
+        made->configuration_adv ==
+        "#pragma once\n#define CONFIGURATION_ADV_H_VERSION 02010100\n"
+        "#if ENABLED(SOME_KIT)\n  #undef TEMP_SENSOR_BED\n  #define TEMP_SENSOR_BED 0\n#endif\n"
+        "#if BOTH(CARD, STEPS)\n  #define BLOCK_BUFFER_SIZE  16\n#elif ENABLED(CARD)\n  #define BLOCK_BUFFER_SIZE 16\n"
+        "#else\n  #define BLOCK_BUFFER_SIZE 16\n#endif\n"
+        "#define RX_BUFFER_SIZE 128\n#if RX_BUFFER_SIZE >= 1024\n  //#define SERIAL_XON_XOFF\n#endif\n"
+        "//\n// M42 writes to pins\n//\n#define DIRECT_PIN_CONTROL\n"
+        "//#define SLOWDOWN\n#if ENABLED(SLOWDOWN)\n  #define SLOWDOWN_DIVISOR 2\n#endif\n");
+    CHECK(made->added == 0);
+}

@@ -32,7 +32,7 @@ inline std::set<std::string> marlin_names(MarlinRelease release) {
         // Configuration_adv.h
         "HOMING_BUMP_MM", "HOMING_BUMP_DIVISOR", "AXIS_RELATIVE_MODES", "SLOWDOWN", "USE_WATCHDOG", "BLOCK_BUFFER_SIZE",
         "BUFSIZE", "RX_BUFFER_SIZE", "EMERGENCY_PARSER", "ADVANCED_OK", "HOST_ACTION_COMMANDS",
-        "EXTENDED_CAPABILITIES_REPORT",
+        "EXTENDED_CAPABILITIES_REPORT", "DIRECT_PIN_CONTROL",
         // pins
         "FAN2_PIN", "PS_ON_PIN"};
     const bool newer = release == MarlinRelease::v2_1_3;
