@@ -283,7 +283,8 @@ TEST_CASE("a job in resins that the printer does not hold prints once the vats a
 }
 
 TEST_CASE("printed = drawn on every machine that is shipped") {
-    for (const char* name : {"tower", "tower8", "two_towers", "carousel", "rotary", "linear", "single"}) {
+    for (const char* name :
+         {"tower", "tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear", "single"}) {
         INFO(std::string(name));
         Print p;
         p.printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();

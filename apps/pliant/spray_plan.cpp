@@ -10,6 +10,7 @@
 #include "report/wash_picture.hpp"
 #include "twin/runs.hpp"
 #include "twin/wet_part.hpp"
+#include "wash/run_off.hpp"
 
 namespace pliant::app {
 namespace {
@@ -59,7 +60,7 @@ Result<std::optional<SprayResult>> look_at_spray(const SprayOrder& order, const 
     result.strokes = wash::strokes_of(printer);
     result.seconds = printer.cleaning.spray_s;
     const wash::Cleanness c =
-        wash::cleanness(faces, wash::spray_rates(*part, faces, printer, result.strokes), result.seconds);
+        wash::cleanness(faces, wash::washed_rates(*part, faces, printer, result.strokes), result.seconds);
     result.removed = c.removed;
     result.unseen = c.unseen;
     if (!order.picture_file.empty()) {
@@ -89,7 +90,7 @@ std::string with_spray(const std::string& plan_json, const std::optional<SprayRe
 std::string spray_text(const std::optional<SprayResult>& spray) {
     if (!spray) return "";
     std::string text =
-        fmt::format("  {:<10}{:>8.1f} %   of the film comes off; {:.1f} % of the surface no jet reaches\n", "spray",
+        fmt::format("  {:<10}{:>8.1f} %   of the film comes off; {:.1f} % of the surface nothing reaches\n", "spray",
                     100 * spray->removed, 100 * spray->unseen);
     if (!spray->now_ml) return text;
     text += fmt::format("  {:<10}{:>7.1f} ml   of solution for one cleaning, {:.1f} ml before; in the printer file:\n",

@@ -177,9 +177,10 @@ TEST_CASE("resin that is washed off and solution that is used follow from the nu
     const Plan plan = make_plan(job, printer).value();
     CHECK((brushed.brushed_ml + brushed.waste_ml) / plan.waste_ml == doctest::Approx(1));
     CHECK(plan.brushed_ml == 0);
-    // Two swaps and the cleaning at the end: 20 ml each; 200 mm^2 under a film of 60 um each.
+    // Two swaps and the cleaning at the end: 20 ml each; a film of 60 um on the lower end: 100 mm^2 while only one
+    // material of the first layer is there, and 200.
     CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
-    CHECK(plan.waste_ml == doctest::Approx(3 * 200 * 0.06 / 1000));
+    CHECK(plan.waste_ml / ((100 + 200 + 200) * 0.06 / 1000) == doctest::Approx(1));
 }
 
 TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, and it is changed when it is spent") {

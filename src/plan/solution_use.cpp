@@ -24,12 +24,31 @@ struct Cleaning {
     double seconds = 0;
 };
 
-/// What resin clings to when the part leaves a vat: its cross-section.
-double film_ml(const job::Layer& layer, const Printer& printer) {
-    double area_mm2 = 0;
-    for (const job::LayerImage& image : layer.images) area_mm2 += image.area_mm2;
-    return area_mm2 * printer.cleaning.film_um / 1e6;
-}
+/// What resin clings to when the part leaves a vat: its lower end. That is what has cured in the layer that is under
+/// way, or, while that is less, the layer before. The virtual printer reckons in the same way (twin/cure.hpp).
+class LowerEnd {
+public:
+    LowerEnd(const Plan& plan, const job::Manifest& job) : plan_(plan), job_(job) {}
+
+    /// `vat` is done with its part of a layer.
+    void print(std::size_t layer, int vat) {
+        if (layer != layer_) before_mm2_ = std::exchange(now_mm2_, 0);
+        layer_ = layer;
+        const std::vector<job::LayerImage>& images = job_.layers[layer].images;
+        for (std::size_t k = 0; k < images.size(); ++k) {
+            if (plan_.vat_of_image[layer][k] == vat) now_mm2_ += images[k].area_mm2;
+        }
+    }
+    [[nodiscard]] double film_ml(const Printer& printer) const {
+        return std::max(now_mm2_, before_mm2_) * printer.cleaning.film_um / 1e6;
+    }
+
+private:
+    const Plan& plan_;
+    const job::Manifest& job_;
+    std::size_t layer_ = 0;
+    double now_mm2_ = 0, before_mm2_ = 0;
+};
 
 /// How long the pump runs in a swap, or while the last vat is stored (`to` is -1): as long as is asked for, or longer
 /// where the store takes longer to bring the vat.
@@ -60,18 +79,20 @@ private:
 std::vector<std::vector<Cleaning>> cleanings(const Plan& plan, const job::Manifest& job, const Printer& printer) {
     std::vector<std::vector<Cleaning>> all(plan.order.size());
     PumpTimes pump(printer);
+    LowerEnd end(plan, job);
     int loaded = -1;
     std::size_t last_layer = 0;
     for (std::size_t i = 0; i < plan.order.size(); ++i) {
         for (const int vat : plan.order[i]) {
             if (loaded >= 0 && loaded != vat)
-                all[i].push_back({loaded, film_ml(job.layers[last_layer], printer), pump.seconds(loaded, vat)});
+                all[i].push_back({loaded, end.film_ml(printer), pump.seconds(loaded, vat)});
+            end.print(i, vat);
             loaded = vat;
             last_layer = i;
         }
     }
     if (loaded >= 0 && printer.store() != machine::Store::none)
-        all[last_layer].push_back({loaded, film_ml(job.layers[last_layer], printer), pump.seconds(loaded, -1)});
+        all[last_layer].push_back({loaded, end.film_ml(printer), pump.seconds(loaded, -1)});
     return all;
 }
 

@@ -97,3 +97,26 @@ TEST_CASE("the timeline of a job ends when the job does, and every light stands 
     CHECK(lights == all.visits.size());
     CHECK(lit_s == doctest::Approx(plan.seconds.expose));
 }
+
+TEST_CASE("magnet, lift, rail and fork have bars of their own") {
+    const auto bars = [](const char* name, Device device) {
+        const auto printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
+        const SwapTimeline swap = swap_timeline(printer, printer.vats[0].slot, printer.vats[2].slot);
+        CHECK(std::find(swap.devices.begin(), swap.devices.end(), device) != swap.devices.end());
+        std::vector<Stretch> found;
+        for (const Stretch& s : swap.stretches) {
+            if (s.device == device) found.push_back(s);
+        }
+        return found;
+    };
+    const auto magnet = bars("tower_magnet", Device::magnet);
+    REQUIRE(magnet.size() == 2);
+    CHECK(magnet[0].end_s - magnet[0].begin_s == doctest::Approx(0.5));
+    CHECK(magnet[1].end_s - magnet[1].begin_s == doctest::Approx(0.2));
+    const auto fork = bars("wall", Device::fork);
+    REQUIRE(fork.size() == 4);
+    for (const Stretch& s : fork) CHECK(s.end_s - s.begin_s == doctest::Approx(1.5));
+    CHECK(bars("wall", Device::rail).size() == 3);
+    CHECK(bars("wall", Device::lift).size() >= 5);
+    CHECK(device_name(Device::lift) == "lift");
+}

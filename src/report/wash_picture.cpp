@@ -122,7 +122,7 @@ Result<std::string> wash_picture(std::string_view title, const wash::PartCells& 
     }
     canvas.text({60, 62}, title, {.size = 32, .colour = ink, .bold = true});
     canvas.text({60, 98},
-                fmt::format("{:.1f} % of the film comes off; {:.1f} % of the surface no jet reaches",
+                fmt::format("{:.1f} % of the film comes off; {:.1f} % of the surface nothing reaches",
                             100 * cleanness.removed, 100 * cleanness.unseen),
                 {.size = 22, .colour = ink});
     draw_scale(canvas);

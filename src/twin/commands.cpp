@@ -293,8 +293,9 @@ void Twin::spray_until(double at_s) {
         return;
     }
     drew_air_ = false;
-    sprayed_s_ += at_s - pump_since_s_;
-    residue_ *= fluids_.clean(at_s - pump_since_s_);
+    const double seconds = at_s - pump_since_s_;
+    sprayed_s_ += seconds;
+    residue_ *= fluids_.clean(seconds, sprayed_.removed(cure_, seconds));
 }
 
 void Twin::switch_fans(const Command& c, double at_s) {

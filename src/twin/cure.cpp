@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pliant::twin {
 namespace {
@@ -63,7 +64,7 @@ void Cure::open(int z_um) {
     finish();
     open_ = OpenLayer{z_um, z_um - top_um_, {}};
     open_->lit.resize(printer_->vats.size());
-    section_mm2_ = 0;
+    section_before_mm2_ = std::exchange(section_mm2_, 0);
 }
 
 /// What this light goes on with, if it has cured already.

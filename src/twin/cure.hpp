@@ -11,6 +11,7 @@
 // gap, so a wrong height shows.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -82,8 +83,9 @@ public:
     };
     /// Where the deepest overcure is.
     [[nodiscard]] const Place& deepest_overcure() const { return deepest_; }
-    /// Cross-section of what was last lit in any vat at the part's lower end, in mm^2.
-    [[nodiscard]] double section_mm2() const { return section_mm2_; }
+    /// What a film clings to, in mm^2: the lower end of the part. That is what has cured in the layer that is under
+    /// way, or, while that is less, the layer before.
+    [[nodiscard]] double section_mm2() const { return std::max(section_mm2_, section_before_mm2_); }
     /// What went wrong with the light, one line each.
     [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
 
@@ -131,7 +133,7 @@ private:
     std::vector<double> overcure_mm3_, overcure_beyond_mm3_;
     double deepest_overcure_um_ = 0;
     Place deepest_;
-    double section_mm2_ = 0;
+    double section_mm2_ = 0, section_before_mm2_ = 0;  ///< of the last layer and the one before it
     long pixels_lit_twice_ = 0;
     std::vector<std::string> faults_;
 };

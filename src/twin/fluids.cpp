@@ -30,8 +30,8 @@ double Fluids::leave(int vat, double section_mm2, double brushed) {
     return ml;
 }
 
-double Fluids::clean(double seconds) {
-    const double removed = law_.removed(seconds), stays = solution_.resin_share();
+double Fluids::clean(double seconds, std::optional<double> known) {
+    const double removed = known.value_or(law_.removed(seconds)), stays = solution_.resin_share();
     const double film = std::accumulate(film_ml_.begin(), film_ml_.end(), 0.0);
     const double before = solution_.resin_ml();
     std::vector<double> washed(film_ml_.size());

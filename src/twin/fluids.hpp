@@ -1,6 +1,7 @@
 // Resin on its way from vat to vat: what clings to the part, what cleaning leaves of it, what it makes of the next vat.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ public:
     /// the vat loses, in ml.
     double leave(int vat, double section_mm2, double brushed = 0);
     /// The part is cleaned; by the law of the machine's method (thesis, table 4.2). Where solution with resin in it
-    /// replaces the film, that resin stays. The share of the film that is left.
-    double clean(double seconds);
+    /// replaces the film, that resin stays. `removed`: what fresh solution takes off, where it is known better than by
+    /// that law. The share of the film that is left.
+    double clean(double seconds, std::optional<double> removed = {});
     /// Somebody looks after the cleaning solution.
     void care(machine::SolutionCare care);
     /// The clock; solution evaporates.

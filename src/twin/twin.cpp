@@ -385,6 +385,7 @@ void Twin::fill_vat(int slot) {
 
 void Twin::take_part_off() {
     cure_.clear();
+    sprayed_.clear();
     fluids_.wipe();
     contamination_.clear();
     log_ = {};

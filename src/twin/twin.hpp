@@ -29,6 +29,7 @@
 #include "twin/line_reader.hpp"
 #include "twin/motors.hpp"
 #include "twin/screen.hpp"
+#include "twin/sprayed_part.hpp"
 
 namespace pliant::twin {
 
@@ -204,6 +205,7 @@ private:
     Motors motors_;
     Cure cure_;
     Fluids fluids_;
+    SprayedPart sprayed_{printer_};
     std::vector<Contamination> contamination_;
     Log log_;
     double now_s_ = 0;

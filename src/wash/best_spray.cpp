@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "machine/motion.hpp"
+#include "wash/run_off.hpp"
 
 namespace pliant::wash {
 namespace {
@@ -56,7 +57,7 @@ public:
     /// Remembers the better one; what a person would call equal keeps the shorter way.
     void attempt(const Strokes& strokes) {
         if (!tried_.insert({strokes.x_um, strokes.z_um}).second) return;
-        const std::vector<double> rates = spray_rates(part_, faces_, printer_, strokes);
+        const std::vector<double> rates = washed_rates(part_, faces_, printer_, strokes);
         const double most_s = printer_.limits.cleaning_s;
         const double most = cleanness(faces_, rates, most_s).removed;
         cleanest_ = std::max(cleanest_, most);
@@ -120,7 +121,7 @@ Result<BestSpray> best_spray(const PartCells& part, const Printer& printer, doub
     }
     if (search.best()) return *search.best();
     return input_error(
-        "no oscillation cleans the part to {:.1f} %: at most {:.1f} % within {:g} s; the rest no jet reaches",
+        "no oscillation cleans the part to {:.1f} %: at most {:.1f} % within {:g} s; the rest nothing reaches",
         100 * wanted, 100 * search.cleanest(), printer.limits.cleaning_s);
 }
 

@@ -11,7 +11,7 @@ struct BestSpray {
     double seconds = 0;
     double solution_ml = 0;  ///< of one cleaning
     double removed = 0;      ///< share of the film, at least what was wanted
-    double unseen = 0;       ///< share of the surface that no jet reaches
+    double unseen = 0;       ///< share of the surface that no solution reaches
 };
 
 /// Searches all strokes that the machine has room for, first coarsely, then around the best. A cleaning is at least one

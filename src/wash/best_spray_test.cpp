@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/test_text.hpp"
+#include "wash/run_off.hpp"
 #include "wash/test_parts.hpp"
 
 using namespace pliant;
@@ -25,7 +26,7 @@ TEST_CASE("the best spray takes less solution than the printer's own for the sam
     machine::Printer p = tower();
     const PartCells part = disc();
     const std::vector<Face> faces = wet_faces(part);
-    const double own = cleanness(faces, spray_rates(part, faces, p, strokes_of(p)), p.cleaning.spray_s).removed;
+    const double own = cleanness(faces, washed_rates(part, faces, p, strokes_of(p)), p.cleaning.spray_s).removed;
     const Result<BestSpray> best = best_spray(part, p, 0.95);
     REQUIRE_MESSAGE(best, (best ? "" : best.error().message));
     MESSAGE(best->strokes.x_um << " um, " << best->strokes.z_um << " um, " << best->seconds << " s");
@@ -33,7 +34,7 @@ TEST_CASE("the best spray takes less solution than the printer's own for the sam
     CHECK(best->seconds < p.cleaning.spray_s);
     CHECK(best->solution_ml / best->seconds == doctest::Approx(20.0 / 15));
     CHECK(best->removed >= 0.95);
-    const auto rates = spray_rates(part, faces, p, best->strokes);
+    const auto rates = washed_rates(part, faces, p, best->strokes);
     CHECK(cleanness(faces, rates, best->seconds).removed == doctest::Approx(best->removed));
     // The hooks, the way to them and that of the tower by a slot take 2 (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40 /
     // 200) s, which is more than this disc needs.
@@ -50,7 +51,7 @@ TEST_CASE("on a machine whose moves take no time nobody who tries other strokes 
     const Result<BestSpray> best = best_spray(block, p, 0.9);
     REQUIRE_MESSAGE(best, (best ? "" : best.error().message));
     const auto removed = [&](const Strokes& strokes, double seconds) {
-        return cleanness(sides, spray_rates(block, sides, p, strokes), seconds).removed;
+        return cleanness(sides, washed_rates(block, sides, p, strokes), seconds).removed;
     };
     CHECK(removed(best->strokes, best->seconds) >= 0.9);
     CHECK(removed(best->strokes, best->seconds - 0.2) < 0.9);
@@ -64,7 +65,7 @@ TEST_CASE("what cannot be reached is said, and what is missing") {
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);
     CHECK(holds(scaffold.error().message, "no oscillation cleans the part to 99.0 %: at most "));
-    CHECK(holds(scaffold.error().message, "the rest no jet reaches"));
+    CHECK(holds(scaffold.error().message, "the rest nothing reaches"));
     machine::Printer dry = p;
     dry.sprinklers.clear();
     CHECK(holds(best_spray(disc(), dry, 0.9).error().message, "has no [[sprinkler]] tables"));

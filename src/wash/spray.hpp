@@ -14,7 +14,8 @@
 namespace pliant::wash {
 
 /// Depth of solution that takes a film to 1 / e of it, for which cone, cylinder and pyramids of the thesis' table 4.2
-/// come as clean as there (spray_test.cpp). Not measured on its own: it goes with the heads and the flow of tower.toml.
+/// come as clean as there (spray_test.cpp) by jets alone. Not measured on its own: it goes with the heads and the flow
+/// of tower.toml.
 inline constexpr double wash_depth_mm = 0.022;
 
 /// Oscillation: out and up, and back.
@@ -25,7 +26,8 @@ struct Strokes {
 
 [[nodiscard]] Strokes strokes_of(const machine::Printer& printer);
 
-/// Depth of solution that each face gets in a second, in mm, in the mean over one stroke. Needs sprinklers. Cost: some
+/// Depth of solution that jets bring to each face in a second, in mm, in the mean over one stroke. What runs on from
+/// there is in run_off.hpp. Needs sprinklers. Cost: some
 /// 10 us for every face.
 [[nodiscard]] std::vector<double> spray_rates(const PartCells& part, const std::vector<Face>& faces,
                                               const machine::Printer& printer, const Strokes& strokes);
@@ -33,7 +35,7 @@ struct Strokes {
 /// How clean a part comes out of the spray.
 struct Cleanness {
     double removed = 0;        ///< share of the film
-    double unseen = 0;         ///< share of the surface that no jet reaches at any time
+    double unseen = 0;         ///< share of the surface that no solution reaches at any time
     std::vector<double> left;  ///< of each face: share of its film that stays
 };
 

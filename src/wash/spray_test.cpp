@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "wash/run_off.hpp"
 #include "wash/test_parts.hpp"
 
 using namespace pliant;
@@ -34,7 +35,7 @@ double seen_mm2(const std::vector<Face>& faces, const std::vector<double>& rates
 
 Cleanness cleaned(const PartCells& part, const machine::Printer& printer) {
     const std::vector<Face> faces = wet_faces(part);
-    return cleanness(faces, spray_rates(part, faces, printer, strokes_of(printer)), printer.cleaning.spray_s);
+    return cleanness(faces, washed_rates(part, faces, printer, strokes_of(printer)), printer.cleaning.spray_s);
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ TEST_CASE("beyond the cone, behind another piece and on its far side a part stay
     CHECK(c.unseen > 0.5);
 }
 
-TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as clean as measured where jets reach") {
+TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as clean as measured") {
     const machine::Printer p = tower();
     for (const test::Measured& m : test::parts_of_table_4_2()) {
         const std::string name = m.name;
@@ -90,14 +91,15 @@ TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as 
         const Cleanness c = cleaned(m.part, p);
         MESSAGE(name << ": " << 100 * c.removed << " %, measured " << 100 * m.removed << " %, unseen " << 100 * c.unseen
                      << " %");
-        if (name == "scaffold") continue;
-        CHECK(std::abs(c.removed - m.removed) < 0.03);
+        CHECK(std::abs(c.removed - m.removed) < 0.035);
     }
-    // In a scaffold solution also runs along the beams, which no ray does: it comes out less clean than measured.
-    const Cleanness scaffold = cleaned(test::scaffold(), p);
-    CHECK(scaffold.removed < cleaned(test::pyramids(), p).removed);
-    CHECK(scaffold.removed > 0.75);
-    CHECK(scaffold.unseen > 0.1);
+    // The pits' tips point up: no solution runs there, as it does along the beams of a scaffold.
+    const Cleanness scaffold = cleaned(test::scaffold(), p), pyramids = cleaned(test::pyramids(), p);
+    CHECK(scaffold.removed > pyramids.removed);
+    CHECK(scaffold.unseen < pyramids.unseen);
+    const std::vector<Face> faces = wet_faces(test::scaffold());
+    const Cleanness jets = cleanness(faces, spray_rates(test::scaffold(), faces, p, strokes_of(p)), 15);
+    CHECK(jets.removed < scaffold.removed - 0.1);
 }
 
 TEST_CASE("cells that are joined keep where the part is, and about its surface") {
