@@ -113,15 +113,18 @@ std::string swaps(const std::vector<Printer>& printers) {
 /// The first printer of each kind of store.
 struct Kinds {
     const Printer* tower = nullptr;
+    const Printer* wall = nullptr;
     const Printer* ring = nullptr;
     const Printer* line = nullptr;
 
     explicit Kinds(const std::vector<Printer>& printers) {
         for (const Printer& p : printers) {
-            const bool table = p.store() == Store::table;
-            const bool rotary = table && p.axis(machine::Axis::table).rotary;
-            const Printer*& kind = p.store() == Store::tower ? tower : (rotary ? ring : line);
-            if (kind == nullptr && (table || p.store() == Store::tower)) kind = &p;
+            if (p.store() == Store::none) continue;
+            const Printer*& kind = p.store() == Store::tower             ? tower
+                                   : p.store() == Store::wall            ? wall
+                                   : p.axis(machine::Axis::table).rotary ? ring
+                                                                         : line;
+            if (kind == nullptr) kind = &p;
         }
     }
 };
@@ -140,6 +143,7 @@ Result<std::string> growth_plot(const std::vector<Printer>& printers) {
     };
     add(kinds.tower, "tower, next slot", true);
     add(kinds.tower, "tower, mean", false);
+    add(kinds.wall, "wall, mean", false);
     add(kinds.ring, "turntable, mean", false);
     add(kinds.line, "conveyor, mean", false);
     if (plot.series.empty()) return std::string();
@@ -151,10 +155,10 @@ Result<std::string> growth_plot(const std::vector<Printer>& printers) {
 /// Seconds of a swap of the first tower, over the length of its bed and the speed of its motors.
 std::string bed_table(const std::vector<Printer>& printers) {
     const Kinds kinds(printers);
-    const Printer* p = kinds.tower != nullptr ? kinds.tower : kinds.line;
+    const Printer* p = kinds.tower != nullptr ? kinds.tower : kinds.wall != nullptr ? kinds.wall : kinds.line;
     if (p == nullptr || p->vats.size() < 2) return "";
     constexpr std::array<double, 4> beds = {0.5, 1, 1.5, 2}, motors = {1, 2, 4, 8};
-    const bool deep = p->store() == Store::tower && p->carriage.along_y;
+    const bool deep = p->has_carriage() && p->carriage.along_y;
     std::vector<std::string> head = {"bed along the way of the vats"};
     for (const double m : motors) head.push_back(m == 1 ? "motors as they are" : fmt::format("{:g} times as fast", m));
     std::string text = "<table>\n" + row(head, "th");

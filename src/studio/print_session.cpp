@@ -90,6 +90,7 @@ Json printer_json(const machine::Printer& p) {
     for (const machine::Vat& vat : p.vats)
         vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}, {"fill_ml", vat.fill_ml}});
     const char* store = p.store() == machine::Store::tower   ? "tower"
+                        : p.store() == machine::Store::wall  ? "wall"
                         : p.store() == machine::Store::table ? "table"
                                                              : "none";
     Json json = {

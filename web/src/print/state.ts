@@ -36,7 +36,7 @@ export interface Now {
 
 export interface MachineInfo {
   name: string;
-  store: 'tower' | 'table' | 'none';
+  store: 'tower' | 'wall' | 'table' | 'none';
   axes: Record<string, { min: number; max: number; speed: number; rotary: boolean }>;
   vats: { slot: number; resin: string; fill_ml: number }[];
   carriage: { print: number; tower: number };
