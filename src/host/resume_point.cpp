@@ -92,7 +92,8 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
         const bool dragged =
             needs_power && at.lock.hooked_vat() && !same_phase(printer, at.lock, after.lock) &&
             at.lock.position()[machine::Axis::carriage] != after.lock.position()[machine::Axis::carriage];
-        if (!proven && (stroke || dragged)) {
+        const bool reaches = at.lock.fork_out() || after.lock.fork_out();
+        if (!proven && (stroke || dragged || reaches)) {
             on_hooks = true;
             break;
         }

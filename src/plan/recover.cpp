@@ -116,10 +116,11 @@ Result<std::string> resume_program(const Interrupted& from, const Printer& print
         return failure(
             "the controller restarted while the carriage was on its way with a vat on its magnet, which has let it go "
             "without power: put the vat into its slot by hand, pull the carriage out, and start the print anew");
-    if (from.state.fork_out() && !from.state.all_homed())
+    const bool reaches = from.state.fork_out() && !from.state.all_homed();
+    if (printer.store() == Store::wall && (from.on_hooks || reaches))
         return failure(
-            "the controller restarted while the retriever's fork was in the wall: pull it back by hand, with no vat "
-            "half on it, and start the print anew");
+            "the controller restarted while a vat was half-way on the hooks, or the retriever's fork in the wall: pull "
+            "the fork back and put every vat into its slot by hand, and start the print anew");
     if (from.on_hooks)
         return failure(
             "the controller restarted while the tower stood half-way on the hooks: moving would tear the vat. "

@@ -182,46 +182,6 @@ void Twin::execute_set(const Command& c) {
     }
 }
 
-/// A move has put a vat on the hooks, under the platform, or away.
-void Twin::note_vat(std::optional<int> before) {
-    const auto vat = interlock().hooked_vat();
-    if (vat == before) return;
-    const double brushed = brush_.wiped() ? printer_.brushed_share() : 0;
-    brush_.reset();
-    if (before) {
-        if (part_vat_ == *before && cure_.section_mm2() > 0) {
-            cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2(), brushed));
-            residue_ = 1;
-        }
-        if (fault_hits(Fault::Kind::stuck_hook, ++unhooked_) && stuck_vat_ < 0) {
-            stuck_vat_ = *before;
-            mishap(fmt::format("the vat of slot {} stays on the hooks", slot_of(*before)));
-        }
-    }
-    if (!vat) return;
-    constexpr int most_slip_um = 500;
-    const bool missed = std::abs(slip_um_[static_cast<std::size_t>(Axis::tower)]) > most_slip_um;
-    const bool weak = printer_.hooks.magnet.present() && fault_hits(Fault::Kind::weak_magnet, ++takes_);
-    missed_vat_ = missed || weak || *vat == left_vat_ ? *vat : -1;
-    if (missed) mishap("the hooks do not catch the vat: the tower is off");
-    if (weak) mishap(fmt::format("the magnet does not hold the vat of slot {}", slot_of(*vat)));
-    count_swap(*vat);
-}
-
-/// Counts swaps, and those with too little cleaning between the last light and the new vat.
-void Twin::count_swap(int vat) {
-    if (vat == last_vat_) return;
-    if (last_vat_ >= 0) {
-        ++log_.swaps;
-        // The rise of the hooks, during which the pump still runs, is only queued here; a magnet is only switched.
-        const bool spraying = pump_on_ && pump_works_;
-        const double taken_s = std::max(now_s_, motors_.done_at()) + printer_.hooks.magnet.engage_s;
-        const double sprayed = sprayed_s_ + (spraying ? taken_s - pump_since_s_ : 0);
-        if (!printer_.pump.on.empty() && sprayed < 0.99 * printer_.cleaning_s(last_vat_, vat)) ++log_.short_cleanings;
-    }
-    last_vat_ = vat;
-}
-
 /// A switch travels with the moves: it takes effect when those before it are done.
 void Twin::execute_switch(const Command& c) {
     const bool fan = !c.is('M', 42);
@@ -232,41 +192,6 @@ void Twin::execute_switch(const Command& c) {
     switch_fans(c, at_s);
     if (const auto on = machine::switched(printer_.pump, c)) return switch_pump(*on, at_s);
     switch_latch(c, at_s);
-}
-
-/// Magnet and fork act when the moves before them are done, and take their time.
-void Twin::switch_latch(const Command& c, double at_s) {
-    const std::optional<int> vat = interlock().hooked_vat();
-    const bool was_out = interlock().fork_out();
-    if (Status status = motors_.interlock().output(c); !status) return violation(status.error().message);
-    settling_.note(c, at_s);
-    note_vat(vat);
-    if (was_out || !interlock().fork_out() || !fault_hits(Fault::Kind::stuck_fork, ++reaches_)) return;
-    mishap("the retriever's fork stays in");
-    fork_stuck_ = true;
-}
-
-/// What a fork that stayed in has not taken off its place, or has not put there.
-void Twin::miss_vat(const std::optional<int>& tray) {
-    const std::optional<int> now = interlock().tray_vat();
-    if (now == tray) return;
-    if (!interlock().fork_out() || !fork_stuck_) return;
-    fork_stuck_ = false;
-    left_vat_ = now ? *now : *tray;
-    mishap(fmt::format("the vat of slot {} is not where the retriever thinks", slot_of(left_vat_)));
-}
-
-/// Without power the magnet lets its vat go, which only stands where it is in its slot or under the platform.
-void Twin::drop_vat() {
-    const machine::Switch& coil = printer_.hooks.magnet.coil;
-    const std::optional<int> vat = interlock().hooked_vat();
-    if (coil.on.empty() || machine::on_without_power(coil) || !vat || !interlock().magnet_holds()) return;
-    const machine::Carriage& c = printer_.carriage;
-    const int at_um = motors_position()[Axis::carriage];
-    const bool rests = at_um == c.tower_um || (at_um >= c.print_um && at_um <= c.print_um + c.shear_um);
-    if (rests) return;
-    missed_vat_ = *vat;
-    mishap(fmt::format("the vat of slot {} falls: its magnet has no power", slot_of(*vat)));
 }
 
 void Twin::switch_pump(bool on, double at_s) {

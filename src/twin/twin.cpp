@@ -16,7 +16,6 @@ constexpr std::size_t longest_raw_line = 4096;
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double runs_on_s = 0.9;   // seen on a Mega: last step of a move after a lone M112
 constexpr double quick_stop_s = 1;  // how long the planner takes no move after M410
-constexpr int most_slip_um = 500;   // of a carriage, a table, a tower: beyond that nothing fits any more
 
 /// Somewhere in the middle of every travel: nobody knows until the axes are homed.
 machine::Position unknown_start(const machine::Printer& printer) {
@@ -321,116 +320,6 @@ void Twin::finish_running() {
     if (!dead_) say_ok(done.queued, temperature ? " T:0.00 /0.00 @:0" : "");
     next_wait_s_ = now_s_ + options_.wait_every_s;
     drain();
-}
-
-// --- light ---------------------------------------------------------------------------------------------------------
-
-void Twin::light_on(const job::Image& image) {
-    if (shown_) light_off();
-    ++log_.exposures;
-    open_door();
-    const bool fits =
-        image.width_px == printer_.projector.width_px && image.height_px == printer_.projector.height_px &&
-        image.pixels.size() == static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
-    if (!fits) return violation("an image that is not of the projector's size");
-    if (Status status = motors_.interlock().light_on(motors_.moving(now_s_)); !status) {
-        return violation(status.error().message);
-    }
-    if (last_vat_ < 0) last_vat_ = interlock().hooked_vat().value_or(-1);
-    Screen::Picture picture = screen_.coverage(runs_of(image));
-    log_.overlit_pixels += picture.overlit_px;
-    shown_ = std::move(picture.runs);
-    shown_since_s_ = now_s_;
-    shown_vat_ = vat_under_light();
-    if (shown_vat_ >= 0) change_vat_part(shown_vat_);
-    if (fault_hits(Fault::Kind::dark_projector, log_.exposures)) {
-        mishap("the projector stays dark");
-        shown_vat_ = -1;
-    } else if (shown_vat_ < 0) {
-        mishap("light without a vat in its place");
-    }
-    sprayed_s_ = 0;
-}
-
-/// The fault of that light: nobody tells the controller, which only sees its switch.
-void Twin::open_door() {
-    const Fault* fault = fault_at(Fault::Kind::door_open, log_.exposures);
-    if (fault == nullptr) return;
-    constexpr double after_s = 0.5, usual_s = 30;
-    door_opens_s_ = now_s_ + after_s;
-    door_shuts_s_ = door_opens_s_ + (fault->amount > 0 ? fault->amount : usual_s);
-    mishap("somebody opens the door");
-}
-
-void Twin::set_door(bool open) {
-    if (open == door_is_open()) return;
-    if (open) {
-        door_opens_s_ = now_s_;
-        door_shuts_s_ = never;
-        mishap("somebody opens the door");
-    } else {
-        door_shuts_s_ = now_s_;
-    }
-}
-
-void Twin::fill_vat(int slot) {
-    const machine::Vat* vat = printer_.vat_of_slot(slot);
-    if (vat == nullptr) return;
-    const int index = static_cast<int>(vat - printer_.vats.data());
-    const double left_ml = std::max(0.0, cure_.left_ml()[static_cast<std::size_t>(index)]);
-    if (left_ml >= vat->fill_ml) return;
-    fluids_.pour(index, left_ml, vat->fill_ml - left_ml);
-    cure_.set_level_ml(index, vat->fill_ml);
-}
-
-void Twin::take_part_off() {
-    cure_.clear();
-    sprayed_.clear();
-    fluids_.wipe();
-    contamination_.clear();
-    log_ = {};
-    log_.fan_s.resize(printer_.fans.size());
-    part_vat_ = last_vat_ = -1;
-    residue_ = sprayed_s_ = 0;
-    machine::Interlock::State state = interlock().state();
-    state.part_height_um = 0;
-    if (auto without = machine::Interlock::restored(printer_, state)) motors_.interlock() = std::move(*without);
-}
-
-/// The vat that really is under the platform, by index; -1: none is where it should be.
-int Twin::vat_under_light() const {
-    const int hooked = interlock().hooked_vat().value_or(-1);
-    const auto slip = [&](machine::Axis axis) { return std::abs(slip_um_[static_cast<std::size_t>(axis)]); };
-    if (slip(machine::Axis::carriage) > most_slip_um || slip(machine::Axis::table) > most_slip_um) return -1;
-    if (hooked >= 0 && hooked == missed_vat_) return -1;
-    return stuck_vat_ >= 0 ? stuck_vat_ : hooked;
-}
-
-/// The part comes into a vat with what cleaning has left on it of the one before.
-void Twin::change_vat_part(int vat) {
-    if (part_vat_ != vat) {
-        cure_.take_ml(vat, -fluids_.enter(vat, cure_.left_ml()[static_cast<std::size_t>(vat)]));
-        part_vat_ = vat;
-    }
-    const int top_um = interlock().position()[machine::Axis::platform];
-    const bool known =
-        !contamination_.empty() && contamination_.back().top_um == top_um && contamination_.back().vat == vat;
-    if (!known) contamination_.push_back({top_um, vat, fluids_.foreign_share(vat), residue_});
-}
-
-void Twin::light_off() {
-    motors_.interlock().light_off();
-    if (!shown_) return;
-    const int z_um =
-        interlock().position()[machine::Axis::platform] + slip_um_[static_cast<std::size_t>(machine::Axis::platform)];
-    log_.lit_while_open_s += std::max(0.0, std::min(now_s_, door_shuts_s_) - std::max(shown_since_s_, door_opens_s_));
-    if (shown_vat_ >= 0) cure_.expose(*shown_, shown_vat_, now_s_ - shown_since_s_, z_um);
-    shown_.reset();
-}
-
-const Cure& Twin::cured() {
-    cure_.finish();
-    return cure_;
 }
 
 }  // namespace pliant::twin
