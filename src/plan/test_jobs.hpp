@@ -49,7 +49,8 @@ inline job::Manifest make_job_for(const machine::Printer& printer, const std::ve
 /// Every machine that is shipped.
 inline std::vector<machine::Printer> machines() {
     std::vector<machine::Printer> all;
-    for (const char* name : {"tower", "tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear", "single"}) {
+    for (const char* name :
+         {"tower", "tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear", "single"}) {
         all.push_back(machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value());
     }
     return all;
