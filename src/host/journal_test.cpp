@@ -147,6 +147,13 @@ TEST_CASE("the facts: pieces of a light add up, an open light stays open, states
     CHECK(back.hooked_vat == state.hooked_vat);
     CHECK(back.part_height_um == 250);
     CHECK(back.pump);
+    CHECK_FALSE(back.magnet);
+    state.magnet = state.fork_out = true;
+    const auto latched = read_state(write_state(state)).value();
+    CHECK(latched.pump);
+    CHECK(latched.magnet);
+    CHECK(latched.fork_out);
+    CHECK_FALSE(read_state("1,2,3,4,;1010;2;250;8;-,"));
     for (const char* bad : {"", "1,2,3,4,;1010;2;250;1", "1,2,3,;1010;2;250;1;-", "1,2,3,4,;10;2;250;1;-,", "a"}) {
         INFO(bad);
         const auto read = read_state(bad);
