@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::config;
 
@@ -39,14 +41,14 @@ name = "b"
     Reader root(document.root, problems);
     CHECK(root.text("name") == "finger");
     CHECK(root.integer("count") == 3);
-    CHECK(root.quantity("size", Dimension::length) == doctest::Approx(2.5e-3));
+    CHECK(root.quantity("size", Dimension::length) == near(2.5e-3, {.relative = 1e-12}));
     CHECK(root.boolean("flag", false));
     CHECK(root.vector("point") == Vec3{1, 2.5, -3});
     CHECK(root.vectors("path").size() == 2);
     auto materials = root.named_tables("material");
     REQUIRE(materials.size() == 1);
     CHECK(materials[0].first == "soft");
-    CHECK(materials[0].second.quantity("density", Dimension::density) == doctest::Approx(1000));
+    CHECK(materials[0].second.quantity("density", Dimension::density) == near(1000, {.relative = 1e-12}));
     auto bodies = root.tables("body");
     REQUIRE(bodies.size() == 2);
     CHECK(bodies[1].text("name") == "b");

@@ -2,14 +2,16 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 
 TEST_CASE("quantities convert to SI") {
-    CHECK(*parse_quantity("12 MPa", Dimension::pressure) == doctest::Approx(12e6));
-    CHECK(*parse_quantity("50um", Dimension::length) == doctest::Approx(50e-6));
-    CHECK(*parse_quantity(" 1040 kg/m^3 ", Dimension::density) == doctest::Approx(1040));
-    CHECK(*parse_quantity("-1.5e1 mm", Dimension::length) == doctest::Approx(-0.015));
-    CHECK(*parse_quantity("+24 in", Dimension::length) == doctest::Approx(0.6096));
+    CHECK(*parse_quantity("12 MPa", Dimension::pressure) == near(12e6, {.relative = 1e-12}));
+    CHECK(*parse_quantity("50um", Dimension::length) == near(50e-6, {.relative = 1e-12}));
+    CHECK(*parse_quantity(" 1040 kg/m^3 ", Dimension::density) == near(1040, {.relative = 1e-12}));
+    CHECK(*parse_quantity("-1.5e1 mm", Dimension::length) == near(-0.015, {.relative = 1e-12}));
+    CHECK(*parse_quantity("+24 in", Dimension::length) == near(0.6096, {.relative = 1e-12}));
 }
 
 TEST_CASE("a quantity without a unit, with a foreign unit or without a number is refused") {
