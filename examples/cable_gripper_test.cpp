@@ -2,6 +2,7 @@
 // the same solver stands against CalculiX is in src/sim/cable_reference_test.cpp.
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "robot/test_run.hpp"
 
 using namespace pliant;
@@ -18,12 +19,12 @@ TEST_CASE("the gripper curls as it did") {
     const sim::Trajectory result = run({"mesh.size=\"4 mm\"", "program.steps=15"});
     CHECK(result.warnings.empty());
     const sim::Step& last = result.steps.back();
-    CHECK(last.cables[0].length_ratio == doctest::Approx(0.7).scale(0).epsilon(1e-6));
-    CHECK(last.cables[0].tension_N == doctest::Approx(27.34).scale(0).epsilon(5e-3));
-    CHECK(last.markers[1].position_m.x == doctest::Approx(34.05e-3).scale(0).epsilon(5e-3));
-    CHECK(last.markers[1].position_m.z == doctest::Approx(45.40e-3).scale(0).epsilon(5e-3));
+    CHECK(last.cables[0].length_ratio == near(0.7, {.relative = 1e-6}));
+    CHECK(last.cables[0].tension_N == near(27.34, {.relative = 5e-3}));
+    CHECK(last.markers[1].position_m.x == near(34.05e-3, {.relative = 5e-3}));
+    CHECK(last.markers[1].position_m.z == near(45.40e-3, {.relative = 5e-3}));
     // The cable is pulled out at the clamp: the support carries its tension, along the bar.
-    CHECK(last.supports[0].force_N.x == doctest::Approx(last.cables[0].tension_N).scale(0).epsilon(1e-2));
+    CHECK(last.supports[0].force_N.x == near(last.cables[0].tension_N, {.relative = 1e-2}));
     // The soft half bends more than the hard one: the middle marker hardly moves.
     CHECK(last.markers[0].position_m.z < 16e-3);
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0.5);
@@ -38,9 +39,9 @@ TEST_CASE("all solvers agree on the gripper") {
         assignments.push_back(std::string("program.solver=") + solver);
         tension.push_back(run(assignments).steps.back().cables[0].tension_N);
     }
-    CHECK(tension[1] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
-    CHECK(tension[2] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
-    CHECK(tension[3] == doctest::Approx(tension[0]).scale(0).epsilon(2e-3));
+    CHECK(tension[1] == near(tension[0], {.relative = 2e-3}));
+    CHECK(tension[2] == near(tension[0], {.relative = 2e-3}));
+    CHECK(tension[3] == near(tension[0], {.relative = 2e-3}));
 }
 
 TEST_CASE("the number of gaps is one parameter") {

@@ -2,6 +2,7 @@
 // changes).
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "robot/test_run.hpp"
 
 using namespace pliant;
@@ -16,11 +17,11 @@ sim::Trajectory run(const std::vector<std::string>& assignments) {
 
 TEST_CASE("the finger of the tutorial, linear and quadratic") {
     const sim::Step linear = run({"mesh.order=1"}).steps.back();
-    CHECK(linear.cables[0].tension_N == doctest::Approx(29.30).scale(0).epsilon(5e-3));
-    CHECK(linear.markers[0].position_m.x == doctest::Approx(55.40e-3).scale(0).epsilon(5e-3));
-    CHECK(linear.markers[0].position_m.z == doctest::Approx(38.22e-3).scale(0).epsilon(5e-3));
+    CHECK(linear.cables[0].tension_N == near(29.30, {.relative = 5e-3}));
+    CHECK(linear.markers[0].position_m.x == near(55.40e-3, {.relative = 5e-3}));
+    CHECK(linear.markers[0].position_m.z == near(38.22e-3, {.relative = 5e-3}));
     const sim::Step quadratic = run({}).steps.back();
-    CHECK(quadratic.cables[0].tension_N == doctest::Approx(12.14).scale(0).epsilon(5e-3));
-    CHECK(quadratic.markers[0].position_m.x == doctest::Approx(54.26e-3).scale(0).epsilon(5e-3));
-    CHECK(quadratic.markers[0].position_m.z == doctest::Approx(38.82e-3).scale(0).epsilon(5e-3));
+    CHECK(quadratic.cables[0].tension_N == near(12.14, {.relative = 5e-3}));
+    CHECK(quadratic.markers[0].position_m.x == near(54.26e-3, {.relative = 5e-3}));
+    CHECK(quadratic.markers[0].position_m.z == near(38.82e-3, {.relative = 5e-3}));
 }

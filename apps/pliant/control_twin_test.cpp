@@ -9,6 +9,7 @@
 
 #include "control_bench.hpp"
 #include "core/files.hpp"
+#include "core/near.hpp"
 
 using namespace pliant;
 using namespace pliant::app;
@@ -243,7 +244,7 @@ TEST_CASE("a pause in the light: at once and made up later, or after it and the 
         CHECK(b.lights() == (how == PauseWhen::now ? 11 : 10));
         b.must_be_whole();
         const twin::VatLayer& vat = b.twin->cured().layers()[3].vats[0];
-        CHECK(vat.lit[0].seconds == doctest::Approx(2.5).epsilon(0.01));
+        CHECK(vat.lit[0].seconds == near(2.5, {.relative = 0.01}));
     }
 }
 
@@ -491,7 +492,7 @@ TEST_CASE("by hand: a second key during a long move stops it where it is; then t
     const int at_um = b.twin->interlock().position()[machine::Axis::platform];
     CHECK(top_um - at_um > 10000);
     CHECK(top_um - at_um < 20000);
-    CHECK(b.snapshot().position[machine::Axis::platform] == doctest::Approx(at_um).epsilon(0.0001));
+    CHECK(b.snapshot().position[machine::Axis::platform] == near(at_um, {.relative = 0.0001}));
     serve(b.control->jog(machine::Axis::platform, -1000, 5));
     CHECK(b.snapshot().message.find("before it is homed") != std::string::npos);
     serve(b.control->home({}));
@@ -718,8 +719,8 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
     REQUIRE(layers.size() == 5);
     for (std::size_t i = 0; i < 5; ++i) {
         const double bottom = i < 2 ? 12 : 2.5;
-        CHECK(layers[i].vats[0].lit[0].seconds == doctest::Approx(i > 2 ? 3.5 : bottom).epsilon(0.001));
-        CHECK(layers[i].vats[1].lit[0].seconds == doctest::Approx(bottom).epsilon(0.001));
+        CHECK(layers[i].vats[0].lit[0].seconds == near(i > 2 ? 3.5 : bottom, {.relative = 0.001}));
+        CHECK(layers[i].vats[1].lit[0].seconds == near(bottom, {.relative = 0.001}));
     }
 }
 
@@ -737,7 +738,7 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     // The seconds of one that went on are those of all its pieces.
     for (std::size_t k = 1; k < b.ended.size(); ++k) {
         if (b.ended[k - 1].complete) continue;
-        CHECK(b.ended[k].seconds == doctest::Approx(12).epsilon(0.01));
+        CHECK(b.ended[k].seconds == near(12, {.relative = 0.01}));
     }
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "halves.hpp"
 #include "operate/programs.hpp"
@@ -99,11 +100,11 @@ TEST_CASE("a two-material job of five layers comes out right") {
     CHECK(p.record.resends == 0);
     REQUIRE(p.record.exposures.size() == 10);
     for (const host::Exposure& e : p.record.exposures) {
-        CHECK(e.on_s == doctest::Approx(e.layer < 2 ? 12 : 2.5));
+        CHECK(e.on_s == near(e.layer < 2 ? 12 : 2.5, {.relative = 1e-12}));
     }
     const double soft_mm3 = 0.15875 * 0.15875 * (24 + 6 * 100.0 / 255) * 0.25;
-    CHECK(p.report.materials[0].cured_mm3 == doctest::Approx(soft_mm3));
-    CHECK(p.report.resins[1].left_ml == doctest::Approx(700 - p.plan.vats[1].resin_ml));
+    CHECK(p.report.materials[0].cured_mm3 == near(soft_mm3, {.relative = 1e-12}));
+    CHECK(p.report.resins[1].left_ml == near(700 - p.plan.vats[1].resin_ml, {.relative = 1e-5}));
 }
 
 TEST_CASE("no more lines are under way than the printer file allows") {
@@ -128,7 +129,7 @@ TEST_CASE("the planned time is the machine's, but for where the axes stand when 
     // The plan homes from the far end. The twin starts half-way up in Z (20 s instead of 40 s), at the print position
     // in X (0 s instead of 358/8 s), half-way in Y (36.5 s instead of 73 s).
     const double homing_less = 20 + 358 / 8.0 + 36.5;
-    CHECK(p.record.seconds == doctest::Approx(p.plan.seconds.total - homing_less).epsilon(0.002));
+    CHECK(p.record.seconds == near(p.plan.seconds.total - homing_less, {.relative = 0.002}));
 }
 
 TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered line wherever it happens") {
@@ -223,7 +224,7 @@ TEST_CASE("a missing exposure shows") {
     p.run();
     REQUIRE(p.status);
     CHECK_FALSE(p.report.passed);
-    CHECK(p.report.materials[1].missing_mm3 == doctest::Approx(p.report.materials[1].wanted_mm3 / 5));
+    CHECK(p.report.materials[1].missing_mm3 == near(p.report.materials[1].wanted_mm3 / 5, {.relative = 1e-12}));
     CHECK(p.report.materials[0].missing_mm3 == 0);
 }
 
@@ -560,7 +561,7 @@ TEST_CASE("contamination: what spray leaves goes from vat to vat, and is mapped"
     p.run();
     p.must_pass();
     CHECK(p.report.contamination.size() == 10);
-    CHECK(p.report.worst_residue == doctest::Approx(0.0525).epsilon(0.01));
+    CHECK(p.report.worst_residue == near(0.0525, {.relative = 0.01}));
     CHECK(p.report.worst_foreign > 0);
     CHECK(p.report.worst_foreign < 1e-6);
     const double brushed = p.report.worst_foreign;
@@ -569,7 +570,7 @@ TEST_CASE("contamination: what spray leaves goes from vat to vat, and is mapped"
     bare.printer.cleaning.brush_share = 0;
     bare.run();
     bare.must_pass();
-    CHECK(brushed / bare.report.worst_foreign == doctest::Approx(0.71).epsilon(0.01));
+    CHECK(brushed / bare.report.worst_foreign == near(0.71, {.relative = 0.01}));
     p.printer.cleaning.most_contamination = 1e-9;
     p.run();
     CHECK_FALSE(p.report.passed);

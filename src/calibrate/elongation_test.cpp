@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/ratio.hpp"
+#include "core/near.hpp"
 
 using namespace pliant;
 using namespace pliant::calibrate;
@@ -38,9 +39,9 @@ TEST_CASE("T3.7 is exact for springs, and any ratio of moduli comes back from sm
     for (const double ratio : {0.2, 1.0, 3.75}) {
         const double L = 0.1, L1 = 0.03, dL = 0.02;
         const double u = dL / (1 + ratio * (L - L1) / L1);
-        CHECK(evaluate({L, L1, dL, u})->linear / ratio == doctest::Approx(1).epsilon(1e-12));
+        CHECK(evaluate({L, L1, dL, u})->linear / ratio == near(1, {.relative = 1e-12}));
         const double small = joint_of(ratio, L, L1, 1e-7);
-        CHECK(evaluate({L, L1, 1e-7, small})->linear / ratio == doctest::Approx(1).epsilon(1e-5));
+        CHECK(evaluate({L, L1, 1e-7, small})->linear / ratio == near(1, {.relative = 1e-5}));
     }
 }
 
@@ -49,22 +50,22 @@ TEST_CASE("at large strain the closed form finds the ratio, and says what T3.7 e
         for (const double L1 : {25.0, 50.0, 75.0}) {
             const auto row = evaluate({100, L1, 30, joint_of(ratio, 100, L1, 30)});
             REQUIRE(row);
-            CHECK(row->neo_hookean / ratio == doctest::Approx(1).epsilon(1e-9));
+            CHECK(row->neo_hookean / ratio == near(1, {.relative = 1e-9}));
             if (ratio > 1) CHECK(row->error() > 0);
             if (ratio < 1) CHECK(row->error() < 0);
         }
     }
     // By hand: 45 (a - 1/a^2) = 12 (b - 1/b^2) with a + b = 2.6 has a = 1.10286, so T3.7 gives (0.49714 / 0.10286).
     const auto row = evaluate({100, 50, 30, 5.143});
-    CHECK(row->linear == doctest::Approx(4.833).epsilon(1e-3));
-    CHECK(row->neo_hookean == doctest::Approx(3.745).epsilon(1e-3));
+    CHECK(row->linear == near(4.833, {.relative = 1e-3}));
+    CHECK(row->neo_hookean == near(3.745, {.relative = 1e-3}));
 }
 
 TEST_CASE("the simulated bar's joint gives nearly the ratio that was put in; its clamps are the difference") {
     RatioOptions options;
     options.cells = {24, 3, 3};
     const double joint_mm = reference_displacement_mm(options, 3.75).value();
-    CHECK(evaluate({0.1, 0.05, 0.03, joint_mm * 1e-3})->neo_hookean / 3.75 == doctest::Approx(1).epsilon(0.01));
+    CHECK(evaluate({0.1, 0.05, 0.03, joint_mm * 1e-3})->neo_hookean / 3.75 == near(1, {.relative = 0.01}));
 }
 
 TEST_CASE("the shape parameter is matched to the test, whichever part is held") {
@@ -74,10 +75,10 @@ TEST_CASE("the shape parameter is matched to the test, whichever part is held") 
     const double joint_mm = blend_displacement_mm(options, 4).value();
     const auto stiff_held = match_shape_parameter({1, 0.5, 0.2, joint_mm / 100}, options.cells);
     REQUIRE_MESSAGE(stiff_held, (stiff_held ? "" : stiff_held.error().message));
-    CHECK(*stiff_held / 4 == doctest::Approx(1).epsilon(1e-3));
+    CHECK(*stiff_held / 4 == near(1, {.relative = 1e-3}));
     const auto soft_held = match_shape_parameter({1, 0.5, 0.2, 0.2 - joint_mm / 100}, options.cells);
     REQUIRE(soft_held);
-    CHECK(*soft_held / 4 == doctest::Approx(1).epsilon(1e-3));
+    CHECK(*soft_held / 4 == near(1, {.relative = 1e-3}));
     CHECK_FALSE(match_shape_parameter({1, 0.005, 0.2, 0.001}, options.cells));  // no cell ends there
 }
 
@@ -86,23 +87,23 @@ TEST_CASE("tables of tests, in any unit of length") {
         parse_elongation_csv("Interface (cm);Length [mm];Joint (mm);Elongation (mm);who\n5;100;5.143;30;x\n", "t.csv");
     REQUIRE_MESSAGE(rows, (rows ? "" : rows.error().message));
     REQUIRE(rows->size() == 1);
-    CHECK(rows->front().test.interface_m / 0.05 == doctest::Approx(1));
-    CHECK(rows->front().linear == doctest::Approx(4.833).epsilon(1e-3));
+    CHECK(rows->front().test.interface_m / 0.05 == near(1, {.relative = 1e-12}));
+    CHECK(rows->front().linear == near(4.833, {.relative = 1e-3}));
     CHECK(elongation_text(*rows).find("4.833") != std::string::npos);
     CHECK(elongation_csv(*rows).find("100,50,30,5.143,4.83") != std::string::npos);
     const auto json = nlohmann::json::parse(elongation_json(*rows));
-    CHECK(json["rows"][0]["joint_mm"].get<double>() == doctest::Approx(5.143));
+    CHECK(json["rows"][0]["joint_mm"].get<double>() == near(5.143, {.relative = 1e-12}));
     CHECK(json["half_width_95"] == 0);
-    CHECK(json["shape_parameter_small_strain"].get<double>() == doctest::Approx((3 * 3.745 - 1) / 2).epsilon(1e-3));
+    CHECK(json["shape_parameter_small_strain"].get<double>() == near((3 * 3.745 - 1) / 2, {.relative = 1e-3}));
 }
 
 TEST_CASE("several tests have a mean and its interval") {
-    const auto rows = parse_elongation_csv(header + "100,50,0.2,0.05\n100,50,0.2,0.04\n", "t.csv");
+    const auto rows = parse_elongation_csv(header + "100,50,0.002,0.0005\n100,50,0.002,0.0004\n", "t.csv");
     REQUIRE(rows);
-    // Ratios 3 and 4 for springs: mean 3.5, t(1) 12.706 times 0.5.
+    // Ratios 3 and 4 for springs, which bars are to 1e-4 at strains of 4e-5: mean 3.5, t(1) 12.706 times 0.5.
     const auto json = nlohmann::json::parse(elongation_json(*rows));
-    CHECK(json["material_ratio"].get<double>() == doctest::Approx(3.5).epsilon(2e-3));
-    CHECK(json["half_width_95"].get<double>() == doctest::Approx(6.353).epsilon(5e-3));
+    CHECK(json["material_ratio"].get<double>() == near(3.5, {.relative = 1e-4}));
+    CHECK(json["half_width_95"].get<double>() == near(6.353, {.relative = 2e-4}));
 }
 
 TEST_CASE("tests that no bar has are refused with their line") {

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::calibrate;
 
@@ -19,10 +21,10 @@ TEST_CASE("equal materials: the interface of a long bar moves half as far as its
     RatioOptions options = coarse();
     const auto u = reference_displacement_mm(options, 1);
     REQUIRE(u);
-    CHECK(*u == doctest::Approx(15).scale(0).epsilon(1e-4));
+    CHECK(*u == near(15, {.relative = 1e-4}));
     const auto R = match_shape_parameter(options, 15, 2);
     REQUIRE(R);
-    CHECK(*R == doctest::Approx(1).scale(0).epsilon(1e-3));
+    CHECK(*R == near(1, {.relative = 1e-6}));
 }
 
 TEST_CASE("a match gives the displacement that was asked for") {
@@ -31,7 +33,7 @@ TEST_CASE("a match gives the displacement that was asked for") {
     REQUIRE(R);
     const auto u = blend_displacement_mm(options, *R);
     REQUIRE(u);
-    CHECK(*u == doctest::Approx(6).scale(0).epsilon(2e-5));
+    CHECK(*u == near(6, {.relative = 2e-5}));
     CHECK_FALSE(match_shape_parameter(options, 16, 3));  // more than half: the soft part would have to be the stiffer
 }
 
@@ -44,7 +46,7 @@ TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio
     REQUIRE(u);
     const double soft = 3 / (2 * R + 1);
     // The clamped ends and the interface hold back sideways motion, which ideal bars do not know.
-    CHECK(*u == doctest::Approx(0.1 * soft / (1 + soft)).scale(0).epsilon(0.04));
+    CHECK(*u == near(0.1 * soft / (1 + soft), {.relative = 0.04}));
 }
 
 TEST_CASE("the interface may lie anywhere: cells are stretched so that they end there") {
@@ -55,7 +57,7 @@ TEST_CASE("the interface may lie anywhere: cells are stretched so that they end 
         const auto exact = reference_displacement_mm(options, 4);
         REQUIRE(exact);
         options.cells[0] = 24;  // 7.2 and 16.8 cells
-        CHECK(*reference_displacement_mm(options, 4) / *exact == doctest::Approx(1).epsilon(1e-2));
+        CHECK(*reference_displacement_mm(options, 4) / *exact == near(1, {.relative = 1e-2}));
     }
     // Without stretched cells it would jump from one boundary to the next.
     options.interface = 0.26;
@@ -76,7 +78,7 @@ TEST_CASE("three ratios make a curve through them") {
     for (const RatioRow& row : result->rows) {
         const auto& c = *result->curve;
         const double on_curve = (c[0] * row.material_ratio + c[1]) * row.material_ratio + c[2];
-        CHECK(on_curve == doctest::Approx(row.shape_parameter));
+        CHECK(on_curve == near(row.shape_parameter, {.relative = 1e-12}));
     }
     CHECK(ratio_csv(*result).find("material_ratio,interface_mm") == 0);
     CHECK(ratio_json(*result, options).find("\"curve\"") != std::string::npos);

@@ -22,6 +22,7 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 
 using namespace pliant;
@@ -169,7 +170,7 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
         auto projector = ScreenProjector::open("0", options());
         REQUIRE_MESSAGE(projector, (projector ? "" : projector.error().message));
         CHECK(projector->panel().width_px == width_px);
-        CHECK(projector->panel().refresh_hz == doctest::Approx(60));
+        CHECK(projector->panel().refresh_hz == near(60, {.relative = 1e-12}));
         CHECK(comes([&] { return x.all(0); }));
         for (const job::Layer& layer : job.manifest().layers) {
             for (const job::LayerImage& file : layer.images) {

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "host/test_devices.hpp"
 
@@ -147,7 +148,7 @@ TEST_CASE("halting: M410, and M112 between 5 and 20 ms later") {
     const auto& said = b.wire.written;
     CHECK(said[said.size() - 2] == "M410");
     CHECK(said.back() == "M112");
-    CHECK(b.clock.now_s - before_s == doctest::Approx(0.0125).epsilon(0.6));
+    CHECK(b.clock.now_s - before_s == near(0.0125, {.relative = 0.6}));
     CHECK(b.link.has_halted());
 }
 
@@ -171,7 +172,7 @@ TEST_CASE("a fence with an end: late is late, though the printer says that it is
     const double before_s = b.clock.now_s;
     CHECK_FALSE(b.link.fence(40));
     CHECK(b.link.ran_late());
-    CHECK(b.clock.now_s - before_s == doctest::Approx(40).epsilon(0.05));
+    CHECK(b.clock.now_s - before_s == near(40, {.relative = 0.05}));
 }
 
 TEST_CASE("busy restarts the patience") {

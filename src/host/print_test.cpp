@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "host/test_devices.hpp"
 
 using namespace pliant;
@@ -58,7 +59,7 @@ TEST_CASE("commands go to the wire, light comes behind a fence for its time") {
     CHECK_FALSE(b.projector.lit);
     REQUIRE(b.record.exposures.size() == 1);
     CHECK(b.record.exposures[0].material == 1);
-    CHECK(b.record.exposures[0].on_s == doctest::Approx(2.5));
+    CHECK(b.record.exposures[0].on_s == near(2.5, {.relative = 1e-12}));
     CHECK(b.index_of("tok 1*") > b.index_of("G1 Z1"));
     CHECK(b.index_of("G1 Z5") > b.index_of("tok 1*"));
     CHECK(b.index_of("expose") == -1);

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "job/png.hpp"
 
@@ -71,7 +72,7 @@ TEST_CASE("lights appear in the folder, end by themselves, are measured, and lea
             CHECK_FALSE(folder.lit());
             REQUIRE(light);
             REQUIRE(*light);
-            CHECK((*light)->asked_s == doctest::Approx(0.1 * i));
+            CHECK((*light)->asked_s == near(0.1 * i, {.relative = 1e-12}));
             // To half a frame; longer only by as much as the last two frames were late.
             CHECK((*light)->on_s <= 0.1 * i - 1.5 / 60 + 2 * (*light)->longest_frame_s + 1e-9);
             CHECK((*light)->on_s >= 0.1 * i - 0.5 / 60 - 1e-9);
@@ -94,7 +95,7 @@ TEST_CASE("a light ends without its host, and a second one takes over from the f
     CHECK(comes([&] { return !folder.lit(); }));  // the host says and does nothing
     REQUIRE(projector->show_for(noise(2), 60));
     CHECK(folder.image("shown.png") == noise(2));
-    CHECK(projector->last_light()->asked_s == doctest::Approx(0.2));
+    CHECK(projector->last_light()->asked_s == near(0.2, {.relative = 1e-12}));
     REQUIRE(projector->show_for(noise(3), 60));
     CHECK(folder.image("shown.png") == noise(3));
     CHECK(projector->last_light()->asked_s == 60);

@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::host;
 
@@ -55,7 +57,7 @@ TEST_CASE("a light has as many frames as its time has, to the nearest, at any ra
             // To the nearest frame; what lies in the middle is rounded down.
             const int frames = std::max(1, static_cast<int>(std::ceil(seconds * rate - 0.5 - 1e-9)));
             CHECK(got->frames == frames);
-            CHECK(got->on_s == doctest::Approx(static_cast<double>(frames) / rate));
+            CHECK(got->on_s == near(static_cast<double>(frames) / rate, {.relative = 1e-12}));
             if (seconds > 0.5 / rate) CHECK(std::abs(got->on_s - seconds) <= 0.5 / rate + 1e-9);
             CHECK_FALSE(panel.lit.back());
         }
@@ -67,16 +69,16 @@ TEST_CASE("frames that come late do not make the light longer, unless the last o
     panel.late = {{10, 3}, {20, 6}};
     const Result<Light> got = light(panel, 1.0);
     REQUIRE(got);
-    CHECK(got->on_s == doctest::Approx(1.0));
+    CHECK(got->on_s == near(1.0, {.relative = 1e-12}));
     CHECK(got->frames == 60 - 9);
-    CHECK(got->longest_frame_s == doctest::Approx(7.0 / 60));
+    CHECK(got->longest_frame_s == near(7.0 / 60, {.relative = 1e-12}));
 
     CountingPanel stuck;  // two black frames, 60 lit ones, then the black one
     stuck.late = {{62, 5}};
     const Result<Light> late = light(stuck, 1.0);
     REQUIRE(late);
-    CHECK(late->on_s == doctest::Approx(1.0 + 5.0 / 60));
-    CHECK(late->longest_frame_s == doctest::Approx(6.0 / 60));
+    CHECK(late->on_s == near(1.0 + 5.0 / 60, {.relative = 1e-12}));
+    CHECK(late->longest_frame_s == near(6.0 / 60, {.relative = 1e-12}));
 }
 
 TEST_CASE("a light that is no longer wanted ends with the next frame") {
@@ -85,7 +87,7 @@ TEST_CASE("a light that is no longer wanted ends with the next frame") {
     const Result<Light> got = light(panel, 10, [&] { return ++asked < 30; });
     REQUIRE(got);
     CHECK(got->frames == 30);
-    CHECK(got->on_s == doctest::Approx(0.5));
+    CHECK(got->on_s == near(0.5, {.relative = 1e-12}));
     CHECK_FALSE(panel.lit.back());
 }
 

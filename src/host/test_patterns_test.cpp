@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::host;
 
@@ -69,11 +71,11 @@ TEST_CASE("the border's rectangle is as wide as is said, and the rulers' marks a
 TEST_CASE("measured distances give the pixel's size") {
     const auto size = pixel_size(320, 200, 28.8, 18.0);
     REQUIRE(size);
-    CHECK(size->pixel_um == doctest::Approx(100));
-    CHECK(size->off_percent == doctest::Approx(0));
+    CHECK(size->pixel_um == near(100, {.relative = 1e-12}));
+    CHECK(size->off_percent == near(0, {.absolute = 1e-9}));
     const auto skew = pixel_size(320, 200, 28.8 * 1.02, 18.0);
-    CHECK(skew->pixel_um == doctest::Approx(101));
-    CHECK(skew->off_percent == doctest::Approx(2));
+    CHECK(skew->pixel_um == near(101, {.relative = 1e-12}));
+    CHECK(skew->off_percent == near(2, {.relative = 1e-12}));
     CHECK_FALSE(pixel_size(320, 200, 0, 18));
     CHECK_FALSE(pixel_size(320, 200, std::nan(""), 18));
 }
@@ -84,7 +86,7 @@ TEST_CASE("a mask makes a light that falls off towards the edges the same everyw
     CHECK(table->columns == 3);
     CHECK(table->rows == 3);
     const LightMask mask = light_mask(*table, 300, 150, 1);
-    CHECK(mask.least == doctest::Approx(4.0 / 5.5));
+    CHECK(mask.least == near(4.0 / 5.5, {.relative = 1e-12}));
     CHECK(mask.mask.at(0, 0) == 255);
     // Light of a place times its mask is that of the darkest.
     for (int row = 0; row < 3; ++row) {
@@ -92,11 +94,11 @@ TEST_CASE("a mask makes a light that falls off towards the edges the same everyw
             const int y = static_cast<int>(point_px(row, 3, 150));
             const int x = static_cast<int>(point_px(column, 3, 300));
             const double light = table->readings[static_cast<std::size_t>(3 * row + column)];
-            CHECK(light * mask.mask.at(y, x) / 255.0 == doctest::Approx(4.0).epsilon(0.01));
+            CHECK(light * mask.mask.at(y, x) / 255.0 == near(4.0, {.relative = 0.01}));
         }
     }
     const LightMask curved = light_mask(*table, 300, 150, 2.2);
-    CHECK(5.5 * std::pow(curved.mask.at(75, 150) / 255.0, 2.2) == doctest::Approx(4.0).epsilon(0.01));
+    CHECK(5.5 * std::pow(curved.mask.at(75, 150) / 255.0, 2.2) == near(4.0, {.relative = 0.01}));
 }
 
 TEST_CASE("a table that is none is refused, by line") {

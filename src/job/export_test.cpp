@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "job/make_job.hpp"
 #include "job/png.hpp"
@@ -121,20 +122,20 @@ TEST_CASE("an .sl1 read as PrusaSlicer and UVtools read it") {
     CHECK(config.at("action") == "print");
     CHECK(number(config, "expTime") == 4);
     CHECK(number(config, "expTimeFirst") == 12);
-    CHECK(number(config, "layerHeight") == doctest::Approx(0.05));               // mm
-    CHECK(number(config, "numFade") == 0);                                       // two bottom layers, none fades
-    CHECK(number(config, "printTime") == doctest::Approx(2 * 12 + 8 * 4));       // s
-    CHECK(number(config, "usedMaterial") == doctest::Approx(1.5 * 2 * 0.3e-3));  // ml
+    CHECK(number(config, "layerHeight") == near(0.05, {.relative = 1e-12}));          // mm
+    CHECK(number(config, "numFade") == 0);                                            // two bottom layers, none fades
+    CHECK(number(config, "printTime") == near(2 * 12 + 8 * 4, {.relative = 1e-12}));  // s
+    CHECK(number(config, "usedMaterial") == near(1.5 * 2 * 0.3e-3, {.relative = 1e-12}));  // ml
     for (const char* key : {"printer_technology", "display_orientation", "display_mirror_x", "display_mirror_y",
                             "max_print_height", "gamma_correction", "bottle_volume", "bottle_weight", "bottle_cost"})
         CHECK_MESSAGE(slicer.contains(key), key);
     CHECK(slicer.at("printer_technology") == "SLA");
     CHECK(number(slicer, "display_pixels_x") == 64);
     CHECK(number(slicer, "display_pixels_y") == 48);
-    CHECK(number(slicer, "display_width") == doctest::Approx(6.4));  // mm
-    CHECK(number(slicer, "display_height") == doctest::Approx(4.8));
-    CHECK(number(slicer, "layer_height") == doctest::Approx(0.05));
-    CHECK(number(slicer, "initial_layer_height") == doctest::Approx(0.05));
+    CHECK(number(slicer, "display_width") == near(6.4, {.relative = 1e-12}));  // mm
+    CHECK(number(slicer, "display_height") == near(4.8, {.relative = 1e-12}));
+    CHECK(number(slicer, "layer_height") == near(0.05, {.relative = 1e-12}));
+    CHECK(number(slicer, "initial_layer_height") == near(0.05, {.relative = 1e-12}));
     CHECK(number(slicer, "exposure_time") == 4);
     CHECK(number(slicer, "initial_exposure_time") == 12);
     CHECK(number(slicer, "faded_layers") == 0);
@@ -159,7 +160,7 @@ TEST_CASE("layers that fade are told where they are, and only there") {
     CHECK(number(ini(*sl1, "config.ini"), "numFade") == 3);
     CHECK(number(ini(*sl1, "prusaslicer.ini"), "faded_layers") == 3);
     // 2 of 9 s, then 7.5, 6 and 4.5 s, and 3 of 3 s.
-    CHECK(number(ini(*sl1, "config.ini"), "printTime") == doctest::Approx(18 + 18 + 9));
+    CHECK(number(ini(*sl1, "config.ini"), "printTime") == near(18 + 18 + 9, {.relative = 1e-12}));
     const auto nano = ZipReader::open(export_job(archive, Format::nanodlp, folder / "b").value().at(0));
     CHECK(json(*nano, "profile.json")["TransitionalLayer"] == 3);
 }
@@ -178,13 +179,13 @@ TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
     CHECK(plate["YRes"] == 48);
     CHECK(plate["MultiMaterial"] == false);
     // Rigid stands in layers 4 to 9, x from -1 to 0.5 mm, y from -1 to 1 mm: 15 x 20 pixels of 0.1 mm.
-    CHECK(plate["TotalSolidArea"].get<double>() == doctest::Approx(6 * 3.0));
-    CHECK(plate["XMin"].get<double>() == doctest::Approx(-1));
-    CHECK(plate["XMax"].get<double>() == doctest::Approx(0.5));
-    CHECK(plate["YMin"].get<double>() == doctest::Approx(-1));
-    CHECK(plate["YMax"].get<double>() == doctest::Approx(1));
-    CHECK(plate["ZMin"].get<double>() == doctest::Approx(0.2));
-    CHECK(plate["ZMax"].get<double>() == doctest::Approx(0.5));
+    CHECK(plate["TotalSolidArea"].get<double>() == near(6 * 3.0, {.relative = 1e-12}));
+    CHECK(plate["XMin"].get<double>() == near(-1, {.relative = 1e-12}));
+    CHECK(plate["XMax"].get<double>() == near(0.5, {.relative = 1e-12}));
+    CHECK(plate["YMin"].get<double>() == near(-1, {.relative = 1e-12}));
+    CHECK(plate["YMax"].get<double>() == near(1, {.relative = 1e-12}));
+    CHECK(plate["ZMin"].get<double>() == near(0.2, {.relative = 1e-12}));
+    CHECK(plate["ZMax"].get<double>() == near(0.5, {.relative = 1e-12}));
     CHECK(profile["Depth"] == 50);  // um
     CHECK(profile["CureTime"] == 4);
     CHECK(profile["SupportCureTime"] == 12);
@@ -193,8 +194,8 @@ TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
     for (const char* key : {"WaitBeforePrint", "WaitAfterPrint", "TopWait"}) CHECK_MESSAGE(profile.contains(key), key);
     CHECK(slicer["PWidth"] == 64);
     CHECK(slicer["PHeight"] == 48);
-    CHECK(slicer["XPixelSize"].get<double>() == doctest::Approx(0.1));  // mm
-    CHECK(slicer["YPixelSize"].get<double>() == doctest::Approx(0.1));
+    CHECK(slicer["XPixelSize"].get<double>() == near(0.1, {.relative = 1e-12}));  // mm
+    CHECK(slicer["YPixelSize"].get<double>() == near(0.1, {.relative = 1e-12}));
     CHECK(slicer["Thickness"] == 50);
     CHECK(slicer["ImageMirror"] == 0);
     CHECK(slicer["LayerCount"] == 10);
@@ -204,7 +205,7 @@ TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
         const bool there = k >= 4;
         CHECK(zip->has(fmt::format("{}.png", k + 1)));
         for (const char* key : {"TotalSolidArea", "LargestArea", "SmallestArea"})
-            CHECK(info[k][key].get<double>() == doctest::Approx(there ? 3.0 : 0.0));  // mm^2
+            CHECK(info[k][key].get<double>() == near(there ? 3.0 : 0.0, {.relative = 1e-12}));  // mm^2
         CHECK(info[k]["AreaCount"] == (there ? 1 : 0));
         CHECK(info[k]["MinX"] == (there ? 22 : 0));
         CHECK(info[k]["MaxX"] == (there ? 36 : 0));
@@ -226,9 +227,9 @@ TEST_CASE("info.json counts the pieces of a layer and measures the largest and t
     const auto info =
         json(*ZipReader::open(export_job(*archive, Format::nanodlp, folder / "b").value().at(0)), "info.json");
     CHECK(info[1]["AreaCount"] == 2);
-    CHECK(info[1]["LargestArea"].get<double>() == doctest::Approx(1.0));
-    CHECK(info[1]["SmallestArea"].get<double>() == doctest::Approx(0.1));
-    CHECK(info[1]["TotalSolidArea"].get<double>() == doctest::Approx(1.1));
+    CHECK(info[1]["LargestArea"].get<double>() == near(1.0, {.relative = 1e-12}));
+    CHECK(info[1]["SmallestArea"].get<double>() == near(0.1, {.relative = 1e-12}));
+    CHECK(info[1]["TotalSolidArea"].get<double>() == near(1.1, {.relative = 1e-12}));
 }
 
 TEST_CASE("a zip read as UVtools reads it; folders of vats as their contract says") {
@@ -256,7 +257,7 @@ TEST_CASE("every export that has a layer height gives it back") {
         const auto stack = ImageStack::open(written.value().at(0));
         REQUIRE(stack.has_value());
         REQUIRE(stack->layer_um().has_value());
-        CHECK(*stack->layer_um() == doctest::Approx(50));
+        CHECK(*stack->layer_um() == near(50, {.relative = 1e-12}));
     }
     REQUIRE(export_job(archive, Format::vats, folder / "c").has_value());
     CHECK_FALSE(ImageStack::open(folder / "c/vat_a")->layer_um().has_value());
@@ -313,7 +314,7 @@ TEST_CASE("what was exported comes back as a job, from zip files and from folder
         CHECK(after.layers[k].images[0].material == before.layers[k].images[0].material);
         CHECK(after.layers[k].images[0].area_mm2 == before.layers[k].images[0].area_mm2);
     }
-    CHECK(after.materials[1].model_volume_mm3 == doctest::Approx(0.9));
+    CHECK(after.materials[1].model_volume_mm3 == near(0.9, {.relative = 1e-12}));
     CHECK(after.warnings.empty());
 }
 

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "job/manifest.hpp"
 #include "job/png.hpp"
 #include "slice/slicer.hpp"
@@ -31,7 +32,7 @@ TEST_CASE("an island is listed, and white in its picture") {
     REQUIRE(findings.size() == 1);
     CHECK(findings[0].kind == "island");
     CHECK(findings[0].first_layer == 5);
-    CHECK(findings[0].area_mm2 == doctest::Approx(0.24));
+    CHECK(findings[0].area_mm2 == near(0.24, {.relative = 1e-12}));
     CHECK(findings[0].row == 148);
     CHECK(findings[0].column == 200);
 
@@ -68,13 +69,13 @@ TEST_CASE("the grain of the raster is one finding, after those that matter") {
     REQUIRE(findings.size() == most_findings + 1);
     CHECK(findings[0].severity == "high");
     CHECK(findings[0].count == 3);
-    CHECK(findings[0].area_mm2 == doctest::Approx(0.49));
+    CHECK(findings[0].area_mm2 == near(0.49, {.relative = 1e-12}));
     CHECK(findings[0].last_layer == 51);
     CHECK(findings[most_findings - 1].severity == "high");
     const Finding& grain = findings.back();
     CHECK(grain.severity == "low");
     CHECK(grain.count == 1453);
-    CHECK(grain.area_mm2 == doctest::Approx(0.03));
+    CHECK(grain.area_mm2 == near(0.03, {.relative = 1e-12}));
 
     Manifest m;
     m.width_px = m.height_px = 100;

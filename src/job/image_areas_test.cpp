@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::job;
 
@@ -28,9 +30,9 @@ TEST_CASE("pieces hang together through sides of pixels; grey counts as its shar
                                          "......"}));
     // Three whole pixels, one, and two faint ones that touch others by corners only.
     CHECK(a.count == 4);
-    CHECK(a.total_px == doctest::Approx(4.4));
-    CHECK(a.largest_px == doctest::Approx(3));
-    CHECK(a.smallest_px == doctest::Approx(0.2));
+    CHECK(a.total_px == near(4.4, {.relative = 1e-12}));
+    CHECK(a.largest_px == near(3, {.relative = 1e-12}));
+    CHECK(a.smallest_px == near(0.2, {.relative = 1e-12}));
     CHECK(a.min_x == 1);
     CHECK(a.max_x == 5);
     CHECK(a.min_y == 0);
@@ -44,7 +46,7 @@ TEST_CASE("a ring is one piece, its hole none; a faint rim belongs to its piece"
                                          "+###+",  //
                                          "+++++"}));
     CHECK(a.count == 1);
-    CHECK(a.total_px == doctest::Approx(5 + 14 * 0.2));
+    CHECK(a.total_px == near(5 + 14 * 0.2, {.relative = 1e-12}));
     CHECK(a.largest_px == a.total_px);
     CHECK(a.smallest_px == a.total_px);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "job/verify.hpp"
 #include "slice/test_shapes.hpp"
@@ -49,19 +50,19 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     REQUIRE(m.materials.size() == 2);
     CHECK(m.materials[0].resin == "flex");
     CHECK(m.materials[1].bottom_exposure_s == 12);
-    CHECK(m.materials[0].model_volume_mm3 == doctest::Approx(1.05 * 2 * 0.5 + 0.5 * 2 * 0.2).epsilon(1e-12));
+    CHECK(m.materials[0].model_volume_mm3 == near(1.05 * 2 * 0.5 + 0.5 * 2 * 0.2, {.relative = 1e-12}));
     CHECK(m.materials[0].model_area_mm2 ==
-          doctest::Approx(2 * (1.05 * 2 + 1.05 * 0.5 + 2 * 0.5) + 2 * (0.5 * 2 + 0.5 * 0.2 + 2 * 0.2)).epsilon(1e-12));
-    CHECK(m.materials[1].model_volume_mm3 == doctest::Approx(0.95 * 2 * 1).epsilon(1e-12));
+          near(2 * (1.05 * 2 + 1.05 * 0.5 + 2 * 0.5) + 2 * (0.5 * 2 + 0.5 * 0.2 + 2 * 0.2), {.relative = 1e-12}));
+    CHECK(m.materials[1].model_volume_mm3 == near(0.95 * 2 * 1, {.relative = 1e-12}));
     REQUIRE(m.layers.size() == 20);
     CHECK(m.layers[19].z_um == 1000);
     CHECK(m.layers[0].images.size() == 2);
     CHECK(m.layers[13].images.size() == 2);
     CHECK(m.layers[14].images.size() == 1);
     // The interface runs through the middle of a column, which goes whole to the later material.
-    CHECK(m.layers[0].images[0].area_mm2 == doctest::Approx(2.0).epsilon(1e-12));
-    CHECK(m.layers[0].images[1].area_mm2 == doctest::Approx(2.0).epsilon(1e-12));
-    CHECK(m.layers[12].images[0].area_mm2 == doctest::Approx(1.0).epsilon(1e-12));
+    CHECK(m.layers[0].images[0].area_mm2 == near(2.0, {.relative = 1e-12}));
+    CHECK(m.layers[0].images[1].area_mm2 == near(2.0, {.relative = 1e-12}));
+    CHECK(m.layers[12].images[0].area_mm2 == near(1.0, {.relative = 1e-12}));
     CHECK(m.layers[0].images[0].file == "layers/00000_soft_one.png");
     CHECK(m.layers[0].images[0].file != m.layers[0].images[1].file);
     const Image image = archive->image(m.layers[12].images[0].file).value();
@@ -139,15 +140,15 @@ TEST_CASE("exposures of layers, heights, shared light and findings reach the man
     CHECK(m.layers[2].z_um == 200);
     CHECK(m.layers[6].z_um == 400);
     const double wanted[] = {9, 9, 6, 3, 7, 3};
-    for (std::size_t k = 0; k < 6; ++k) CHECK(exposure_s(m, k, 0) == doctest::Approx(wanted[k]));
+    for (std::size_t k = 0; k < 6; ++k) CHECK(exposure_s(m, k, 0) == near(wanted[k], {.relative = 1e-12}));
     CHECK(exposure_s(m, 2, 1) == 4);
     // Two columns of 20 pixels of 0.01 mm^2.
-    CHECK(m.layers[0].images[0].shared_mm2 == doctest::Approx(0.4));
+    CHECK(m.layers[0].images[0].shared_mm2 == near(0.4, {.relative = 1e-12}));
     CHECK(m.layers[0].images[1].shared_mm2 == 0);
     REQUIRE(m.findings.size() == 1);
     CHECK(m.findings[0].kind == "island");
     CHECK(m.findings[0].first_layer == 5);
-    CHECK(m.findings[0].area_mm2 == doctest::Approx(0.25));
+    CHECK(m.findings[0].area_mm2 == near(0.25, {.relative = 1e-12}));
     CHECK(archive->has_file(m.findings[0].picture));
     CHECK(verify_images(*archive, false, "job.zip").has_value());
 }

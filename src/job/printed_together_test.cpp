@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "job/verify.hpp"
 #include "slice/test_shapes.hpp"
@@ -59,17 +60,17 @@ TEST_CASE("bodies of one resin are exposed at once, and each keeps its volume in
     REQUIRE(m.materials.size() == 2);
     CHECK(m.materials[0].name == "a+c");
     CHECK(m.materials[0].resin == "flex");
-    CHECK(m.materials[0].model_volume_mm3 == doctest::Approx(2.5));
-    CHECK(m.materials[0].model_area_mm2 == doctest::Approx(6 + 6 + 4));
+    CHECK(m.materials[0].model_volume_mm3 == near(2.5, {.relative = 1e-12}));
+    CHECK(m.materials[0].model_area_mm2 == near(6 + 6 + 4, {.relative = 1e-12}));
     REQUIRE(m.materials[0].parts.size() == 2);
     CHECK(m.materials[0].parts[0].name == "a");
-    CHECK(m.materials[0].parts[0].model_volume_mm3 == doctest::Approx(1));
+    CHECK(m.materials[0].parts[0].model_volume_mm3 == near(1, {.relative = 1e-12}));
     CHECK(m.materials[0].parts[1].name == "c");
-    CHECK(m.materials[0].parts[1].model_volume_mm3 == doctest::Approx(1.5));
+    CHECK(m.materials[0].parts[1].model_volume_mm3 == near(1.5, {.relative = 1e-12}));
     CHECK(m.materials[1].name == "b");
     CHECK(m.materials[1].parts.empty());
-    CHECK(m.layers[0].images.at(0).area_mm2 == doctest::Approx(2));
-    CHECK(m.layers[0].images.at(1).area_mm2 == doctest::Approx(1));
+    CHECK(m.layers[0].images.at(0).area_mm2 == near(2, {.relative = 1e-12}));
+    CHECK(m.layers[0].images.at(1).area_mm2 == near(1, {.relative = 1e-12}));
     CHECK(m.warnings.empty());
 }
 
@@ -94,7 +95,7 @@ TEST_CASE("transition layers of what is printed together are those of its parts"
     s.exposures["a"] = s.exposures["c"] = {2, 3, 0, 50, {}};
     const Manifest m = made_of(row, s);
     CHECK(m.layers[0].images.at(0).exposure_s == 0);
-    CHECK(m.layers[2].images.at(0).exposure_s == doctest::Approx(bottom_s - (bottom_s - normal_s) / 4));
+    CHECK(m.layers[2].images.at(0).exposure_s == near(bottom_s - (bottom_s - normal_s) / 4, {.relative = 1e-12}));
     CHECK(m.layers[2].images.at(1).exposure_s == 0);
 }
 

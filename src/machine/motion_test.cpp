@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant::machine;
+using pliant::near;
 
 namespace {
 
@@ -20,18 +23,18 @@ Printer simple() {
 TEST_CASE("a long move is a trapezoid, a short one a triangle") {
     const Printer p = simple();
     // 100 mm at 10 mm/s and 0.5 s of ramp on either side: 100/10 + 10/20.
-    CHECK(move_seconds(p, {{0, 0, 0}}, {{100000, 0, 0}}, 0) == doctest::Approx(10.5));
+    CHECK(move_seconds(p, {{0, 0, 0}}, {{100000, 0, 0}}, 0) == near(10.5, {.relative = 1e-12}));
     // Half the speed by the feed rate: 100/5 + 5/20.
-    CHECK(move_seconds(p, {{0, 0, 0}}, {{100000, 0, 0}}, 5) == doctest::Approx(20.25));
+    CHECK(move_seconds(p, {{0, 0, 0}}, {{100000, 0, 0}}, 5) == near(20.25, {.relative = 1e-12}));
     // 1.25 mm: never reaches 10 mm/s (that takes 5 mm); 2 sqrt(1.25/20).
-    CHECK(move_seconds(p, {{0, 0, 0}}, {{1250, 0, 0}}, 0) == doctest::Approx(0.5));
+    CHECK(move_seconds(p, {{0, 0, 0}}, {{1250, 0, 0}}, 0) == near(0.5, {.relative = 1e-12}));
     CHECK(move_seconds(p, {{0, 0, 0}}, {{0, 0, 0}}, 0) == 0);
 }
 
 TEST_CASE("in a coordinated move the slowest axis sets the pace") {
     const Printer p = simple();
     // Along the diagonal both ways are 20 mm: the platform alone would take 20/4 + 4/8.
-    CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == doctest::Approx(5.5));
+    CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == near(5.5, {.relative = 1e-12}));
 }
 
 TEST_CASE("the way is covered symmetrically") {
@@ -47,6 +50,6 @@ TEST_CASE("the way is covered symmetrically") {
 
 TEST_CASE("homing goes to the switch at homing speed") {
     const Printer p = simple();
-    CHECK(home_seconds(p, Axis::platform, 40000) == doctest::Approx(12));
-    CHECK(home_seconds(p, Axis::carriage, 40000) == doctest::Approx(8));
+    CHECK(home_seconds(p, Axis::platform, 40000) == near(12, {.relative = 1e-12}));
+    CHECK(home_seconds(p, Axis::carriage, 40000) == near(8, {.relative = 1e-12}));
 }

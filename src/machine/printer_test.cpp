@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 
 using namespace pliant;
@@ -40,20 +41,20 @@ TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
     CHECK(printer->axis(Axis::tower).letter == 'Y');
     CHECK(printer->axis(Axis::platform).home_um() == 400000);
     CHECK(printer->axis(Axis::carriage).home_um() == 0);
-    CHECK(printer->axis(Axis::carriage).speed_mm_s == doctest::Approx(15.2));
+    CHECK(printer->axis(Axis::carriage).speed_mm_s == near(15.2, {.relative = 1e-12}));
     CHECK(printer->platform.width_um == 304800);
     CHECK(printer->platform.depth_um == 152400);
     CHECK(printer->tower.pitch_um == 203200);
     CHECK(printer->level_um(1) == 30000);
     CHECK(printer->level_um(4) == 30000 + 3 * 203200);
     CHECK(printer->clear_um(10000) == 10000 + 82550 + 2000);
-    CHECK(printer->vat_shape.volume_ml == doctest::Approx(3834.573).epsilon(1e-6));
+    CHECK(printer->vat_shape.volume_ml == near(3834.573, {.relative = 1e-6}));
     REQUIRE(printer->vats.size() == 4);
     CHECK(printer->vats[1].resin == "rigid-flex");
     CHECK(printer->vat_of_slot(5) == nullptr);
     CHECK(printer->find_resin("semi-flex")->bottom_exposure_s == 12);
     CHECK(printer->find_resin("water") == nullptr);
-    CHECK(printer->projector.pixel_um * printer->projector.width_px == doctest::Approx(304800));
+    CHECK(printer->projector.pixel_um * printer->projector.width_px == near(304800, {.relative = 1e-12}));
     CHECK(printer->pump.on == "M106 P1 S255");
 }
 
@@ -140,7 +141,7 @@ TEST_CASE("a brush: its height, its share, what they are without being said, and
     CHECK(tower.brushed_share() == 0.29);
     const std::string keys = "brush_share = 0.29 ";
     const Printer plain = parse_printer(replaced(tower_text(), keys, "#"), "p.toml").value();
-    CHECK(plain.brushed_share() == doctest::Approx((0.12 + 0.07 + 0.69 + 0.27) / 4));  // a cloth, table 4.2
+    CHECK(plain.brushed_share() == near((0.12 + 0.07 + 0.69 + 0.27) / 4, {.relative = 1e-12}));  // a cloth, table 4.2
     const Printer bare = parse_printer(replaced(tower_text(), "brush = true", "brush = false"), "p.toml").value();
     CHECK_FALSE(bare.has_brush());
     CHECK(bare.push_um(10000) == bare.clear_um(10000));
@@ -158,9 +159,9 @@ TEST_CASE("sprinklers have a place, a direction of length 1 and a cone") {
     REQUIRE(tower.sprinklers.size() == 3);
     const Sprinkler& head = tower.sprinklers[1];
     CHECK(head.place_mm == std::array<double, 3>{120, -60, 20});
-    CHECK(std::hypot(head.aim[0], head.aim[1], head.aim[2]) == doctest::Approx(1));
-    CHECK(head.aim[0] / head.aim[1] == doctest::Approx(-1.5 / 0.94));
-    CHECK(head.cone_rad == doctest::Approx(100 * 3.14159265358979 / 180));
+    CHECK(std::hypot(head.aim[0], head.aim[1], head.aim[2]) == near(1, {.relative = 1e-12}));
+    CHECK(head.aim[0] / head.aim[1] == near(-1.5 / 0.94, {.relative = 1e-12}));
+    CHECK(head.cone_rad == near(100 * 3.14159265358979 / 180, {.relative = 1e-12}));
     CHECK(holds(message_with("aim = [1.5, 0.94, 1]", "aim = [0, 0, 0]"), "sprinkler[0].aim: must be a direction"));
     CHECK(holds(message_with("cone = \"100 deg\"", "cone = \"180 deg\""), "sprinkler[0].cone: must be above 0"));
     CHECK(holds(message_with("cone = \"100 deg\"", "cone = \"100 deg\"\nflow = 0"), "flow: must be above 0"));

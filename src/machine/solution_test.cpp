@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 
 using namespace pliant;
@@ -32,10 +33,10 @@ TEST_CASE("solution goes round: what evaporates is gone, what is washed off gath
     const Printer p = printer_with_reservoir();
     SolutionCircuit c(p);
     c.clean(15, 1);
-    CHECK(c.pumped_ml() == doctest::Approx(30));
-    CHECK(c.used_ml() == doctest::Approx(3));
-    CHECK(c.liquid_ml() == doctest::Approx(1000 - 3 + 1));
-    CHECK(c.resin_share() / (1.0 / 998) == doctest::Approx(1));
+    CHECK(c.pumped_ml() == near(30, {.relative = 1e-12}));
+    CHECK(c.used_ml() == near(3, {.relative = 1e-12}));
+    CHECK(c.liquid_ml() == near(1000 - 3 + 1, {.relative = 1e-12}));
+    CHECK(c.resin_share() / (1.0 / 998) == near(1, {.relative = 1e-12}));
     CHECK_FALSE(c.needs());
     int cleanings = 1;
     for (; !c.needs(); ++cleanings) c.clean(15, 1);
@@ -46,7 +47,7 @@ TEST_CASE("solution goes round: what evaporates is gone, what is washed off gath
     c.care(SolutionCare::change);
     CHECK(c.liquid_ml() == 1000);
     CHECK(c.resin_share() == 0);
-    CHECK(c.used_ml() == doctest::Approx(46 * 3 + in_it));
+    CHECK(c.used_ml() == near(46 * 3 + in_it, {.relative = 1e-12}));
 }
 
 TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low is topped up") {
@@ -55,8 +56,8 @@ TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low
     p.solution.evaporation_ml_h = 90;
     SolutionCircuit c(p);
     c.wait(3600);
-    CHECK(c.liquid_ml() == doctest::Approx(910));
-    CHECK(c.resin_share() / (10.0 / 910) == doctest::Approx(1));
+    CHECK(c.liquid_ml() == near(910, {.relative = 1e-12}));
+    CHECK(c.resin_share() / (10.0 / 910) == near(1, {.relative = 1e-12}));
     c.wait(9 * 3600.0 + 60);
     CHECK(c.draws_air());
     CHECK(c.needs() == SolutionCare::change);  // it has become too strong as well, which is worse
@@ -64,9 +65,9 @@ TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low
     CHECK(SolutionCircuit(c).needs() == SolutionCare::top_up);
     c.care(SolutionCare::top_up);
     CHECK(c.liquid_ml() == 1000);
-    CHECK(c.resin_ml() == doctest::Approx(10));
+    CHECK(c.resin_ml() == near(10, {.relative = 1e-12}));
     c.wait(1e9);
-    CHECK(c.liquid_ml() == doctest::Approx(10));  // never below its resin
+    CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never below its resin
 }
 
 TEST_CASE("a filter keeps its share until it is full") {
@@ -75,12 +76,12 @@ TEST_CASE("a filter keeps its share until it is full") {
     p.solution.filter_ml = 2;
     SolutionCircuit c(p);
     c.clean(1, 3);
-    CHECK(c.filter_ml() == doctest::Approx(1.5));
-    CHECK(c.resin_ml() == doctest::Approx(1.5));
+    CHECK(c.filter_ml() == near(1.5, {.relative = 1e-12}));
+    CHECK(c.resin_ml() == near(1.5, {.relative = 1e-12}));
     CHECK_FALSE(c.needs());
     c.clean(1, 3);
-    CHECK(c.filter_ml() == doctest::Approx(2));
-    CHECK(c.resin_ml() == doctest::Approx(4));
+    CHECK(c.filter_ml() == near(2, {.relative = 1e-12}));
+    CHECK(c.resin_ml() == near(4, {.relative = 1e-12}));
     CHECK(c.needs() == SolutionCare::clean_filter);
     c.care(SolutionCare::clean_filter);
     CHECK_FALSE(c.needs());
@@ -92,7 +93,7 @@ TEST_CASE("without a reservoir every cleaning takes fresh solution") {
     SolutionCircuit c(p);
     c.clean(15, 1);
     c.wait(1e6);
-    CHECK(c.used_ml() == doctest::Approx(30));
+    CHECK(c.used_ml() == near(30, {.relative = 1e-12}));
     CHECK(c.resin_share() == 0);
     CHECK_FALSE(c.needs());
     CHECK_FALSE(c.draws_air());
@@ -100,8 +101,8 @@ TEST_CASE("without a reservoir every cleaning takes fresh solution") {
 
 TEST_CASE("a reservoir in the printer file, and the slips") {
     const Printer tower = load_printer("examples/printers/tower.toml").value();
-    CHECK(tower.solution.volume_ml == doctest::Approx(5000));
-    CHECK(tower.solution.fill_ml == doctest::Approx(5000));
+    CHECK(tower.solution.volume_ml == near(5000, {.relative = 1e-12}));
+    CHECK(tower.solution.fill_ml == near(5000, {.relative = 1e-12}));
     CHECK(tower.solution.spent_share == 0.1);
     const std::string key = "volume = \"5 l\"";
     CHECK(error_of(key, key + "\nfill = \"4 l\"\nresin_share = 0.03") == "");

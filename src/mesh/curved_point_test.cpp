@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/near.hpp"
 #include "mesh/curved_tets.hpp"
 #include "mesh/test_tets.hpp"
 #include "mesh/tet_locator.hpp"
@@ -77,7 +78,7 @@ TEST_CASE("the inverse of the quadratic map gives points back") {
             const Vec3 p = curved_position(nodes, b);
             const CurvedPoint found = nearest_in_curved_tet(nodes, p);
             worst = std::max(worst, norm(curved_position(nodes, found.barycentric) - p));
-            for (std::size_t i = 0; i < 4; ++i) CHECK(found.barycentric[i] == doctest::Approx(b[i]).epsilon(1e-9));
+            for (std::size_t i = 0; i < 4; ++i) CHECK(found.barycentric[i] == near(b[i], {.relative = 1e-9}));
         }
     }
     CHECK(worst < 1e-12);
@@ -99,8 +100,8 @@ TEST_CASE("degenerate and folded tets end with a point, not nearer than any othe
             CHECK(b >= 0);
             sum += b;
         }
-        CHECK(sum == doctest::Approx(1));
-        CHECK(norm(curved_position(nodes, found.barycentric) - p) == doctest::Approx(found.distance));
+        CHECK(sum == near(1, {.relative = 1e-12}));
+        CHECK(norm(curved_position(nodes, found.barycentric) - p) == near(found.distance, {.relative = 1e-12}));
     }
 }
 
@@ -132,5 +133,5 @@ TEST_CASE("a locator finds points of a curved mesh where they are") {
     CHECK(locator.locate(p).distance < 1e-3);
     // Outside, the distance is that to the sphere as far as the mesh is one.
     const Vec3 q = 1.1 * p;
-    CHECK(locator.locate(q).distance == doctest::Approx(norm(q) - 10).epsilon(5e-3));
+    CHECK(locator.locate(q).distance == near(norm(q) - 10, {.relative = 5e-3}));
 }

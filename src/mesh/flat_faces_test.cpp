@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/mesher.hpp"
 #include "mesh/test_shapes.hpp"
@@ -96,7 +97,7 @@ TEST_CASE("triangles become the faces that were drawn: holes, cavities and coord
             REQUIRE(whole);
             const Result<double> volume = solid_volume(*whole);
             REQUIRE_MESSAGE(volume, (volume ? "" : volume.error().message));
-            CHECK(*volume == doctest::Approx(row.volume).epsilon(1e-5));
+            CHECK(*volume == near(row.volume, {.relative = 1e-5}));
         }
     }
 }
@@ -114,18 +115,18 @@ TEST_CASE("surfaces that touch each other or a drawn body share the nodes of the
     const TriMesh below = rounded(triangles(askew(box({0, 0, 0}, {20, 20, 5}))));
     const TriMesh above = rounded(triangles(askew(box({5, 5, 5}, {12, 12, 15}))));
     const TetMesh both = mesh_of({{"below", below}, {"above", above}}, 3);
-    CHECK(volume(both, 0) == doctest::Approx(2000).epsilon(1e-4));
-    CHECK(volume(both, 1) == doctest::Approx(490).epsilon(1e-4));
-    CHECK(shared_area(both, 0, 1) == doctest::Approx(49).epsilon(1e-4));
+    CHECK(volume(both, 0) == near(2000, {.relative = 1e-4}));
+    CHECK(volume(both, 1) == near(490, {.relative = 1e-4}));
+    CHECK(shared_area(both, 0, 1) == near(49, {.relative = 1e-4}));
     const TetMesh mixed = mesh_of({{"below", below}, {"above", askew(box({5, 5, 5}, {12, 12, 15}))}}, 3);
-    CHECK(shared_area(mixed, 0, 1) == doctest::Approx(49).epsilon(1e-4));
+    CHECK(shared_area(mixed, 0, 1) == near(49, {.relative = 1e-12}));
 }
 
 TEST_CASE("of surfaces that overlap the later one has what they share") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
     const TriMesh pin = rounded(triangles(askew(box({0, 0, 0}, {4, 4, 10}))));
     const TetMesh mesh = mesh_of({{"pin", pin}, {"plate", plate}}, 3);
-    CHECK(volume(mesh, 1) == doctest::Approx(2000).epsilon(1e-6));
+    CHECK(volume(mesh, 1) == near(2000, {.relative = 1e-12}));
     REQUIRE(mesh.notes.size() >= 1);
     CHECK(mesh.notes[0].find("overlap") != std::string::npos);
 }
@@ -153,9 +154,9 @@ TEST_CASE("a cylinder of chords is no polyhedron; with a plate it becomes one me
     CHECK_FALSE(polyhedron(pin));
     const TetMesh mesh = mesh_of({{"plate", plate}, {"pin", pin}}, 1.5);
     const double whole = signed_volume(pin);
-    CHECK(whole == doctest::Approx(9 * std::numbers::pi * 13).epsilon(0.05));
-    CHECK(volume(mesh, 1) == doctest::Approx(whole).epsilon(0.02));
-    CHECK(volume(mesh, 0) == doctest::Approx(2000 - whole * 3 / 13).epsilon(0.005));
+    CHECK(whole == near(9 * std::numbers::pi * 13, {.relative = 0.05}));
+    CHECK(volume(mesh, 1) == near(whole, {.relative = 0.02}));
+    CHECK(volume(mesh, 0) == near(2000 - whole * 3 / 13, {.relative = 0.005}));
     REQUIRE(mesh.notes.size() == 2);
     CHECK(mesh.notes[1].find("body \"plate\" and body \"pin\" overlap by about 8") != std::string::npos);
 }

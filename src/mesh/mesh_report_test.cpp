@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "mesh/surface_file.hpp"
 #include "mesh/tet_file.hpp"
@@ -37,15 +38,15 @@ std::string described(std::string_view bytes) {
 
 TEST_CASE("a regular tet has quality 1 and dihedral angles of acos(1/3)") {
     const MeshReport report = report_on(one_tet({{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}));
-    CHECK(report.worst_quality == doctest::Approx(1));
-    CHECK(report.min_dihedral_deg == doctest::Approx(std::acos(1.0 / 3) * 180 / std::numbers::pi));
-    CHECK(report.regions.front().volume == doctest::Approx(8.0 / 3));
+    CHECK(report.worst_quality == near(1, {.relative = 1e-12}));
+    CHECK(report.min_dihedral_deg == near(std::acos(1.0 / 3) * 180 / std::numbers::pi, {.relative = 1e-12}));
+    CHECK(report.regions.front().volume == near(8.0 / 3, {.relative = 1e-12}));
 }
 
 TEST_CASE("a corner of a cube has angles of 90 and acos(1/sqrt 3), and longest edge sqrt 2") {
     const MeshReport report = report_on(one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
-    CHECK(report.worst_quality == doctest::Approx(0.5));  // 6 sqrt 2 (1/6) / (2 sqrt 2)
-    CHECK(report.min_dihedral_deg == doctest::Approx(54.7356).epsilon(1e-5));
+    CHECK(report.worst_quality == near(0.5, {.relative = 1e-12}));  // 6 sqrt 2 (1/6) / (2 sqrt 2)
+    CHECK(report.min_dihedral_deg == near(54.7356, {.relative = 1e-5}));
 }
 
 TEST_CASE("the text names size, regions and quality; an empty mesh has a report too") {

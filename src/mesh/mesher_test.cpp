@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/surface_check.hpp"
 #include "mesh/test_shapes.hpp"
@@ -42,11 +43,11 @@ std::string problem(const std::vector<BodyGeometry>& bodies, double size) {
 TEST_CASE("a notched bar keeps its volume and its sharp edges, for any number of notches") {
     for (const int gaps : {1, 3, 6}) {
         const TetMesh mesh = mesh_of({{"bar", notched_bar(gaps)}}, 5);
-        CHECK(volume(mesh) == doctest::Approx(100 * 20 * 15 - gaps * 20 * 10 * 5.5).epsilon(1e-9));
+        CHECK(volume(mesh) == near(100 * 20 * 15 - gaps * 20 * 10 * 5.5, {.relative = 1e-9}));
         const MeshReport report = report_on(mesh);
         CHECK(report.worst_quality > 0.05);
         CHECK(report.median_quality > 0.25);
-        CHECK(report.box.size().x == doctest::Approx(100));
+        CHECK(report.box.size().x == near(100, {.relative = 1e-12}));
     }
 }
 
@@ -54,8 +55,8 @@ TEST_CASE("bodies that touch share the nodes of their common face") {
     const TetMesh mesh =
         mesh_of({{"left", box({0, 0, 0}, {10, 10, 10})}, {"right", box({10, 0, 0}, {20, 10, 10})}}, 4, 2);
     CHECK(mesh.region_names == std::vector<std::string>{"left", "right"});
-    CHECK(volume(mesh, 0) == doctest::Approx(1000).epsilon(1e-9));
-    CHECK(volume(mesh, 1) == doctest::Approx(1000).epsilon(1e-9));
+    CHECK(volume(mesh, 0) == near(1000, {.relative = 1e-9}));
+    CHECK(volume(mesh, 1) == near(1000, {.relative = 1e-9}));
     TriMesh outer{mesh.points, {}};
     double area = 0;
     for (const Face& face : boundary_faces(mesh)) {
@@ -64,13 +65,13 @@ TEST_CASE("bodies that touch share the nodes of their common face") {
         area += 0.5 * norm(cross(p[face.nodes[1]] - p[face.nodes[0]], p[face.nodes[2]] - p[face.nodes[0]]));
     }
     CHECK(check_closed(outer));
-    CHECK(area == doctest::Approx(2 * 100 + 4 * 200));  // nothing of the common face is left outside
+    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // nothing of the common face is left outside
 }
 
 TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
     const Solid ball = solid(SphereSolid{{1, 2, 3}, 5});
     const double exact = 4.0 / 3 * std::numbers::pi * 125;
-    CHECK(*solid_volume(ball) == doctest::Approx(exact).epsilon(1e-6));
+    CHECK(*solid_volume(ball) == near(exact, {.relative = 1e-12}));
     const double coarse = exact - volume(mesh_of({{"ball", ball}}, 3));
     const double fine = exact - volume(mesh_of({{"ball", ball}}, 1));
     CHECK(coarse > 0);
@@ -87,7 +88,7 @@ TEST_CASE("round bodies approach their volume, faster with curved quadratic tets
 TEST_CASE("rotation, translation and union by the kernel agree with membership") {
     const Solid arm = solid(RotatedSolid{box({0, -1, -1}, {10, 1, 1}), {0, 0, 0}, {0, 0, 1}, std::numbers::pi / 2});
     const Solid cross = solid(CombinedSolid{CombinedSolid::Operation::unite, {box({0, -1, -1}, {10, 1, 1}), arm}});
-    CHECK(*solid_volume(cross) == doctest::Approx(40 + 40 - 2));
+    CHECK(*solid_volume(cross) == near(40 + 40 - 2, {.relative = 1e-12}));
     const TetMesh mesh = mesh_of({{"cross", cross}}, 2);
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         Vec3 centroid;
@@ -99,23 +100,23 @@ TEST_CASE("rotation, translation and union by the kernel agree with membership")
 TEST_CASE("repeated copies are united whether they overlap, touch or stand apart") {
     for (const auto& [step, exact] : {std::pair(0.5, 3.5), std::pair(1.0, 6.0), std::pair(1.5, 6.0)}) {
         const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 6, {step, 0, 0}});
-        CHECK(*solid_volume(row) == doctest::Approx(exact));
+        CHECK(*solid_volume(row) == near(exact, {.relative = 1e-12}));
         const Solid rest = without(box({-1, -1, -1}, {11, 2, 2}), row);
-        CHECK(*solid_volume(rest) == doctest::Approx(108 - exact));
+        CHECK(*solid_volume(rest) == near(108 - exact, {.relative = 1e-12}));
     }
     const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 3, {1, 0, 0}});
-    CHECK(volume(mesh_of({{"row", row}}, 1)) == doctest::Approx(3));
+    CHECK(volume(mesh_of({{"row", row}}, 1)) == near(3, {.relative = 1e-12}));
 }
 
 TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     const Result<TriMesh> bar = tessellate(notched_bar(6), 0.01);
     REQUIRE_MESSAGE(bar, (bar ? "" : bar.error().message));
     CHECK(check_closed(*bar));
-    CHECK(signed_volume(*bar) == doctest::Approx(30000 - 6 * 1100).epsilon(1e-9));
+    CHECK(signed_volume(*bar) == near(30000 - 6 * 1100, {.relative = 1e-9}));
     const Result<TriMesh> ball = tessellate(solid(SphereSolid{{0, 0, 0}, 5}), 0.01);
     REQUIRE(ball);
     CHECK(check_closed(*ball));
-    CHECK(signed_volume(*ball) == doctest::Approx(4.0 / 3 * std::numbers::pi * 125).epsilon(5e-3));
+    CHECK(signed_volume(*ball) == near(4.0 / 3 * std::numbers::pi * 125, {.relative = 5e-3}));
 }
 
 TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance") {
@@ -127,8 +128,8 @@ TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance")
         const Result<TriMesh> hollow = tessellate(without(cube, cavity), 0.01);
         REQUIRE_MESSAGE(hollow, (hollow ? "" : hollow.error().message));
         CHECK(check_closed(*hollow));
-        CHECK(signed_volume(*hollow) == doctest::Approx(8000 - gone).epsilon(1e-3));
-        CHECK(signed_volume(*tessellate(cavity, 0.01)) == doctest::Approx(gone).epsilon(1e-2));
+        CHECK(signed_volume(*hollow) == near(8000 - gone, {.relative = 1e-3}));
+        CHECK(signed_volume(*tessellate(cavity, 0.01)) == near(gone, {.relative = 1e-2}));
     }
     double farthest = 0;
     const TriMesh surface = *tessellate(ball, 0.01);
@@ -142,14 +143,14 @@ TEST_CASE("a wall thinner than the chords of its curve is followed more closely"
     const Solid tube =
         without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));
     const double exact = std::numbers::pi * (25 - 4.8 * 4.8) * 10;
-    CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == doctest::Approx(exact).epsilon(0.05));
+    CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == near(exact, {.relative = 0.05}));
 }
 
 TEST_CASE("a surface body is meshed anew to the wanted size") {
     const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
     REQUIRE(surface);
     const TetMesh mesh = mesh_of({{"bar", *surface}}, 4);
-    CHECK(volume(mesh) == doctest::Approx(30000 - 3 * 1100).epsilon(1e-6));
+    CHECK(volume(mesh) == near(30000 - 3 * 1100, {.relative = 1e-12}));
     CHECK(mesh.tet_count() > 1000);
     CHECK(report_on(mesh).worst_quality > 0.02);
 }
@@ -158,7 +159,7 @@ TEST_CASE("the mesh size is judged by the material, not by the box around it") {
     const Solid rod = box({0, 0, 0}, {500, 2, 2});
     const Solid turned = solid(RotatedSolid{rod, {0, 0, 0}, {0, 0, 1}, 0.7});
     const Solid tilted = solid(RotatedSolid{turned, {0, 0, 0}, {0, 1, 0}, 0.7});
-    CHECK(volume(mesh_of({{"rod", tilted}}, 2)) == doctest::Approx(2000).epsilon(1e-9));
+    CHECK(volume(mesh_of({{"rod", tilted}}, 2)) == near(2000, {.relative = 1e-9}));
     // A thin sheet has little volume and many triangles.
     CHECK(problem({{"sheet", box({0, 0, 0}, {500, 500, 1e-4})}}, 0.1).find("tetrahedra, more than") !=
           std::string::npos);
@@ -184,7 +185,7 @@ TEST_CASE("a surface body may have several shells and cavities") {
     REQUIRE(surface);
     const TetMesh mesh = mesh_of({{"a", *surface}}, 3, 2);
     CHECK(mesh.order == 2);
-    CHECK(volume(mesh) == doctest::Approx(1000 - 64 + 1000).epsilon(1e-6));
+    CHECK(volume(mesh) == near(1000 - 64 + 1000, {.relative = 1e-12}));
 }
 
 TEST_CASE("a small hole keeps its round quadratic faces") {
@@ -215,13 +216,13 @@ TEST_CASE("where bodies overlap the later one wins, and a note tells the volume"
     const Solid left = box({0, 0, 0}, {10, 10, 10});
     const Solid right = box({8, 0, 0}, {20, 10, 10});
     const TetMesh mesh = mesh_of({{"left", left}, {"right", right}}, 4, 1);
-    CHECK(volume(mesh, 0) == doctest::Approx(800).scale(0));
-    CHECK(volume(mesh, 1) == doctest::Approx(1200).scale(0));
+    CHECK(volume(mesh, 0) == near(800, {.relative = 1e-12}));
+    CHECK(volume(mesh, 1) == near(1200, {.relative = 1e-12}));
     REQUIRE(mesh.notes.size() == 1);
     CHECK(mesh.notes[0].find("\"left\" and \"right\" overlap in a volume of 200 ") == 0);
     CHECK(mesh.notes[0].find("belongs to \"right\"") != std::string::npos);
     const TetMesh other = mesh_of({{"right", right}, {"left", left}}, 4, 1);
-    CHECK(volume(other, 0) == doctest::Approx(1000).scale(0));
+    CHECK(volume(other, 0) == near(1000, {.relative = 1e-12}));
 }
 
 TEST_CASE("enclosed space is a region of its own, with a cap where it has a mouth") {
@@ -230,15 +231,15 @@ TEST_CASE("enclosed space is a region of its own, with a cap where it has a mout
     };
     const Solid shell = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
     const TetMesh closed = mesh_of({{"shell", shell}, {"air", enclosed({5, 5, 5}, {shell})}}, 4, 1);
-    CHECK(volume(closed, 1) == doctest::Approx(64).scale(0));
+    CHECK(volume(closed, 1) == near(64, {.relative = 1e-12}));
     CHECK(boundary_faces(closed).size() < region_faces(closed, 0).size());  // the air fills the cavity
     const Solid pot = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 11}));
     const std::string open = problem({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot})}}, 4);
     CHECK(open.find("chamber \"air\": the point (5, 5, 5) lies in no closed cavity") != std::string::npos);
     const Solid lid = box({2, 2, 10}, {8, 8, 11});
     const TetMesh capped = mesh_of({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot, lid})}}, 4, 1);
-    CHECK(volume(capped, 0) == doctest::Approx(1000 - 7 * 16).scale(0));
-    CHECK(volume(capped, 1) == doctest::Approx(7 * 16).scale(0));
+    CHECK(volume(capped, 0) == near(1000 - 7 * 16, {.relative = 1e-12}));
+    CHECK(volume(capped, 1) == near(7 * 16, {.relative = 1e-12}));
 }
 
 TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
@@ -270,10 +271,10 @@ TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
         };
         const TetMesh open = mesh_with(*row.bodies, 0.003);
         CHECK(open.notes.empty());
-        CHECK(area(open) == doctest::Approx(row.whole).epsilon(0.02));
+        CHECK(area(open) == near(row.whole, {.relative = 0.02}));
         const TetMesh closed = mesh_with(*row.bodies, 0.01);
-        CHECK(area(closed) == doctest::Approx(row.whole - 2 * row.between).epsilon(0.02));
-        CHECK(volume(closed) == doctest::Approx(volume(open)).epsilon(0.01));
+        CHECK(area(closed) == near(row.whole - 2 * row.between, {.relative = 0.02}));
+        CHECK(volume(closed) == near(volume(open), {.relative = 0.01}));
         REQUIRE(closed.notes.size() == 1);
         CAPTURE(closed.notes.front());
         CHECK(closed.notes.front().find("between \"" + row.bodies->front().name) != std::string::npos);
@@ -308,7 +309,7 @@ TEST_CASE("drawn solids get no sliver") {
          {Box{{20, 5, 2}, 3}, Box{{20, 10, 4}, 3}, Box{{20, 20, 2}, 2.3}, Box{{37, 5, 2}, 1.7}, Box{{37, 5, 2}, 3},
           Box{{37, 5, 4}, 3}, Box{{37, 5, 7}, 4}, Box{{37, 5, 12}, 4}}) {
         const TetMesh mesh = mesh_of({{"box", box({0, 0, 0}, sides)}}, size, 2);
-        CHECK(volume(mesh) == doctest::Approx(sides.x * sides.y * sides.z).epsilon(1e-9));
+        CHECK(volume(mesh) == near(sides.x * sides.y * sides.z, {.relative = 1e-9}));
         const double angle = smallest_dihedral_deg(mesh);
         CHECK_MESSAGE(angle >= 5, angle << " degrees: " << sides.x << " x " << sides.y << " x " << sides.z);
     }

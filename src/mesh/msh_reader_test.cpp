@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "mesh/tet_file.hpp"
 
@@ -91,15 +92,15 @@ TEST_CASE("version 2: physical volumes are regions with their names; all else is
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->points.size() == 5);
     CHECK(mesh->region_names == std::vector<std::string>{"grip", "soft foam"});
-    CHECK(volume(*mesh, 0) == doctest::Approx(1.0 / 6));
-    CHECK(volume(*mesh, 1) == doctest::Approx(1.0 / 3));  // it was inside out
+    CHECK(volume(*mesh, 0) == near(1.0 / 6, {.relative = 1e-12}));
+    CHECK(volume(*mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));  // it was inside out
 }
 
 TEST_CASE("version 4: groups come by the volume they belong to") {
     const Result<TetMesh> mesh = parse_tet_mesh(version_4, "a.msh");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"body", "0"});  // the second volume is in no group
-    CHECK(volume(*mesh) == doctest::Approx(0.5));
+    CHECK(volume(*mesh) == near(0.5, {.relative = 1e-12}));
     const Result<TetMesh> plain = parse_msh(replaced(version_4, "1 1 1 1 7 0", "1 1 1 0 0"), "a.msh");
     REQUIRE(plain);
     CHECK(plain->region_names == std::vector<std::string>{"1", "2"});

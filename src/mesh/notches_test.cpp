@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "mesh/mesher.hpp"
 #include "mesh/test_shapes.hpp"
 
@@ -42,11 +43,11 @@ TEST_CASE("a notch is filled to its mouth and its ends: V, box, half round, skew
         REQUIRE(found.size() == 1);
         return found[0];
     };
-    CHECK(only(volumes(without(bar, v), path)) == doctest::Approx(0.5 * 10 * 10 * 20).epsilon(1e-6));
-    CHECK(only(volumes(without(bar, u), path)) == doctest::Approx(4 * 10 * 20).epsilon(1e-6));
-    CHECK(only(volumes(without(bar, round), path)) == doctest::Approx(0.5 * std::numbers::pi * 36 * 20).epsilon(1e-4));
+    CHECK(only(volumes(without(bar, v), path)) == near(0.5 * 10 * 10 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, u), path)) == near(4 * 10 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, round), path)) == near(0.5 * std::numbers::pi * 36 * 20, {.relative = 1e-12}));
     const double top = (22.0 + 10) - (20 - 10.0 / 11);
-    CHECK(only(volumes(without(bar, skewed), path)) == doctest::Approx(0.5 * (2 + top) * 10 * 20).epsilon(1e-6));
+    CHECK(only(volumes(without(bar, skewed), path)) == near(0.5 * (2 + top) * 10 * 20, {.relative = 1e-12}));
 }
 
 TEST_CASE("a bore for the cable through the flanks stays empty; every notch counts once, open ends do not") {
@@ -55,14 +56,13 @@ TEST_CASE("a bore for the cable through the flanks stays empty; every notch coun
     const Solid bore = solid(CylinderSolid{{-1, 10, 13}, {41, 10, 13}, 0.5});
     const auto plain = volumes(without(bar, notches), path);
     REQUIRE(plain.size() == 3);
-    for (const double volume : plain)
-        CHECK(volume == doctest::Approx(0.5 * 2 * (2.0 * 10 / 10.1) * 10 * 20).epsilon(1e-6));
+    for (const double volume : plain) CHECK(volume == near(0.5 * 2 * (2.0 * 10 / 10.1) * 10 * 20, {.relative = 1e-12}));
     // In its bore the cable leaves no material: the flanks are not found, and neither is a notch.
     CHECK(volumes(without(without(bar, notches), bore), path).empty());
     const std::vector<Vec3> beside = {{-5, 4, 13}, {45, 4, 13}};
     const auto bored = volumes(without(without(bar, notches), bore), beside);
     REQUIRE(bored.size() == 3);
-    CHECK(bored[1] == doctest::Approx(plain[1]).epsilon(1e-6));
+    CHECK(bored[1] == near(plain[1], {.relative = 1e-12}));
 }
 
 TEST_CASE("between a wide plate and a small block the block's outline is filled") {
@@ -72,5 +72,5 @@ TEST_CASE("between a wide plate and a small block the block's outline is filled"
     const Solid body = solid(CombinedSolid{CombinedSolid::Operation::unite, {plate, block, bridge}});
     const auto found = volumes(body, {{-1, 45, 51}, {20, 45, 51}});
     REQUIRE(found.size() == 1);
-    CHECK(found[0] == doctest::Approx(3 * 10 * 8).epsilon(1e-6));
+    CHECK(found[0] == near(3 * 10 * 8, {.relative = 1e-6}));
 }

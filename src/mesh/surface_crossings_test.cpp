@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "mesh/test_shapes.hpp"
 
 using namespace pliant;
@@ -30,7 +31,7 @@ TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; a
 }
 
 TEST_CASE("the finest detail is the smallest height over the size") {
-    CHECK(finest_detail(cube({1, 2, 3}, 10)) == doctest::Approx(1 / std::sqrt(2.0) / std::sqrt(3.0)));
+    CHECK(finest_detail(cube({1, 2, 3}, 10)) == near(1 / std::sqrt(2.0) / std::sqrt(3.0), {.relative = 1e-12}));
     TriMesh thin{{{0, 0, 0}, {4, 0, 0}, {2, 1e-3, 3}, {2, 1e-3, 0}}, {{0, 1, 2}, {0, 1, 3}}};
-    CHECK(finest_detail(thin) == doctest::Approx(1e-3 / 5).epsilon(1e-3));
+    CHECK(finest_detail(thin) == near(1e-3 / 5, {.relative = 1e-3}));
 }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "core/test_text.hpp"
 #include "mesh/surface_check.hpp"
@@ -136,7 +137,7 @@ TEST_CASE("mending: corners off by some float steps are one again, and volume an
             CHECK(check_closed(file.mesh));
             CHECK(file.mesh.points.size() == exact.points.size());
             CHECK(file.mesh.triangles.size() == exact.triangles.size());
-            CHECK(signed_volume(file.mesh) == doctest::Approx(signed_volume(exact)).epsilon(1e-4));
+            CHECK(signed_volume(file.mesh) == near(signed_volume(exact), {.relative = 1e-4}));
             REQUIRE(file.warnings.size() == 1);
             CHECK(holds(file.warnings[0], "point(s) at open edges lay within"));
         }
@@ -161,7 +162,7 @@ TEST_CASE("mending: text is as precise as its digits") {
         const SurfaceFile file = read(text_stl(soup, print));
         CHECK(check_closed(file.mesh));
         CHECK(file.mesh.points.size() == exact.points.size());
-        CHECK(signed_volume(file.mesh) == doctest::Approx(signed_volume(exact)).epsilon(1e-4));
+        CHECK(signed_volume(file.mesh) == near(signed_volume(exact), {.relative = 1e-4}));
     }
     const auto round = [](double v) { return fmt::format("{}", v); };
     CHECK(read(text_stl(jittered(exact, 0, 1, 1), round)).warnings.empty());
@@ -201,12 +202,12 @@ TEST_CASE("mending: points in a row are not drawn together, step by step") {
 TEST_CASE("mending: an inverted solid, and a cavity that looks outwards, are turned with a note") {
     TriMesh outwards = joined(cube({0, 0, 0}, 10), cube({2, 2, 2}, 6));
     const SurfaceFile hollow = read(binary_stl(outwards));
-    CHECK(signed_volume(hollow.mesh) == doctest::Approx(784));
+    CHECK(signed_volume(hollow.mesh) == near(784, {.relative = 1e-12}));
     REQUIRE(hollow.warnings.size() == 1);
     CHECK(holds(hollow.warnings[0], "1 shell(s) inside another one looked outwards and were turned into cavities"));
     for (auto& t : outwards.triangles) std::swap(t[1], t[2]);
     const SurfaceFile turned = read(binary_stl(outwards));
-    CHECK(signed_volume(turned.mesh) == doctest::Approx(784));
+    CHECK(signed_volume(turned.mesh) == near(784, {.relative = 1e-12}));
     REQUIRE(turned.warnings.size() == 1);
     CHECK(holds(turned.warnings[0], "1 shell(s) inside out were turned outwards"));
 }
@@ -218,10 +219,10 @@ TEST_CASE("printed digits: all to so many decimals, or to so many that count") {
         return digits.step(size);
     };
     CHECK(step({}, 100) == 0);
-    CHECK(step({"1.000", "-20.125"}, 100) == doctest::Approx(1e-3));
-    CHECK(step({"123.457", "0", "10.5"}, 200) == doctest::Approx(1e-3));
-    CHECK(step({"1.23457e+02", "0.00000e+00"}, 123) == doctest::Approx(1e-3));
-    CHECK(step({"0.00123", "1"}, 1) == doctest::Approx(1e-2));
-    CHECK(float_step(1) == doctest::Approx(1.0 / 8388608));
+    CHECK(step({"1.000", "-20.125"}, 100) == near(1e-3, {.relative = 1e-12}));
+    CHECK(step({"123.457", "0", "10.5"}, 200) == near(1e-3, {.relative = 1e-12}));
+    CHECK(step({"1.23457e+02", "0.00000e+00"}, 123) == near(1e-3, {.relative = 1e-12}));
+    CHECK(step({"0.00123", "1"}, 1) == near(1e-2, {.relative = 1e-12}));
+    CHECK(float_step(1) == near(1.0 / 8388608, {.relative = 1e-12}));
     CHECK(float_step(0) > 0);
 }

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "core/near.hpp"
 #include "mesh/test_tets.hpp"
 
 using namespace pliant;
@@ -12,9 +13,9 @@ using mesh::test::two_tets;
 
 TEST_CASE("volumes of regions") {
     const TetMesh mesh = two_tets();
-    CHECK(volume(mesh, 0) == doctest::Approx(1.0 / 6));
-    CHECK(volume(mesh, 1) == doctest::Approx(1.0 / 3));
-    CHECK(volume(mesh) == doctest::Approx(0.5));
+    CHECK(volume(mesh, 0) == near(1.0 / 6, {.relative = 1e-12}));
+    CHECK(volume(mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));
+    CHECK(volume(mesh) == near(0.5, {.relative = 1e-12}));
 }
 
 TEST_CASE("the boundary leaves out shared faces and looks outwards") {
@@ -24,7 +25,7 @@ TEST_CASE("the boundary leaves out shared faces and looks outwards") {
         TriMesh surface;
         surface.points = mesh.points;
         for (const Face& face : faces) surface.triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
-        CHECK(signed_volume(surface) == doctest::Approx(0.5));
+        CHECK(signed_volume(surface) == near(0.5, {.relative = 1e-12}));
         for (const Face& face : faces) {
             for (int i = 0; i < 3 && mesh.order == 2; ++i) {
                 const Vec3 middle = 0.5 * (mesh.points[face.nodes[i]] + mesh.points[face.nodes[(i + 1) % 3]]);
@@ -35,8 +36,8 @@ TEST_CASE("the boundary leaves out shared faces and looks outwards") {
 }
 
 TEST_CASE("the surface of one region is closed") {
-    CHECK(signed_volume(region_surface(two_tets(), 1)) == doctest::Approx(1.0 / 3));
-    CHECK(signed_volume(region_surface(to_quadratic(two_tets()), 0)) == doctest::Approx(1.0 / 6));
+    CHECK(signed_volume(region_surface(two_tets(), 1)) == near(1.0 / 3, {.relative = 1e-12}));
+    CHECK(signed_volume(region_surface(to_quadratic(two_tets()), 0)) == near(1.0 / 6, {.relative = 1e-12}));
     CHECK(region_surface(two_tets(), 0).points.size() == 4);
 }
 
@@ -55,7 +56,7 @@ TEST_CASE("a quadratic mesh shares its mid-edge nodes") {
 TEST_CASE("shape functions sum to one and are one at their own node") {
     for (const int order : {1, 2}) {
         const auto inside = shape_functions(order, {0.1, 0.2, 0.3, 0.4});
-        CHECK(std::accumulate(inside.begin(), inside.end(), 0.0) == doctest::Approx(1));
+        CHECK(std::accumulate(inside.begin(), inside.end(), 0.0) == near(1, {.relative = 1e-12}));
     }
     CHECK(shape_functions(2, {0, 0, 1, 0})[2] == 1);
     CHECK(shape_functions(2, {0, 0.5, 0.5, 0})[5] == 1);
@@ -64,6 +65,6 @@ TEST_CASE("shape functions sum to one and are one at their own node") {
 TEST_CASE("the volume of a surface far from the origin keeps its digits") {
     TriMesh surface = region_surface(two_tets(), 0);
     for (Vec3& p : surface.points) p += Vec3{1e6, 1e6, 1e6};
-    CHECK(signed_volume(surface) == doctest::Approx(1.0 / 6).epsilon(1e-9));
-    CHECK(bounds(surface).size().x == doctest::Approx(1));
+    CHECK(signed_volume(surface) == near(1.0 / 6, {.relative = 1e-9}));
+    CHECK(bounds(surface).size().x == near(1, {.relative = 1e-12}));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/test_shapes.hpp"
 
@@ -50,9 +51,9 @@ TEST_CASE("a ball in the hole that was drawn for it, other triangles on either s
     const Solid block = without(box({0, 0, 0}, {20, 20, 20}), ball);
     const TetMesh mesh = mesh_of({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01), false, 1.5}}, 3);
     CHECK(mesh.region_names == std::vector<std::string>{"block", "ball"});
-    CHECK(volume(mesh, 0) == doctest::Approx(8000 - 288 * pi).epsilon(0.01));
-    CHECK(volume(mesh, 1) == doctest::Approx(288 * pi).epsilon(0.03));  // chords of 1.5 around a radius of 6
-    CHECK(outer_area(mesh) == doctest::Approx(2400).epsilon(1e-3));
+    CHECK(volume(mesh, 0) == near(8000 - 288 * pi, {.relative = 0.01}));
+    CHECK(volume(mesh, 1) == near(288 * pi, {.relative = 0.03}));  // chords of 1.5 around a radius of 6
+    CHECK(outer_area(mesh) == near(2400, {.relative = 1e-3}));
     REQUIRE(mesh.notes.size() == 1);
     CHECK(mesh.notes[0].starts_with("bodies that touch were meshed together from their winding numbers"));
     CHECK(mesh.notes[0].find("body \"ball\" ") != std::string::npos);
@@ -67,18 +68,18 @@ TEST_CASE("where a drawn solid and a surface overlap the later one has it; what 
     const double cap = pi * (12 - 1) / 3;
     const BodyGeometry drawn{"drawn", box({10, 0, 0}, {20, 10, 10})};
     const TetMesh drawn_last = mesh_of({{"ball", ball}, drawn}, 2);
-    CHECK(volume(drawn_last, 0) == doctest::Approx(256 * pi / 3 - cap).epsilon(0.05));  // chords of 2 around 4
-    CHECK(volume(drawn_last, 1) == doctest::Approx(1000).epsilon(0.01));
+    CHECK(volume(drawn_last, 0) == near(256 * pi / 3 - cap, {.relative = 0.05}));  // chords of 2 around 4
+    CHECK(volume(drawn_last, 1) == near(1000, {.relative = 0.01}));
     const TetMesh ball_last = mesh_of({drawn, {"ball", ball}}, 2, 2);
-    CHECK(volume(ball_last, 0) == doctest::Approx(1000 - cap).epsilon(0.01));
+    CHECK(volume(ball_last, 0) == near(1000 - cap, {.relative = 0.01}));
     CHECK(ball_last.order == 2);
     const double whole = 600 + 64 * pi;
     const double covered = 2 * (7 * pi);  // the circle in which they meet
-    CHECK(outer_area(drawn_last) == doctest::Approx(whole - covered - 8 * pi + 7 * pi).epsilon(0.03));
+    CHECK(outer_area(drawn_last) == near(whole - covered - 8 * pi + 7 * pi, {.relative = 0.03}));
 
     const TetMesh apart = mesh_of({drawn, {"ball", fine(solid(SphereSolid{{5, 5, 5}, 4}), 0.005)}}, 2);
     CHECK(apart.notes.empty());
-    CHECK(outer_area(apart) == doctest::Approx(whole).epsilon(0.02));
+    CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }
 
 TEST_CASE("a group holds all that hangs together, and nothing else") {

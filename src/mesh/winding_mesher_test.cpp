@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/near.hpp"
 #include "mesh/mesh_report.hpp"
 #include "mesh/sharp_edges.hpp"
 #include "mesh/surface_orientation.hpp"
@@ -57,22 +58,22 @@ double meshed_volume(const TriMesh& surface, double size) {
 
 TEST_CASE("winding number: 1 inside, 0 outside, the solid angle of a single triangle, and twice where it overlaps") {
     const TriangleTree tree(cube());
-    CHECK(tree.winding_number({5, 5, 5}) == doctest::Approx(1).scale(0));
-    CHECK(tree.winding_number({1e-3, 9, 1}) == doctest::Approx(1).scale(0));
+    CHECK(tree.winding_number({5, 5, 5}) == near(1, {.relative = 1e-12}));
+    CHECK(tree.winding_number({1e-3, 9, 1}) == near(1, {.relative = 1e-12}));
     CHECK(std::fabs(tree.winding_number({11, 5, 5})) < 1e-12);
     CHECK(std::fabs(tree.winding_number({500, 5, 5})) < 1e-6);
     const TriangleTree twice(joined(cube(), cube({5, 0, 0})));
-    CHECK(twice.winding_number({7, 5, 5}) == doctest::Approx(2).scale(0));
+    CHECK(twice.winding_number({7, 5, 5}) == near(2, {.relative = 1e-12}));
     TriMesh octant{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}};
-    CHECK(TriangleTree(octant).winding_number({0, 0, 0}) == doctest::Approx(1.0 / 8).scale(0));
+    CHECK(TriangleTree(octant).winding_number({0, 0, 0}) == near(1.0 / 8, {.relative = 1e-12}));
 }
 
 TEST_CASE("rays meet the nearest triangle") {
     const TriangleTree tree(joined(cube(), cube({20, 0, 0})));
     const auto hit = tree.first_hit({-3, 5, 4}, {1, 0, 0}, 0);
     REQUIRE(hit);
-    CHECK(hit->distance == doctest::Approx(3).scale(0));
-    CHECK(tree.first_hit({-3, 5, 4}, {1, 0, 0}, 3.5)->distance == doctest::Approx(13).scale(0));
+    CHECK(hit->distance == near(3, {.relative = 1e-12}));
+    CHECK(tree.first_hit({-3, 5, 4}, {1, 0, 0}, 3.5)->distance == near(13, {.relative = 1e-12}));
     CHECK_FALSE(tree.first_hit({-3, 5, 40}, {1, 0, 0}, 0));
 }
 
@@ -86,26 +87,26 @@ TEST_CASE("orientation: single triangles, everything, repeated and flat ones") {
     CHECK(damage.repeated == 1);
     CHECK(damage.flat == 1);
     CHECK(damage.open_edges + damage.crowded_edges == 0);
-    CHECK(signed_volume(flipped) == doctest::Approx(1000).scale(0));
+    CHECK(signed_volume(flipped) == near(1000, {.relative = 1e-12}));
     TriMesh inwards = cube();
     for (auto& t : inwards.triangles) std::swap(t[0], t[1]);
     CHECK(orient(inwards).inside_out);
-    CHECK(signed_volume(inwards) == doctest::Approx(1000).scale(0));
+    CHECK(signed_volume(inwards) == near(1000, {.relative = 1e-12}));
 }
 
 TEST_CASE("holes, flipped facets, overlaps and crowded edges are meshed with their volume, sharp edges kept") {
     TriMesh hole = cube();
     hole.triangles.pop_back();
-    CHECK(meshed_volume(hole, 2) == doctest::Approx(1000).scale(0).epsilon(0.02));
+    CHECK(meshed_volume(hole, 2) == near(1000, {.relative = 0.02}));
     TriMesh flipped = cube();
     std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
-    CHECK(meshed_volume(flipped, 2) == doctest::Approx(1000).scale(0).epsilon(1e-3));
-    CHECK(meshed_volume(joined(cube(), cube({5, 5, 5})), 2) == doctest::Approx(1875).scale(0).epsilon(0.02));
+    CHECK(meshed_volume(flipped, 2) == near(1000, {.relative = 1e-3}));
+    CHECK(meshed_volume(joined(cube(), cube({5, 5, 5})), 2) == near(1875, {.relative = 0.02}));
     TriMesh rooms = cube();
     TriMesh room = cube({3, 3, 3}, 4);
     for (auto& t : room.triangles) std::swap(t[0], t[1]);
-    CHECK(meshed_volume(joined(rooms, room), 2) == doctest::Approx(936).scale(0).epsilon(0.01));
-    CHECK(meshed_volume(cube({1e6, 0, 0}), 2) == doctest::Approx(1000).scale(0).epsilon(1e-3));
+    CHECK(meshed_volume(joined(rooms, room), 2) == near(936, {.relative = 0.01}));
+    CHECK(meshed_volume(cube({1e6, 0, 0}), 2) == near(1000, {.relative = 1e-3}));
 }
 
 TEST_CASE("the same surface gives the same mesh; one that encloses nothing is refused") {
@@ -136,7 +137,7 @@ TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesh
     CHECK_FALSE(edges.chains.empty());
     const Result<TetMesh> mesh = mesh_by_winding(cross, 2, 30, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    CHECK(volume(*mesh) == doctest::Approx(2 * 320 - 64).epsilon(0.02));
+    CHECK(volume(*mesh) == near(2 * 320 - 64, {.relative = 0.02}));
     CHECK(report_on(*mesh).min_dihedral_deg > 5);
     const SharpEdges clean = sharp_edges(LabelledSpace({cube()}), 2, 30);
     CHECK(clean.dropped == 0);
@@ -154,7 +155,7 @@ TEST_CASE("edges that the mesh size cannot tell apart become one, and those that
     REQUIRE(mesh);
     CHECK(mesh->notes.size() == 1);
     CHECK(mesh->tet_count() < 2 * mesh_by_winding(cube(), size, 30, silent)->tet_count());
-    CHECK(volume(*mesh) == doctest::Approx(1000.01).epsilon(1e-3));
+    CHECK(volume(*mesh) == near(1000.01, {.relative = 1e-3}));
 
     const TriMesh wedge = extruded({{0, 0}, {10, 0}, {10, 0.5}}, 10);
     const SharpEdges acute = sharp_edges(LabelledSpace({wedge}), size, 30);
@@ -173,7 +174,7 @@ TEST_CASE("a mesh size that cannot follow the surface gives way to a smaller one
     // The lids of frame and room lie in one plane and wind against each other.
     const Result<TetMesh> mesh = mesh_by_winding(joined(frame, room), 9, 180, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    CHECK(volume(*mesh) == doctest::Approx(2 * (400 - 256)).epsilon(0.1));
+    CHECK(volume(*mesh) == near(2 * (400 - 256), {.relative = 0.1}));
     CHECK(mesh->notes.back().find("cannot follow its shape") != std::string::npos);
 }
 

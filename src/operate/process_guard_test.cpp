@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 
 using namespace pliant;
@@ -80,7 +81,7 @@ TEST_CASE("a host that is killed between the end of the light and its note: it w
     });
     const auto on_s = heard(options);
     REQUIRE(on_s);
-    CHECK(*on_s == doctest::Approx(2.5));
+    CHECK(*on_s == near(2.5, {.relative = 1e-12}));
 }
 
 TEST_CASE("a host that ends in peace leaves no witness") {

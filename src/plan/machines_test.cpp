@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -87,12 +88,12 @@ TEST_CASE("the planned time is that of the commands, to the microsecond, on ever
             const Plan plan = make_plan(job, printer).value();
             const Seconds spent = program_seconds(plan, job, printer);
             INFO(printer.name);
-            CHECK(plan.seconds.total == doctest::Approx(spent.total).epsilon(1e-9));
-            CHECK(plan.seconds.swap == doctest::Approx(spent.swap).epsilon(1e-9));
-            CHECK(plan.seconds.clean == doctest::Approx(spent.clean).epsilon(1e-9));
+            CHECK(plan.seconds.total == near(spent.total, {.relative = 1e-9}));
+            CHECK(plan.seconds.swap == near(spent.swap, {.relative = 1e-9}));
+            CHECK(plan.seconds.clean == near(spent.clean, {.relative = 1e-9}));
             Seconds sum;
             for (const Seconds& s : plan.layer_seconds) sum += s;
-            CHECK(sum.expose == doctest::Approx(plan.seconds.expose));
+            CHECK(sum.expose == near(plan.seconds.expose, {.relative = 1e-12}));
             CHECK(sum.total < plan.seconds.total);
         }
     }
@@ -105,7 +106,7 @@ TEST_CASE("no order of the planner takes longer than the thesis' rule or the nai
             const Plan plan = make_plan(random_job(printer, random), printer).value();
             REQUIRE(plan.compared.size() == 3);
             for (const OrderCost& c : plan.compared) CHECK(c.change_s >= plan.least_change_s - 1e-9);
-            CHECK(plan.compared[2].change_s == doctest::Approx(plan.least_change_s));
+            CHECK(plan.compared[2].change_s == near(plan.least_change_s, {.relative = 1e-12}));
         }
     }
 }
@@ -113,8 +114,8 @@ TEST_CASE("no order of the planner takes longer than the thesis' rule or the nai
 TEST_CASE("the rotary machine's change of vats takes the 180 s that are reported for it, 120 of them cleaning") {
     const machine::Printer printer = machine::load_printer("examples/printers/rotary.toml").value();
     const Seconds s = swap_seconds(printer, 1, 2);
-    CHECK(s.total == doctest::Approx(180).epsilon(0.02));
-    CHECK(s.clean == doctest::Approx(120).epsilon(0.01));
+    CHECK(s.total == near(180, {.relative = 0.02}));
+    CHECK(s.clean == near(120, {.relative = 1e-12}));
 }
 
 TEST_CASE("a rotary table takes the shorter way round, within the travel of its cables") {
@@ -162,7 +163,7 @@ TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, ch
     const Plan plan = make_plan(job, printer).value();
     for (std::size_t i = 1; i < 3; ++i) CHECK_FALSE(plan.order[0][i] + plan.order[0][i - 1] == 1);
     const double before = swap_seconds(printer, 1, 3).total;
-    CHECK(swap_seconds(printer, 1, 2).clean == doctest::Approx(60).epsilon(1e-3));
+    CHECK(swap_seconds(printer, 1, 2).clean == near(60, {.relative = 1e-3}));
     CHECK(before < 80);
 }
 
@@ -170,17 +171,17 @@ TEST_CASE("resin that is washed off and solution that is used follow from the nu
     machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"});
     const Plan brushed = make_plan(job, printer).value();
-    CHECK(brushed.brushed_ml / brushed.waste_ml == doctest::Approx(0.29 / 0.71));
-    CHECK(brushed.vats[0].brushed_ml + brushed.vats[1].brushed_ml == doctest::Approx(brushed.brushed_ml));
+    CHECK(brushed.brushed_ml / brushed.waste_ml == near(0.29 / 0.71, {.relative = 1e-12}));
+    CHECK(brushed.vats[0].brushed_ml + brushed.vats[1].brushed_ml == near(brushed.brushed_ml, {.relative = 1e-12}));
     printer.cleaning.brush = false;
     printer.solution = {};
     const Plan plan = make_plan(job, printer).value();
-    CHECK((brushed.brushed_ml + brushed.waste_ml) / plan.waste_ml == doctest::Approx(1));
+    CHECK((brushed.brushed_ml + brushed.waste_ml) / plan.waste_ml == near(1, {.relative = 1e-12}));
     CHECK(plan.brushed_ml == 0);
     // Two swaps and the cleaning at the end: 20 ml each; a film of 60 um on the lower end: 100 mm^2 while only one
     // material of the first layer is there, and 200.
-    CHECK(plan.solvent_ml == doctest::Approx(3 * 20));
-    CHECK(plan.waste_ml / ((100 + 200 + 200) * 0.06 / 1000) == doctest::Approx(1));
+    CHECK(plan.solvent_ml == near(3 * 20, {.relative = 1e-12}));
+    CHECK(plan.waste_ml / ((100 + 200 + 200) * 0.06 / 1000) == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, and it is changed when it is spent") {
@@ -189,14 +190,14 @@ TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, 
         plan::test::make_job(std::vector<std::vector<int>>(170, {0, 1, 2}), {"semi-flex", "rigid-flex", "tough"});
     const Plan die = make_plan(job, printer).value();
     CHECK(die.swaps == 340);
-    CHECK(die.solution.pumped_ml == doctest::Approx(341 * 20));
+    CHECK(die.solution.pumped_ml == near(341 * 20, {.relative = 1e-12}));
     // 2 % of what is sprayed, and 1 ml an hour of printing.
     const double evaporated = 341 * 20 * 0.02 + die.seconds.total / 3600;
-    CHECK(die.solvent_ml / evaporated == doctest::Approx(1).epsilon(0.01));
+    CHECK(die.solvent_ml / evaporated == near(1, {.relative = 0.01}));
     CHECK(die.solution.care.empty());
     // 300 mm^2 under 60 um, brushed and sprayed; a fifth of it stays in the filter.
     const double washed = 341 * 300 * 0.06 / 1000 * 0.71 * 0.9475 * 0.8;
-    CHECK(die.solution.resin_share * die.solution.liquid_ml / washed == doctest::Approx(1).epsilon(0.01));
+    CHECK(die.solution.resin_share * die.solution.liquid_ml / washed == near(1, {.relative = 0.01}));
 
     for (job::Layer& layer : job.layers) {
         for (job::LayerImage& image : layer.images) image.area_mm2 = 8000;
@@ -209,7 +210,7 @@ TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, 
     CHECK(plate.solvent_ml > 4500);
     // By hand: 1.44 ml of film less what brush and spray leave, and less what the solution brings back (2.5 % in the
     // mean), are 0.944 ml of resin at each of two cleanings a layer; 0.4 ml evaporate. n 1.889 / (5000 + n 1.04) = 5 %.
-    CHECK(plate.solution.care[0].layer == doctest::Approx(136).epsilon(0.01));
+    CHECK(plate.solution.care[0].layer == near(136, {.relative = 1e-12}));
     CHECK(plate.solution.resin_share < 0.05);
     const std::string text = plan_text(plate);
     CHECK(text.find("change the cleaning solution") != std::string::npos);
@@ -222,7 +223,7 @@ TEST_CASE("where the store takes longer than the cleaning, the pump runs as long
         make_plan(plan::test::make_job({{0}, {3}, {0}}, {"semi-flex", "rigid-flex", "tough", "elastomer"}), printer)
             .value();
     REQUIRE(far.swaps == 2);
-    CHECK(far.solution.pumped_ml / (far.seconds.clean * 20 / 15) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(far.solution.pumped_ml / (far.seconds.clean * 20 / 15) == near(1, {.relative = 1e-3}));
     CHECK(far.solution.pumped_ml > 3 * 20 + 10);
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "machine/working_curve.hpp"
 #include "plan/check.hpp"
@@ -45,15 +46,15 @@ TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
     CHECK(plan.order[1] == VatList{1, 0});
     CHECK(plan.warnings.empty());
     // 3 layers of 2 x 12 s, 197 of 2 x 2.5 s.
-    CHECK(plan.seconds.expose == doctest::Approx(3 * 24 + 197 * 5));
+    CHECK(plan.seconds.expose == near(3 * 24 + 197 * 5, {.relative = 1e-12}));
     // 200 swaps and the final cleaning, 15 s each.
-    CHECK(plan.seconds.clean == doctest::Approx(201 * 15).epsilon(1e-3));
+    CHECK(plan.seconds.clean == near(201 * 15, {.relative = 1e-3}));
     CHECK(plan.seconds.total ==
-          doctest::Approx(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move));
+          near(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move, {.relative = 1e-5}));
     // 200 layers of 100 mm^2 x 50 um.
     REQUIRE(plan.vats.size() == 2);
-    CHECK(plan.vats[0].resin_ml == doctest::Approx(1));
-    CHECK(plan.vats[1].resin_ml == doctest::Approx(1));
+    CHECK(plan.vats[0].resin_ml == near(1, {.relative = 1e-12}));
+    CHECK(plan.vats[1].resin_ml == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
@@ -74,7 +75,7 @@ TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
     CHECK(filled.find_resin("rubber")->exposure_s == 2.5);
     // Its light is taken to cure two layers, and twice as deep as it comes before it is e times weaker.
     const machine::WorkingCurve curve = machine::working_curve(filled, *filled.find_resin("rubber"));
-    CHECK(curve.depth_um(2.5 * machine::irradiance_W_m2(filled)) == doctest::Approx(2 * printer.layer_um));
+    CHECK(curve.depth_um(2.5 * machine::irradiance_W_m2(filled)) == near(2 * printer.layer_um, {.relative = 1e-12}));
     CHECK(curve.penetration_um == printer.layer_um);
 }
 
@@ -156,7 +157,7 @@ TEST_CASE("the plan as JSON has the keys that programs read") {
     CHECK(json["swaps"] == 2);
     CHECK(json["swap_lower_bound"] == 2);
     CHECK(json["order"] == nlohmann::json::parse("[[1, 2], [2, 1]]"));
-    CHECK(json["resin_ml"]["2"].get<double>() == doctest::Approx(0.01));
+    CHECK(json["resin_ml"]["2"].get<double>() == near(0.01, {.relative = 1e-12}));
     CHECK(json["warnings"].size() == 1);
     for (const char* key : {"total", "swap", "clean", "expose", "move"}) CHECK(json["seconds"][key].is_number());
 }

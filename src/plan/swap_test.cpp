@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near.hpp"
 #include "plan/test_jobs.hpp"
 
 using namespace pliant;
@@ -43,25 +44,25 @@ TEST_CASE("a swap with the next slot takes the 62 to 63 s of the thesis, from it
     const Seconds after = s.seconds();
     // Push and pull: 355.6 mm at 15.2 mm/s, ramps of 50 mm/s^2. The pump runs for the 15 s in between.
     const double stroke = 355.6 / 15.2 + 15.2 / 50;
-    CHECK(after.swap - before.swap == doctest::Approx(2 * stroke));
-    CHECK(after.clean - before.clean == doctest::Approx(15).epsilon(1e-4));
-    CHECK(after.total - before.total == doctest::Approx(2 * stroke + 15).epsilon(1e-4));
+    CHECK(after.swap - before.swap == near(2 * stroke, {.relative = 1e-12}));
+    CHECK(after.clean - before.clean == near(15, {.relative = 1e-4}));
+    CHECK(after.total - before.total == near(2 * stroke + 15, {.relative = 1e-4}));
     CHECK(after.total - before.total > 62);
     CHECK(after.total - before.total < 63);
     // The hooks: 29.5 mm at 10 mm/s, ramps of 200 mm/s^2.
-    CHECK(29.5 / 10 + 10.0 / 200 == doctest::Approx(3));
+    CHECK(29.5 / 10 + 10.0 / 200 == near(3, {.relative = 1e-12}));
 }
 
 TEST_CASE("a far slot costs what the tower's way takes beyond the spray") {
     const machine::Printer printer = test::tower();
-    const double near = seconds_of_swap(printer, 2);
+    const double next = seconds_of_swap(printer, 2);
     const double far = seconds_of_swap(printer, 4);
     // Three pitches in two strokes: 2 (304.8/40 + 40/200), hooks and back-off as before, nothing to fill up.
     const double hooks = 29.5 / 10 + 10.0 / 200;
     const double back_off = 15 / 15.2 + 15.2 / 50;
     const double stroke = 355.6 / 15.2 + 15.2 / 50;
-    CHECK(far == doctest::Approx(2 * stroke + 2 * hooks + 2 * back_off + 2 * (304.8 / 40 + 0.2)));
-    CHECK(far > near);
+    CHECK(far == near(2 * stroke + 2 * hooks + 2 * back_off + 2 * (304.8 / 40 + 0.2), {.relative = 1e-12}));
+    CHECK(far > next);
 }
 
 TEST_CASE("the same swap on a slower carriage takes longer: times are motions, not entries") {
@@ -71,7 +72,7 @@ TEST_CASE("the same swap on a slower carriage takes longer: times are motions, n
     slow.cleaning.speed_mm_s /= 2;
     const double push = 355.6 / 7.6 + 7.6 / 50;
     CHECK(seconds_of_swap(slow, 2) > before + 40);
-    CHECK(seconds_of_swap(slow, 2) == doctest::Approx(2 * push + 15).epsilon(0.02));
+    CHECK(seconds_of_swap(slow, 2) == near(2 * push + 15, {.relative = 0.02}));
 }
 
 TEST_CASE("the brush wipes a part that hangs 1 mm over the rim for 10 s; it takes no time of its own") {
@@ -85,7 +86,7 @@ TEST_CASE("the brush wipes a part that hangs 1 mm over the rim for 10 s; it take
     // Off the hooks and off the brush in one move: 1 mm up while the tower lowers by 29.5 mm at 10 mm/s.
     CHECK(swap.find("G1 Z85.550 Y0.500 F600.3") != std::string::npos);
     printer.cleaning.brush = false;
-    CHECK(seconds_of_swap(printer, 2) == doctest::Approx(with_s).epsilon(1e-6));
+    CHECK(seconds_of_swap(printer, 2) == near(with_s, {.relative = 1e-12}));
     CHECK(loaded(printer).position()[Axis::platform] == 1000 + 82550 + 2000);
 }
 

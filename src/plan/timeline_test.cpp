@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/near.hpp"
 #include "plan/plan.hpp"
 #include "plan/test_jobs.hpp"
 
@@ -33,28 +34,28 @@ TEST_CASE("one swap as the thesis draws it: push, spray over the tower's way, pu
     CHECK(swap.to_slot == 2);
     // Push and pull: 355.6 mm at 15.2 mm/s, ramps of 50 mm/s^2; spray of 15 s between them.
     const double stroke = 355.6 / 15.2 + 15.2 / 50;
-    CHECK(swap.seconds == doctest::Approx(2 * stroke + 15).epsilon(1e-4));
+    CHECK(swap.seconds == near(2 * stroke + 15, {.relative = 1e-4}));
     const auto spray = of(swap, Device::pump);
     REQUIRE(spray.size() == 1);
-    CHECK(spray[0].begin_s == doctest::Approx(stroke));
-    CHECK(spray[0].end_s == doctest::Approx(stroke + 15).epsilon(1e-4));
+    CHECK(spray[0].begin_s == near(stroke, {.relative = 1e-12}));
+    CHECK(spray[0].end_s == near(stroke + 15, {.relative = 1e-4}));
     const auto fans = of(swap, Device::fans);
     REQUIRE(fans.size() == 1);
-    CHECK(fans[0].begin_s == doctest::Approx(spray[0].end_s));
-    CHECK(fans[0].end_s == doctest::Approx(swap.seconds));
+    CHECK(fans[0].begin_s == near(spray[0].end_s, {.relative = 1e-12}));
+    CHECK(fans[0].end_s == near(swap.seconds, {.relative = 1e-12}));
     const auto tower = of(swap, Device::tower);
     REQUIRE(tower.size() == 3);  // hooks down, on its way, hooks up
-    CHECK(tower.front().begin_s == doctest::Approx(spray[0].begin_s));
-    CHECK(tower.back().end_s == doctest::Approx(spray[0].end_s));
+    CHECK(tower.front().begin_s == near(spray[0].begin_s, {.relative = 1e-12}));
+    CHECK(tower.back().end_s == near(spray[0].end_s, {.relative = 1e-12}));
     const auto platform = of(swap, Device::platform);
     REQUIRE_FALSE(platform.empty());
-    CHECK(platform.front().begin_s == doctest::Approx(spray[0].begin_s));  // off the brush
+    CHECK(platform.front().begin_s == near(spray[0].begin_s, {.relative = 1e-12}));  // off the brush
     // The brush passes below the 6 in of the bed at 15.2 mm/s; with the spray that is the 25 s of the thesis.
     const auto brush = of(swap, Device::brush);
     REQUIRE(brush.size() == 1);
-    CHECK(brush[0].end_s - brush[0].begin_s == doctest::Approx(152.4 / 15.2));
-    CHECK(brush[0].end_s - brush[0].begin_s + 15 == doctest::Approx(25).epsilon(0.002));
-    CHECK((brush[0].begin_s + brush[0].end_s) / 2 == doctest::Approx(stroke / 2));
+    CHECK(brush[0].end_s - brush[0].begin_s == near(152.4 / 15.2, {.relative = 1e-12}));
+    CHECK(brush[0].end_s - brush[0].begin_s + 15 == near(25, {.relative = 0.002}));
+    CHECK((brush[0].begin_s + brush[0].end_s) / 2 == near(stroke / 2, {.relative = 1e-12}));
     CHECK(std::count(swap.devices.begin(), swap.devices.end(), Device::brush) == 1);
     CHECK(platform.back().end_s < spray[0].end_s);
     CHECK(of(swap, Device::light).empty());
@@ -72,7 +73,7 @@ TEST_CASE("the timeline of a job ends when the job does, and every light stands 
     const job::Manifest job = test::make_job({{0, 1}, {0, 1}, {1}}, {"semi-flex", "rigid-flex"});
     const Plan plan = make_plan(job, printer).value();
     const JobTimeline all = job_timeline(plan, job, printer);
-    CHECK(all.seconds == doctest::Approx(plan.seconds.total));
+    CHECK(all.seconds == near(plan.seconds.total, {.relative = 1e-12}));
     REQUIRE(all.visits.size() == 5);
     int swaps = 0;
     for (std::size_t v = 1; v < all.visits.size(); ++v) {
@@ -95,7 +96,7 @@ TEST_CASE("the timeline of a job ends when the job does, and every light stands 
         ++lights;
     }
     CHECK(lights == all.visits.size());
-    CHECK(lit_s == doctest::Approx(plan.seconds.expose));
+    CHECK(lit_s == near(plan.seconds.expose, {.relative = 1e-12}));
 }
 
 TEST_CASE("magnet, lift, rail and fork have bars of their own") {

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "core/near.hpp"
 #include "prepare/settings.hpp"
 #include "prepare/test_order.hpp"
 
@@ -61,20 +62,20 @@ TEST_CASE("a part stands on the platform in its middle") {
 }
 
 TEST_CASE("--turn, --copies and --spacing") {
-    CHECK(done([](Order& o) { o.turn = {0, 90, 0}; }).box().high.z == doctest::Approx(8000));
+    CHECK(done([](Order& o) { o.turn = {0, 90, 0}; }).box().high.z == near(8000, {.relative = 1e-12}));
     const Arranged two = done([](Order& o) {
         o.copies = 2;
         o.spacing = "1 mm";
     });
     CHECK(two.drawing.bodies.size() == 4);
-    CHECK(two.box().size().x == doctest::Approx(17000));
+    CHECK(two.box().size().x == near(17000, {.relative = 1e-12}));
     CHECK(done([](Order& o) {
               o.copies = 2;
               o.spacing = "0 mm";
           })
               .box()
               .size()
-              .x == doctest::Approx(16000));
+              .x == near(16000, {.relative = 1e-5}));
     CHECK(refused([](Order& o) { o.copies = 0; }).find("0 copies") == 0);
     CHECK(!refused([](Order& o) { o.copies = 1000; }).empty());  // no room
     CHECK(!refused([](Order& o) { o.spacing = "-1 mm"; }).empty());
@@ -87,7 +88,7 @@ TEST_CASE("--support, --lift and --raft") {
         o.support = "firm";
         o.lift = "2 mm";
     });
-    CHECK(a.box().low.z == doctest::Approx(2000));
+    CHECK(a.box().low.z == near(2000, {.relative = 1e-12}));
     CHECK(a.drawing.bodies.front().filler);
     REQUIRE(a.notes.size() == 1);
     CHECK(a.notes[0].find("supports: ") == 0);
@@ -96,7 +97,7 @@ TEST_CASE("--support, --lift and --raft") {
               o.raft = "1 mm";
           })
               .box()
-              .low.z == doctest::Approx(6000));  // 5 mm above the raft
+              .low.z == near(6000, {.relative = 1e-5}));  // 5 mm above the raft
     const auto supported = [](const char* lift, const char* raft) {
         return [=](Order& o) {
             o.support = "firm";
@@ -104,7 +105,7 @@ TEST_CASE("--support, --lift and --raft") {
             o.raft = raft;
         };
     };
-    CHECK(done(supported("1.5 mm", "1 mm")).box().low.z == doctest::Approx(1500));
+    CHECK(done(supported("1.5 mm", "1 mm")).box().low.z == near(1500, {.relative = 1e-12}));
     CHECK(refused(supported("1.49 mm", "1 mm")).find("--lift 1.49 mm: must be at least half a millimetre more") == 0);
     CHECK(refused(supported("101 mm", "")).find("must be 0 to 100 mm") != std::string::npos);
     CHECK(refused(supported("-1 mm", "")).find("must be 0 to 100 mm") != std::string::npos);

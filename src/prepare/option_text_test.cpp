@@ -2,13 +2,15 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::prepare;
 
 TEST_CASE("lengths have a unit and come out in micrometres") {
-    CHECK(*length_um("--x", "0.4 mm", 7) == doctest::Approx(400));
-    CHECK(*length_um("--x", "25 um", 7) == doctest::Approx(25));
-    CHECK(*length_um("--x", "-1 cm", 7) == doctest::Approx(-10000));
+    CHECK(*length_um("--x", "0.4 mm", 7) == near(400, {.relative = 1e-12}));
+    CHECK(*length_um("--x", "25 um", 7) == near(25, {.relative = 1e-12}));
+    CHECK(*length_um("--x", "-1 cm", 7) == near(-10000, {.relative = 1e-12}));
     CHECK(*length_um("--x", "", 7) == 7);
     for (const char* wrong : {"5", "mm", "5 s", "5 mm 3", "nan mm", "1e400 mm", " ", "five mm"}) {
         CAPTURE(wrong);
@@ -21,8 +23,8 @@ TEST_CASE("lengths have a unit and come out in micrometres") {
 }
 
 TEST_CASE("lengths within limits, the limits included") {
-    CHECK(*length_um("--x", "1 um", 7, 1, 10000) == doctest::Approx(1));
-    CHECK(*length_um("--x", "10 mm", 7, 1, 10000) == doctest::Approx(10000));
+    CHECK(*length_um("--x", "1 um", 7, 1, 10000) == near(1, {.relative = 1e-12}));
+    CHECK(*length_um("--x", "10 mm", 7, 1, 10000) == near(10000, {.relative = 1e-12}));
     CHECK(*length_um("--x", "", 0, 1, 10000) == 0);  // what is not given is not judged
     CHECK(length_um("--x", "0.99 um", 7, 1, 10000).error().message == "--x 0.99 um: must be 0.001 to 10 mm");
     CHECK(!length_um("--x", "10.001 mm", 7, 1, 10000).has_value());

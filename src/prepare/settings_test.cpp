@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "job/png.hpp"
 #include "prepare/test_order.hpp"
@@ -114,8 +115,9 @@ TEST_CASE("what is not asked for is the printer's") {
 
 TEST_CASE("--layer and --least-feature") {
     CHECK(settings_of([](Order& o) { o.layer = "25 um"; }).slicing.layer_um == 25);
-    CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == doctest::Approx(300));
-    CHECK(settings_of([](Order& o) { o.least_feature = "10 mm"; }).least_feature_um == doctest::Approx(10000));
+    CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == near(300, {.relative = 1e-12}));
+    CHECK(settings_of([](Order& o) { o.least_feature = "10 mm"; }).least_feature_um ==
+          near(10000, {.relative = 1e-12}));
     CHECK(refused([](Order& o) { o.layer = "0.5 um"; }).find("--layer 0.5 um: a whole number") == 0);
     CHECK(refused([](Order& o) { o.layer = "50"; }).find("--layer: ") == 0);
     CHECK(refused([](Order& o) { o.least_feature = "10.1 mm"; }) == "--least-feature 10.1 mm: must be 1e-06 to 10 mm");

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/near.hpp"
 #include "report/stage_layout.hpp"
 
 using namespace pliant;
@@ -44,7 +45,7 @@ TEST_CASE("the view looks along the axis that moves least") {
 TEST_CASE("the axes of a view are orthonormal and right-handed") {
     for (const Vec3& motion : {Vec3{1, 0, 1}, Vec3{0, 1, 1}, Vec3{1, 1, 0}}) {
         const Camera c = view_of_motion(motion);
-        CHECK(norm(c.forward) == doctest::Approx(1));
+        CHECK(norm(c.forward) == near(1, {.relative = 1e-12}));
         CHECK(norm(cross(c.right, c.up) + c.forward) < 1e-12);
     }
 }
@@ -87,9 +88,9 @@ TEST_CASE("projection and ray agree") {
     const Camera camera = fitted(view_of_motion({1, 0, 1}), box_corners({1, 2, 3}), 1.6, {0, 0, 0, 0});
     const Vec3 point = camera.eye + 7 * camera.direction(0.25, -0.5);
     const auto [u, v, depth] = camera.project(point);
-    CHECK(u == doctest::Approx(0.25));
-    CHECK(v == doctest::Approx(-0.5));
-    CHECK(depth == doctest::Approx(7));
+    CHECK(u == near(0.25, {.relative = 1e-12}));
+    CHECK(v == near(-0.5, {.relative = 1e-12}));
+    CHECK(depth == near(7, {.relative = 1e-12}));
 }
 
 TEST_CASE("stages show rest, the end and even steps between") {

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 
 using namespace pliant;
@@ -80,8 +81,8 @@ double volume_mm3(const twin::CoarsePart& part, int material) {
 TEST_CASE("a block that is as drawn differs nowhere, and its section says so") {
     const CuredBlock block = printed({0.05, 0.1}, square_job());
     CHECK_MESSAGE(block.report.passed, twin::report_text(block.report));
-    CHECK(volume_mm3(block.asked, 0) == doctest::Approx(2.5));
-    CHECK(volume_mm3(block.cured, 0) == doctest::Approx(2.5));
+    CHECK(volume_mm3(block.asked, 0) == near(2.5, {.relative = 1e-12}));
+    CHECK(volume_mm3(block.cured, 0) == near(2.5, {.relative = 1e-12}));
     CHECK(block.off.runs().empty());
     const auto png = block_picture(block, square_job(), small_tower().projector);
     REQUIRE(png);
@@ -95,9 +96,9 @@ TEST_CASE("a block that is as drawn differs nowhere, and its section says so") {
 TEST_CASE("a layer without light is missing in the picture and named in words") {
     const CuredBlock block = printed({0.05}, square_job());
     CHECK_FALSE(block.report.passed);
-    CHECK(volume_mm3(block.cured, 0) == doctest::Approx(1.25));
+    CHECK(volume_mm3(block.cured, 0) == near(1.25, {.relative = 1e-12}));
     CHECK(volume_mm3(block.off, 0) == 0);
-    CHECK(volume_mm3(block.off, 1) == doctest::Approx(1.25));
+    CHECK(volume_mm3(block.off, 1) == near(1.25, {.relative = 1e-12}));
     const std::string page = block_section(block, block_picture(block, square_job(), small_tower().projector).value());
     CHECK(holds(page, "First deviation: layer 1: nothing cured at 100 um"));
     CHECK(holds(page, "<b>off</b>"));
@@ -108,9 +109,9 @@ TEST_CASE("what cured in another resin is drawn as that, not as missing") {
     job.materials[0].resin = small_tower().vats[1].resin;  // the vat that printed holds another
     REQUIRE(job.materials[0].resin != small_tower().vats[0].resin);
     const CuredBlock block = printed({0.05, 0.1}, job);
-    CHECK(block.report.materials[0].foreign_mm3 == doctest::Approx(2.5));
-    CHECK(volume_mm3(block.off, 0) == doctest::Approx(2.5));
+    CHECK(block.report.materials[0].foreign_mm3 == near(2.5, {.relative = 1e-12}));
+    CHECK(volume_mm3(block.off, 0) == near(2.5, {.relative = 1e-12}));
     CHECK(volume_mm3(block.off, 1) == 0);
     CHECK(volume_mm3(block.cured, 0) == 0);  // no material of the job is of the resin that cured
-    CHECK(volume_mm3(block.cured, 1) == doctest::Approx(2.5));
+    CHECK(volume_mm3(block.cured, 1) == near(2.5, {.relative = 1e-12}));
 }

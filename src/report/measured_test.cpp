@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "report/tables.hpp"
 #include "report/test_robot.hpp"
 
@@ -52,9 +53,9 @@ TEST_CASE("distances are those to the way between the steps, and past its ends t
     const auto paths = read("tip_x_mm,tip_y_mm,tip_z_mm\n100,0,5\n102,0,15\n100,0,34\n");
     const auto list = deviations(paths, straight());
     REQUIRE(list.size() == 1);
-    CHECK(list[0].mean_m == doctest::Approx(0.002).epsilon(1e-6));
-    CHECK(list[0].largest_m == doctest::Approx(0.004).epsilon(1e-6));
-    CHECK(list[0].way_m == doctest::Approx(0.03).epsilon(1e-6));
+    CHECK(list[0].mean_m == near(0.002, {.relative = 1e-12}));
+    CHECK(list[0].largest_m == near(0.004, {.relative = 1e-12}));
+    CHECK(list[0].way_m == near(0.03, {.relative = 1e-12}));
     CHECK(deviation_line(list[0]) ==
           "marker tip: 3 measured points, 2 mm from the simulated way on average, 4 mm at most (13 % of the way)");
     const auto still = deviations(read("middle_x_mm\n51\n"), straight());
@@ -79,7 +80,7 @@ TEST_CASE("the plot looks along the axis of least motion, with a line and dots f
     REQUIRE(plot.series.size() == 2);
     CHECK(plot.series[0].points.size() == 4);
     CHECK(plot.series[1].dots);
-    CHECK(plot.series[1].points[1].y == doctest::Approx(20));
+    CHECK(plot.series[1].points[1].y == near(20, {.relative = 1e-12}));
     const Plot above = measured_plot(read("tip_x_mm,tip_y_mm,tip_z_mm\n150,90,0\n"), straight());
     CHECK(above.y_label == "y (mm)");
 }

@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::report;
 
@@ -58,6 +60,6 @@ TEST_CASE("bars are as high as their share, and poor shapes are red") {
     report.dihedral_counts[35] = 240;
     const auto bad = mesh_picture_png("a mesh", report);
     REQUIRE(bad);
-    CHECK(red_and_blue(*bad).first == doctest::Approx(blue).epsilon(0.05));
+    CHECK(red_and_blue(*bad).first == near(blue, {.relative = 0.05}));
     CHECK(mesh_picture_png("", mesh::MeshReport{}));
 }

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/near.hpp"
 #include "report/simulation.hpp"
 #include "report/test_robot.hpp"
 
@@ -17,11 +18,11 @@ TEST_CASE("a disc lies on its plane, faces along the normal and has a disc's are
     for (const auto& t : mesh.triangles) {
         const auto point = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(t[k])]; };
         const Vec3 twice = cross(point(1) - point(0), point(2) - point(0));
-        CHECK(dot(twice, normal) == doctest::Approx(norm(twice)));
+        CHECK(dot(twice, normal) == near(norm(twice), {.relative = 1e-12}));
         area += 0.5 * norm(twice);
     }
-    for (const Vec3& p : mesh.points) CHECK(dot(p - center, normal) == doctest::Approx(0).epsilon(1e-12));
-    CHECK(area == doctest::Approx(std::numbers::pi * 0.05 * 0.05).epsilon(2e-3));
+    for (const Vec3& p : mesh.points) CHECK(dot(p - center, normal) == near(0, {.absolute = 1e-12}));
+    CHECK(area == near(std::numbers::pi * 0.05 * 0.05, {.relative = 2e-3}));
 }
 
 TEST_CASE("an obstacle must have a place at every step and points for its triangles") {

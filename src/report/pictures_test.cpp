@@ -9,6 +9,7 @@
 #include <cstring>
 #include <set>
 
+#include "core/near.hpp"
 #include "report/canvas.hpp"
 #include "report/raycast.hpp"
 #include "report/test_robot.hpp"
@@ -268,9 +269,9 @@ TEST_CASE("captions and round numbers") {
     rounded.result.steps[5].cables[0].tension_N = 2.84e-14;
     CHECK(step_line(rounded.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 0 N");
 
-    CHECK(nice_ceiling(557) == doctest::Approx(600));
-    CHECK(nice_ceiling(600) == doctest::Approx(600));
-    CHECK(nice_ceiling(0.081) == doctest::Approx(0.1));
+    CHECK(nice_ceiling(557) == near(600, {.relative = 1e-12}));
+    CHECK(nice_ceiling(600) == near(600, {.relative = 1e-12}));
+    CHECK(nice_ceiling(0.081) == near(0.1, {.relative = 1e-12}));
     CHECK(nice_ceiling(0) == 1);
     CHECK(nice_ceiling(-4) == 1);
 }

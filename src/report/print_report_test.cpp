@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "host/control_types.hpp"
 #include "plan/test_jobs.hpp"
@@ -64,10 +65,10 @@ TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faul
     const GivenLight& pieces = story.lights.at({1, 0});
     CHECK(pieces.pieces == 2);
     CHECK(pieces.complete);
-    CHECK(pieces.lit_s == doctest::Approx(2.5));
-    CHECK(pieces.at_s == doctest::Approx(60));
+    CHECK(pieces.lit_s == near(2.5, {.relative = 1e-12}));
+    CHECK(pieces.at_s == near(60, {.relative = 1e-12}));
     // The second run of the computer counts on from the last light that is known.
-    CHECK(story.lights.at({1, 1}).at_s == doctest::Approx(60 + 30));
+    CHECK(story.lights.at({1, 1}).at_s == near(60 + 30, {.relative = 1e-12}));
     REQUIRE(story.faults == 2);
     CHECK(story.happenings[0].text == "the host died in the light of layer 1; its guard made dark after 1.00 s");
     CHECK(story.happenings[0].then == "survived: the light went on in layer 1");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near.hpp"
 #include "report/test_robot.hpp"
 #include "report/tube.hpp"
 
@@ -32,8 +33,8 @@ TEST_CASE("the skin of the bar has its areas, whatever the order of the tets") {
         const std::vector<int> materials = {0, 1};
         const Surface surface = outer_surface(robot.mesh, materials);
         const Pose rest = pose(surface, robot.mesh.points);
-        CHECK(area(surface, rest, 0) == doctest::Approx(0.06 * 2 * 0.035 + 0.02 * 0.015));
-        CHECK(area(surface, rest, 1) == doctest::Approx(0.04 * 2 * 0.035 + 0.02 * 0.015));
+        CHECK(area(surface, rest, 0) == near(0.06 * 2 * 0.035 + 0.02 * 0.015, {.relative = 1e-12}));
+        CHECK(area(surface, rest, 1) == near(0.04 * 2 * 0.035 + 0.02 * 0.015, {.relative = 1e-12}));
     }
 }
 
@@ -42,7 +43,7 @@ TEST_CASE("a face towards a void belongs to the skin and the void has none") {
     const std::vector<int> materials = {0, -1};
     const Surface surface = outer_surface(robot.mesh, materials);
     const Pose rest = pose(surface, robot.mesh.points);
-    CHECK(area(surface, rest, 0) == doctest::Approx(0.06 * 2 * 0.035 + 2 * 0.02 * 0.015));
+    CHECK(area(surface, rest, 0) == near(0.06 * 2 * 0.035 + 2 * 0.02 * 0.015, {.relative = 1e-12}));
     CHECK(std::all_of(surface.tet.begin(), surface.tet.end(),
                       [&](int t) { return robot.mesh.region[static_cast<std::size_t>(t)] == 0; }));
 }
@@ -55,7 +56,7 @@ TEST_CASE("normals of a box are those of its faces, and stay so when it is turne
     for (Vec3& p : turned) p = {p.z, p.x, p.y};
     for (const auto& positions : {robot.mesh.points, turned}) {
         for (const Vec3& n : pose(surface, positions).normals) {
-            CHECK(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}) == doctest::Approx(1));
+            CHECK(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}) == near(1, {.relative = 1e-12}));
         }
     }
     // Twelve cube edges' nodes are doubled, eight corners tripled: faces of 41 x 9, 41 x 7, 9 x 7 nodes.
@@ -71,7 +72,7 @@ TEST_CASE("values of tets reach the vertices of their own material only") {
     const auto at = at_vertices(robot.mesh, materials, surface, values);
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         for (const int v : surface.triangles[t]) {
-            CHECK(at[static_cast<std::size_t>(v)] == doctest::Approx(surface.material[t] == 0 ? 3 : 8));
+            CHECK(at[static_cast<std::size_t>(v)] == near(surface.material[t] == 0 ? 3 : 8, {.relative = 1e-12}));
         }
     }
 }
@@ -81,11 +82,11 @@ TEST_CASE("a tube is closed and as thick as asked") {
     const Tube tube = tube_around(line, 0.1);
     mesh::TriMesh surface{tube.positions, tube.triangles};
     CHECK(mesh::signed_volume(surface) > 0);
-    CHECK(mesh::bounds(surface).low.z == doctest::Approx(-0.1).epsilon(0.06));
-    for (const Vec3& n : tube.normals) CHECK(norm(n) == doctest::Approx(1));
+    CHECK(mesh::bounds(surface).low.z == near(-0.1, {.relative = 1e-12}));
+    for (const Vec3& n : tube.normals) CHECK(norm(n) == near(1, {.relative = 1e-12}));
     const Tube straight = tube_around(std::vector<Vec3>{{0, 0, 0}, {0, 0, 2}}, 0.5);
     const double decagon = 10 * 0.5 * 0.5 * 0.5 * std::sin(0.2 * 3.14159265358979);
-    CHECK(mesh::signed_volume({straight.positions, straight.triangles}) == doctest::Approx(2 * decagon));
+    CHECK(mesh::signed_volume({straight.positions, straight.triangles}) == near(2 * decagon, {.relative = 1e-12}));
 }
 
 TEST_CASE("a rigid box has flat faces: its corners are split in three") {
@@ -99,7 +100,7 @@ TEST_CASE("a rigid box has flat faces: its corners are split in three") {
     const Pose at_rest = pose(surface, box.points);
     for (std::size_t v = 0; v < 24; ++v) {
         const Vec3 n = at_rest.normals[v], out = at_rest.positions[v] - Vec3{0.5, 0.5, 0.5};
-        CHECK(std::abs(n.x) + std::abs(n.y) + std::abs(n.z) == doctest::Approx(1));  // along an axis
-        CHECK(dot(n, out) == doctest::Approx(0.5));
+        CHECK(std::abs(n.x) + std::abs(n.y) + std::abs(n.z) == near(1, {.relative = 1e-12}));  // along an axis
+        CHECK(dot(n, out) == near(0.5, {.relative = 1e-12}));
     }
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "mesh/surface_file.hpp"
 #include "robot/test_run.hpp"
@@ -135,19 +136,19 @@ TEST_CASE("notches that a cable crosses are filled by asking for it, as if they 
     REQUIRE(filled.robot.gaps.size() == 1);
     const mesh::TetMesh& mesh = filled.model.mesh();
     REQUIRE(mesh.region_names.size() == 3);  // the bar and one region for each notch
-    CHECK(volume_mm3(mesh, 0) == doctest::Approx(4000 - 2 * notch_mm3).epsilon(1e-6));
-    CHECK(volume_mm3(mesh, 1) == doctest::Approx(notch_mm3).epsilon(1e-6));
-    CHECK(volume_mm3(mesh, 2) == doctest::Approx(notch_mm3).epsilon(1e-6));
+    CHECK(volume_mm3(mesh, 0) == near(4000 - 2 * notch_mm3, {.relative = 1e-12}));
+    CHECK(volume_mm3(mesh, 1) == near(notch_mm3, {.relative = 1e-12}));
+    CHECK(volume_mm3(mesh, 2) == near(notch_mm3, {.relative = 1e-12}));
     CHECK(shared_nodes(mesh, 0, 1) > 10);
     REQUIRE(filled.model.description().growths.size() == 2);
-    CHECK(filled.model.description().growths[0].direction.x == doctest::Approx(1));
+    CHECK(filled.model.description().growths[0].direction.x == near(1, {.relative = 1e-12}));
     CHECK(filled.model.description().growths[0].material != filled.model.description().growths[1].material);
 
     const Built drawn =
         built_of(notched(cable("flexor", path, "") + "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n"));
     const sim::Step with_filled = last_step(filled);
     const sim::Step with_drawn = last_step(drawn);
-    CHECK(with_filled.cables[0].length_ratio == doctest::Approx(0.96).epsilon(1e-3));
+    CHECK(with_filled.cables[0].length_ratio == near(0.96, {.relative = 1e-3}));
     const Vec3 tip = with_drawn.markers[0].position_m;
     CHECK(std::fabs(tip.z - 5e-3) > 1e-3);  // it has bent
     CHECK(norm(with_filled.markers[0].position_m - tip) < 0.1 * std::fabs(tip.z - 5e-3));
@@ -155,7 +156,7 @@ TEST_CASE("notches that a cable crosses are filled by asking for it, as if they 
     Progress silent;
     const auto printed = body_surfaces(filled.robot, silent);
     REQUIRE(printed);
-    CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == doctest::Approx(4000 - 2 * notch_mm3));
+    CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == near(4000 - 2 * notch_mm3, {.relative = 1e-12}));
 }
 
 TEST_CASE("two cables share the notches that both cross; each closes them along itself") {
@@ -173,10 +174,10 @@ TEST_CASE("gap elements take the weight of their gap, else that of their cable")
     const auto weight_Pa = [](const Built& built) { return built.model.description().growths.front().weight_Pa; };
     const double usual = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true"))));
     const double twice = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true\nweight = 0.2"))));
-    CHECK(twice == doctest::Approx(2 * usual));
+    CHECK(twice == near(2 * usual, {.relative = 1e-12}));
     const std::string gap = "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n";
     const double of_gap = weight_Pa(built_of(notched(cable("flexor", path, "weight = 0.2") + gap + "weight = 0.4\n")));
-    CHECK(of_gap == doctest::Approx(4 * usual));
+    CHECK(of_gap == near(4 * usual, {.relative = 1e-12}));
     check_problem(notched(cable("flexor", path, "fill_notches = true\nweight = 0")), "above 0 and at most 1000");
     check_problem(notched(cable("flexor", path, "fill_notches = true\nfriction = 0.1")), "knows no guides");
     std::string length = notched(cable("flexor", path, "weight = 1"));
@@ -193,7 +194,7 @@ TEST_CASE("air elements bend a robot as far as air does; their weight is checked
     };
     const auto tip = [&](const std::string& rest) {
         const sim::Step step = last_step(built_of(hollow(rest)));
-        CHECK(step.chambers[0].volume_ratio == doctest::Approx(1.3).epsilon(1e-4));
+        CHECK(step.chambers[0].volume_ratio == near(1.3, {.relative = 1e-4}));
         return step.markers[0].position_m - Vec3{30e-3, 5e-3, 5e-3};
     };
     const Vec3 air = tip(""), elements = tip("model = \"elements\"\n");
@@ -224,8 +225,8 @@ TEST_CASE("materials of a 3MF file become bodies that share a face, in the file'
     const std::string geometry = "geometry = \"" + path + "\"\n";
     const Built built =
         built_of(head + body("root", geometry + "part = \"firm\"") + body("tip", geometry + "part = \"tip\""));
-    CHECK(volume_mm3(built.model.mesh(), 0) == doctest::Approx(1000).epsilon(1e-6));
-    CHECK(volume_mm3(built.model.mesh(), 1) == doctest::Approx(1000).epsilon(1e-6));
+    CHECK(volume_mm3(built.model.mesh(), 0) == near(1000, {.relative = 1e-12}));
+    CHECK(volume_mm3(built.model.mesh(), 1) == near(1000, {.relative = 1e-12}));
     CHECK(shared_nodes(built.model.mesh(), 0, 1) >= 9);
     check_problem(head + body("root", geometry), "has several materials; one [[body]] each, with part = one of");
     check_problem(head + body("root", geometry + "part = \"lid\""), "has no part \"lid\"");
@@ -253,13 +254,13 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
         "[[chamber]]\nname = \"air\"\ngeometry = { box = [[15, 3, 3], [25, 7, 7]] }\ntarget = { volume_ratio = 1.1 }\n";
     for (const std::string& tip : {drawn_tip, "geometry = \"" + folder.file("tip.stl") + "\""}) {
         const Built built = built_of(head + root + body("tip", tip) + chamber);
-        CHECK(volume_mm3(built.model.mesh(), 0) == doctest::Approx(2000 - 80).epsilon(1e-6));
-        CHECK(volume_mm3(built.model.mesh(), 1) == doctest::Approx(2000 - 80).epsilon(1e-6));
+        CHECK(volume_mm3(built.model.mesh(), 0) == near(2000 - 80, {.relative = 1e-12}));
+        CHECK(volume_mm3(built.model.mesh(), 1) == near(2000 - 80, {.relative = 1e-12}));
         CHECK(shared_nodes(built.model.mesh(), 0, 1) >= 8);
         const auto printed = body_surfaces(built.robot, silent);
         REQUIRE(printed);
         for (const BodySurface& one : *printed)
-            CHECK(1e9 * mesh::signed_volume(one.surface_m) == doctest::Approx(1920).epsilon(1e-6));
+            CHECK(1e9 * mesh::signed_volume(one.surface_m) == near(1920, {.relative = 1e-12}));
     }
     check_problem(head + body("root", "geometry = \"" + folder.file("root.step") + "\"\npart = \"lid\""),
                   "has no solid \"lid\"");
@@ -304,7 +305,7 @@ TEST_CASE(
     Progress silent;
     const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    CHECK(volume_mm3(*mesh, 0) == doctest::Approx(4000 - 320).epsilon(1e-5));
+    CHECK(volume_mm3(*mesh, 0) == near(4000 - 320, {.relative = 1e-5}));
     REQUIRE(mesh->notes.size() >= 3);
     CHECK(mesh->notes[0].find("body \"bar\": ") == 0);
     CHECK(mesh->notes[0].find("were joined to it") != std::string::npos);
@@ -315,5 +316,5 @@ TEST_CASE(
     const auto printed = body_surfaces(*robot, silent);
     REQUIRE(printed);
     CHECK((*printed)[0].notes.size() == 2);
-    CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == doctest::Approx(3680).epsilon(1e-5));
+    CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == near(3680, {.relative = 1e-5}));
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "robot/test_run.hpp"
 
@@ -116,10 +117,10 @@ steps = {}
 TEST_CASE("membrane: a strip eighty times as long as it is thick bends as a plate, and bulges as a skin") {
     const double E = 1e6 / (1 - 0.09), t = 0.5e-3, L = 0.04;
     const double plate_mm = 1e3 * 0.05 * std::pow(L, 4) / (32 * E * std::pow(t, 3));
-    CHECK(sag_mm(0.05, 1) / plate_mm == doctest::Approx(1).epsilon(0.03));
+    CHECK(sag_mm(0.05, 1) / plate_mm == near(1, {.relative = 0.03}));
     // A skin without stiffness against bending, its arc taken as a parabola; it grows by 4 %.
     const double skin_mm = 1e3 * std::cbrt(3 * 500 * std::pow(L, 4) / (64 * E * t));
-    CHECK(sag_mm(500, 10) / skin_mm == doctest::Approx(1).epsilon(0.06));
+    CHECK(sag_mm(500, 10) / skin_mm == near(1, {.relative = 0.06}));
 }
 
 TEST_CASE("column: above its critical load it goes to the side, or is said to be unstable") {
@@ -216,7 +217,7 @@ TEST_CASE("slivers: two blocks that are a hundredth of a millimetre out of line 
     out.replace(out.find(straight), straight.size(), "[[0.01, 0.01, 30], [10.01, 10.01, 60]]");
     const sim::Trajectory shifted = simulate_to_the_end(out),
                           aligned = simulate_to_the_end(bar("rubber", "rubber", pull));
-    CHECK(rise_mm(shifted) / rise_mm(aligned) == doctest::Approx(1).epsilon(3e-3));
+    CHECK(rise_mm(shifted) / rise_mm(aligned) == near(1, {.relative = 3e-3}));
 }
 
 TEST_CASE("vacuum: a box that is sucked flat touches itself inside, or says where it stopped") {
@@ -275,8 +276,7 @@ move = [0, 0, 9]
 steps = 3
 )"));
     const double stretch = 1.3, nominal_Pa = 1e6 / 3 * (stretch - 1 / (stretch * stretch));
-    CHECK(std::fabs(result.steps.back().supports[3].force_N.z) / (1e-4 * nominal_Pa) ==
-          doctest::Approx(1).epsilon(1e-3));
+    CHECK(std::fabs(result.steps.back().supports[3].force_N.z) / (1e-4 * nominal_Pa) == near(1, {.relative = 1e-3}));
 }
 
 TEST_CASE("stiffness: of two blocks the one that is 100,000 times as soft gives way, by what it should") {
@@ -286,7 +286,7 @@ material.hard = { youngs_modulus = "1 GPa", poisson_ratio = 0 }
 load = [{ name = "pull", plane = { point = [0, 0, 60], normal = [0, 0, 1] }, force = ["0 N", "0 N", "0.01 N"] }]
 program = { steps = 1 }
 )"));
-    CHECK(rise_mm(result) / 0.3 == doctest::Approx(1).epsilon(0.02));
+    CHECK(rise_mm(result) / 0.3 == near(1, {.relative = 0.02}));
 }
 
 TEST_CASE("chamber: a ball blown up to eight times its air holds the pressure of a thick rubber shell") {
@@ -308,12 +308,12 @@ target = { volume_ratio = 8 }
 [program]
 steps = 14
 )"));
-    CHECK(result.steps.back().chambers[0].volume_ratio / 8 == doctest::Approx(1).epsilon(1e-4));
+    CHECK(result.steps.back().chambers[0].volume_ratio / 8 == near(1, {.relative = 1e-4}));
     // Incompressible neo-Hookean shell: stretches of its inside and, by its volume, of its outside.
     const auto part = [](double stretch) { return 4 / stretch + std::pow(stretch, -4); };
     const double outer = std::cbrt(1 + 7 * std::pow(8.0 / 15, 3));
     const double pressure_Pa = 1e6 / 3 / 2 * (part(outer) - part(2));
-    CHECK(result.steps.back().chambers[0].pressure_Pa / pressure_Pa == doctest::Approx(1).epsilon(0.06));
+    CHECK(result.steps.back().chambers[0].pressure_Pa / pressure_Pa == near(1, {.relative = 0.06}));
 }
 
 TEST_CASE("a guide point that is nowhere near the robot is named, with how far it is away") {
@@ -344,5 +344,5 @@ program = { steps = 1 }
     };
     const sim::Trajectory right = robot::testing::run_to_the_end(robot::testing::build(mesh("1 2 3 4")));
     const sim::Trajectory wrong = robot::testing::run_to_the_end(robot::testing::build(mesh("2 1 3 4")));
-    CHECK(rise_mm(wrong) / rise_mm(right) == doctest::Approx(1).epsilon(1e-6));
+    CHECK(rise_mm(wrong) / rise_mm(right) == near(1, {.relative = 1e-12}));
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "core/test_text.hpp"
 #include "mesh/surface_file.hpp"
@@ -51,11 +52,11 @@ sim::Step last_step(const Built& built) {
 TEST_CASE("rollers and planes of symmetry hold single directions: a block thins as it is drawn out") {
     const sim::Step last = last_step(build(eighth));
     const Vec3 corner = last.markers[0].position_m;
-    CHECK(corner.x == doctest::Approx(0.012).epsilon(1e-9));
-    CHECK(corner.y == doctest::Approx(corner.z).epsilon(1e-6));
+    CHECK(corner.x == near(0.012, {.relative = 1e-9}));
+    CHECK(corner.y == near(corner.z, {.relative = 1e-6}));
     CHECK(corner.y < 0.0096);
     CHECK(corner.y > 0.0090);
-    CHECK(last.supports[3].force_N.x == doctest::Approx(-last.supports[0].force_N.x).epsilon(1e-5));
+    CHECK(last.supports[3].force_N.x == near(-last.supports[0].force_N.x, {.relative = 1e-9}));
     CHECK(std::fabs(last.supports[3].force_N.y) < 1e-12);  // a roller has no force across
 }
 
@@ -80,8 +81,8 @@ TEST_CASE("a spring holds a block against a load") {
         "\"0 N\"]\n";
     const sim::Step last = last_step(build(sprung));
     REQUIRE(last.springs.size() == 1);
-    CHECK(last.springs[0].force_N == doctest::Approx(0.1).epsilon(1e-5));
-    CHECK(last.springs[0].length_m == doctest::Approx(0.022).epsilon(1e-5));
+    CHECK(last.springs[0].force_N == near(0.1, {.relative = 1e-5}));
+    CHECK(last.springs[0].length_m == near(0.022, {.relative = 1e-5}));
     check_problem(replaced(sprung, "\"0.05 N/mm\"", "\"0.05 N\""), "unknown unit \"N\"; here the units are N/mm");
     check_problem(replaced(sprung, "anchor = \"last\"", "anchor = \"first\""), "point 2 at (30, 5, 5) lies outside");
     check_problem(replaced(sprung, "anchor", "free_length = \"-1 mm\"\nanchor"), "must not be negative");
@@ -115,7 +116,7 @@ TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved an
                              "fixed = [{ name = \"floor\", box = [[-10, -10, 5], [100, 0, 5]] }]\n";
     const auto read = [&](const std::string& t) { return parse_robot(t, folder.path() / "block.toml"); };
     const Built built = testing::build(read(text));
-    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(3e-6));
+    CHECK(mesh::volume(built.model.mesh()) == near(3e-6, {.relative = 1e-12}));
     Box3 box;
     for (const Vec3& p : built.model.mesh().points) box.add(p);
     // x -> -x, a quarter turn: (x, y) -> (-y, -x); three of them.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/near.hpp"
 #include "robot/test_run.hpp"
 
 using namespace pliant;
@@ -61,8 +62,8 @@ void check_pull(const sim::Trajectory& result) {
         tension = step.cables[0].tension_N;
     }
     const sim::Step& last = result.steps.back();
-    CHECK(result.steps.front().cables[0].length_m == doctest::Approx(0.157806).scale(0).epsilon(1e-5));
-    CHECK(last.cables[0].length_m == doctest::Approx(0.107806).scale(0).epsilon(1e-5));
+    CHECK(result.steps.front().cables[0].length_m == near(0.157806, {.relative = 1e-5}));
+    CHECK(last.cables[0].length_m == near(0.107806, {.relative = 1e-5}));
     CHECK(last.markers[0].position_m.y > result.steps.front().markers[0].position_m.y + 0.03);  // bends towards +y
 }
 
@@ -139,7 +140,7 @@ TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hol
     double highest = 0;
     for (const sim::Step& step : grown.steps) highest = std::max(highest, step.chambers[0].pressure_Pa);
     CHECK(grown.steps.back().chambers[0].pressure_Pa < highest);
-    CHECK(grown.steps.back().chambers[0].volume_ratio == doctest::Approx(4.5).scale(0).epsilon(1e-5));
+    CHECK(grown.steps.back().chambers[0].volume_ratio == near(4.5, {.relative = 1e-6}));
 
     // Driven by pressure it gets there and no further, keeps what it has, and says so.
     const sim::Trajectory pressed = simulate(pneunet("pressure = \"150 kPa\"", 30));
@@ -166,7 +167,7 @@ steps = 20
 )",
                                                         folder));
     REQUIRE_MESSAGE(result.converged, result.message);
-    CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(2.46).scale(0).epsilon(1e-5));
+    CHECK(result.steps.back().chambers[0].volume_ratio == near(2.46, {.relative = 1e-9}));
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }
 
@@ -176,14 +177,14 @@ TEST_CASE("pulled by 60 mm the coarse finger presses on itself; without contact 
     const sim::Trajectory touching = simulate(text), always = simulate(text + "[contact]\n");
     const sim::Trajectory through = simulate(text + "[contact]\nself = false\n");
     REQUIRE_MESSAGE(always.converged, always.message);
-    CHECK(always.steps.back().cables[0].tension_N == doctest::Approx(5.87).scale(0).epsilon(0.01));
+    CHECK(always.steps.back().cables[0].tension_N == near(5.87, {.relative = 0.01}));
     for (const sim::Step& step : touching.steps) CHECK(step.met == (step.index >= 23));
     REQUIRE_MESSAGE(touching.converged, touching.message);
     REQUIRE_MESSAGE(through.converged, through.message);
     CHECK(touching.warnings.empty());
     CHECK(touching.steps.back().self_contact_N > 5);
-    CHECK(touching.steps.back().cables[0].tension_N == doctest::Approx(5.87).scale(0).epsilon(0.01));
-    CHECK(through.steps.back().cables[0].tension_N == doctest::Approx(4.18).scale(0).epsilon(0.01));
+    CHECK(touching.steps.back().cables[0].tension_N == near(5.87, {.relative = 0.01}));
+    CHECK(through.steps.back().cables[0].tension_N == near(4.18, {.relative = 0.01}));
     REQUIRE(through.warnings.size() == 1);
     CHECK(through.warnings[0].find("from step 23 on, the robot passes through itself near (") == 0);
     for (const sim::Step& step : through.steps) CHECK(step.crossing_m.has_value() == (step.index >= 23));

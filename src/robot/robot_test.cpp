@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 #include "core/test_text.hpp"
 #include "mesh/tet_writer.hpp"
@@ -77,14 +78,14 @@ TEST_CASE("a good robot file is read and built") {
     Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->order == 2);
-    CHECK(mesh::volume(*mesh, 0) == doctest::Approx(1e-9 * (20 * 10 * 10 - 2 * 10 * 5)));
-    CHECK(mesh::volume(*mesh, 1) == doctest::Approx(1e-9 * 20 * 10 * 10));
+    CHECK(mesh::volume(*mesh, 0) == near(1e-9 * (20 * 10 * 10 - 2 * 10 * 5), {.relative = 1e-12}));
+    CHECK(mesh::volume(*mesh, 1) == near(1e-9 * 20 * 10 * 10, {.relative = 1e-12}));
     const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
     REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
     CHECK(model->description().cables[0].points.size() == 4);  // both ends, and both flanks of the notch
     const auto surfaces = body_surfaces(*robot, silent);
     REQUIRE(surfaces);
-    CHECK(mesh::signed_volume((*surfaces)[0].surface_m) == doctest::Approx(1e-9 * (2000 - 100)));
+    CHECK(mesh::signed_volume((*surfaces)[0].surface_m) == near(1e-9 * (2000 - 100), {.relative = 1e-12}));
 }
 
 TEST_CASE("--set changes the number of gaps and the target") {
@@ -95,7 +96,7 @@ TEST_CASE("--set changes the number of gaps and the target") {
     const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
     REQUIRE(mesh);
     CHECK(mesh->order == 1);
-    CHECK(mesh::volume(*mesh, 0) == doctest::Approx(1e-9 * (2000 - 200)));
+    CHECK(mesh::volume(*mesh, 0) == near(1e-9 * (2000 - 200), {.relative = 1e-12}));
     CHECK(robot->cables[0].target.value == 0.9);
 }
 
@@ -161,7 +162,7 @@ steps = 1
     CHECK(d.materials.size() > 15);
     CHECK(d.materials.size() <= 2 + 19);
     const double found = testing::run_to_the_end(bar).steps.back().markers[0].position_m.x - 0.04;
-    CHECK(found == doctest::Approx(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4).epsilon(0.01));
+    CHECK(found == near(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4, {.relative = 0.01}));
 }
 
 TEST_CASE("blends and exposures are read, and their slips named") {
@@ -177,7 +178,7 @@ TEST_CASE("blends and exposures are read, and their slips named") {
     REQUIRE(robot->bodies[1].blend.has_value());
     CHECK(robot->bodies[1].blend->material == 1);
     CHECK(robot->bodies[1].blend->shares == std::vector<double>{0.2, 0.4});
-    CHECK(robot->bodies[1].blend->cell == doctest::Approx(0.3));
+    CHECK(robot->bodies[1].blend->cell == near(0.3, {.relative = 1e-12}));
     check_problem(body("exposure = 7"), "7 has no unit; write a time such as");
     check_problem(body("blend = { material = \"hrd\", from = [0, 0, 0], to = [1, 0, 0] }"), "did you mean \"hard\"?");
     check_problem(body("blend = { material = \"hard\", from = [1, 0, 0], to = [1, 0, 0] }"),
@@ -248,9 +249,9 @@ TEST_CASE("a load is spread over the outer surface in its box") {
     double sum = 0;
     for (std::size_t i = 0; i < load.nodes.size(); ++i) {
         sum += load.shares[i];
-        CHECK(model->mesh().points[static_cast<std::size_t>(load.nodes[i])].x == doctest::Approx(0.04));
+        CHECK(model->mesh().points[static_cast<std::size_t>(load.nodes[i])].x == near(0.04, {.relative = 1e-12}));
     }
-    CHECK(sum == doctest::Approx(1));
+    CHECK(sum == near(1, {.relative = 1e-12}));
     CHECK(
         problem(good +
                 "[[load]]\nname = \"push\"\nbox = [[50, 0, 0], [60, 10, 10]]\nforce = [\"0 N\", \"0 N\", \"0.5 N\"]\n")
@@ -306,15 +307,15 @@ std::string region(const std::string& name, const std::string& material, const s
 
 TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
     const Built built = build(chamber(room, "volume_ratio = 1.2"));
-    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 192)));
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
     REQUIRE(built.model.description().chambers.size() == 1);
     CHECK(built.robot.chambers[0].target.value == 1.2);
     Progress silent;
     const auto surfaces = body_surfaces(built.robot, silent);
     REQUIRE(surfaces);
-    CHECK(mesh::signed_volume((*surfaces)[1].surface_m) == doctest::Approx(1e-9 * (2000 - 192)));
+    CHECK(mesh::signed_volume((*surfaces)[1].surface_m) == near(1e-9 * (2000 - 192), {.relative = 1e-12}));
     const sim::Step step = last_step(built);
-    CHECK(step.chambers[0].volume_m3 == doctest::Approx(1.2 * 192e-9).scale(0).epsilon(1e-5));
+    CHECK(step.chambers[0].volume_m3 == near(1.2 * 192e-9, {.relative = 1e-6}));
     CHECK(step.chambers[0].pressure_Pa > 0);
 }
 
@@ -324,11 +325,11 @@ TEST_CASE("a cavity of the bodies is named by a point inside it, and needs no se
                                     "3], [36, 7, 7]] }] }");
     const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { volume_ratio = 1.2 }\n";
     const Built built = build(hollow + air);
-    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 192)).scale(0));
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
     const sim::Step found = last_step(built);
-    CHECK(found.chambers[0].volume_m3 == doctest::Approx(1.2 * 192e-9).scale(0).epsilon(1e-5));
+    CHECK(found.chambers[0].volume_m3 == near(1.2 * 192e-9, {.relative = 1e-6}));
     const sim::Step drawn = last_step(build(chamber(room, "volume_ratio = 1.2")));
-    CHECK(found.chambers[0].pressure_Pa == doctest::Approx(drawn.chambers[0].pressure_Pa).scale(0).epsilon(0.05));
+    CHECK(found.chambers[0].pressure_Pa == near(drawn.chambers[0].pressure_Pa, {.relative = 0.05}));
     check_problem(good + air, "bar.toml:39: chamber \"air\": inside: the point (30, 5, 5) lies in the material");
     check_problem(hollow + air + "geometry = { box = [[0, 0, 0], [1, 1, 1]] }\n",
                   "leave geometry, surface and region out");
@@ -347,8 +348,8 @@ TEST_CASE("a cavity with a mouth is closed by a cap, and its mouth must be held"
     check_problem(pot + air + cap, "the chamber is open; close it with a body");
     const std::string held = "[[fixed]]\nname = \"flange\"\nbox = [[20, 0, 10], [40, 10, 10]]\n";
     const Built built = build(pot + air + cap + held);
-    CHECK(mesh::volume(built.model.mesh()) == doctest::Approx(1e-9 * (4000 - 100 - 12 * 4 * 7)).scale(0));
-    CHECK(last_step(built).chambers[0].volume_m3 == doctest::Approx(336e-9).scale(0).epsilon(0.01));
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 12 * 4 * 7), {.relative = 1e-12}));
+    CHECK(last_step(built).chambers[0].volume_m3 == near(336e-9, {.relative = 0.01}));
 }
 
 TEST_CASE("a chamber takes one target of four") {
@@ -361,10 +362,10 @@ TEST_CASE("a chamber takes one target of four") {
     CHECK(target("volume_ratio = 1.25").kind == Kind::volume_ratio);
     CHECK(target("gas_ratio = 2").kind == Kind::gas_ratio);
     CHECK(target("pressure = \"40 kPa\"").kind == Kind::pressure_Pa);
-    CHECK(target("pressure = \"40 kPa\"").value == doctest::Approx(40e3));
-    CHECK(target("pressure = \"-40 kPa\"").value == doctest::Approx(-40e3));
+    CHECK(target("pressure = \"40 kPa\"").value == near(40e3, {.relative = 1e-12}));
+    CHECK(target("pressure = \"-40 kPa\"").value == near(-40e3, {.relative = 1e-12}));
     CHECK(target("volume_change = \"0.5 ml\"").kind == Kind::volume_change_m3);
-    CHECK(target("volume_change = \"0.5 ml\"").value == doctest::Approx(0.5e-6));
+    CHECK(target("volume_change = \"0.5 ml\"").value == near(0.5e-6, {.relative = 1e-12}));
 
     check_problem(chamber(room, "volume_ratio = 1.2, pressure = \"1 kPa\""),
                   "chamber[0].target: takes one of volume_ratio, volume_change, pressure and gas_ratio");
@@ -398,11 +399,11 @@ TEST_CASE("air that is not there, or not shut in, is refused") {
 TEST_CASE("a pressure load presses on the faces in its box") {
     const std::string load = "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\n";
     const Built built = build(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
-    CHECK(built.robot.loads[0].pressure_Pa == doctest::Approx(2e3));
+    CHECK(built.robot.loads[0].pressure_Pa == near(2e3, {.relative = 1e-12}));
     CHECK(built.model.description().loads.empty());
     REQUIRE(built.model.description().pressures.size() == 1);
     // 100 mm^2, pressed towards the clamp.
-    CHECK(last_step(built).supports[0].force_N.x == doctest::Approx(0.2).scale(0).epsilon(0.01));
+    CHECK(last_step(built).supports[0].force_N.x == near(0.2, {.relative = 0.01}));
 
     check_problem(good + load + "pressure = \"2 kPa\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n",
                   "give either force or pressure");
@@ -417,7 +418,7 @@ TEST_CASE("a support turns by degrees about an axis through a point in the file'
     const Vec3 turned = clamp.position({0, 0.010, 0.005}, 1);
     CHECK(norm(turned - Vec3{0, 0.005, 0.010}) < 1e-12);
     const Vec3 half = clamp.position({0, 0.010, 0.005}, 1.0 / 3);
-    CHECK(half.z == doctest::Approx(0.005 + 0.005 * 0.5));  // sin 30
+    CHECK(half.z == near(0.005 + 0.005 * 0.5, {.relative = 1e-12}));  // sin 30
     CHECK(clamp.moves());
 
     check_problem(with(box, box + "\nrotate = { angle = 90 }"), "fixed[0].rotate: \"axis\" is missing");
@@ -445,16 +446,16 @@ gravity = 0.5
     CHECK(built.robot.program.duration == 4);
     const sim::Description& d = built.model.description();
     const auto flexor = [&](double t) { return d.cables[0].target.at(t); };
-    CHECK(flexor(0) == doctest::Approx(1));
-    CHECK(flexor(0.5) == doctest::Approx(0.95));
-    CHECK(flexor(1) == doctest::Approx(0.9));
-    CHECK(flexor(2) == doctest::Approx(0.94));
-    CHECK(flexor(4) == doctest::Approx(0.98));  // stays where the last key left it
-    CHECK(d.chambers[0].target.at(1.5) == doctest::Approx(5e3));
-    CHECK(d.chambers[0].target.at(4) == doctest::Approx(10e3));
-    CHECK(d.gravity_share.at(3) == doctest::Approx(0.5));
-    CHECK(d.pressures[0].share.at(1) == doctest::Approx(0.25));  // no key names it
-    CHECK(d.pressures[0].share.at(4) == doctest::Approx(1));
+    CHECK(flexor(0) == near(1, {.relative = 1e-12}));
+    CHECK(flexor(0.5) == near(0.95, {.relative = 1e-12}));
+    CHECK(flexor(1) == near(0.9, {.relative = 1e-12}));
+    CHECK(flexor(2) == near(0.94, {.relative = 1e-12}));
+    CHECK(flexor(4) == near(0.98, {.relative = 1e-12}));  // stays where the last key left it
+    CHECK(d.chambers[0].target.at(1.5) == near(5e3, {.relative = 1e-12}));
+    CHECK(d.chambers[0].target.at(4) == near(10e3, {.relative = 1e-12}));
+    CHECK(d.gravity_share.at(3) == near(0.5, {.relative = 1e-12}));
+    CHECK(d.pressures[0].share.at(1) == near(0.25, {.relative = 1e-12}));  // no key names it
+    CHECK(d.pressures[0].share.at(4) == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("a program without duration ends with its last key") {
@@ -462,7 +463,7 @@ TEST_CASE("a program without duration ends with its last key") {
         parse_robot(good + "[[program.key]]\ntime = \"0 s\"\nflexor = 0.99\n[[program.key]]\ntime = \"500 ms\"\n", "b");
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     CHECK(robot->program.duration == 0.5);
-    CHECK(robot->cables[0].target.at(0) == doctest::Approx(0.99));  // a key at time 0 says where it starts
+    CHECK(robot->cables[0].target.at(0) == near(0.99, {.relative = 1e-12}));  // a key at time 0 says where it starts
 }
 
 TEST_CASE("slips in keys are named") {
@@ -492,16 +493,16 @@ TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box")
     const MeshFile file;
     const Built whole = build(file.robot(region("all", "soft", "region = \"all\"")));
     const double total = mesh::volume(whole.model.mesh());
-    CHECK(total == doctest::Approx(1e-9 * (4000 - 100)));
+    CHECK(total == near(1e-9 * (4000 - 100), {.relative = 1e-12}));
 
     // The box takes its tets from the body before it.
     const std::string end = region("end", "hard", "region = \"right\"\nbox = [[30, -1, -1], [41, 11, 11]]");
     const Built split = build(
         file.robot(region("left", "hard", "region = \"left\"") + region("right", "soft", "region = \"right\"") + end));
     const mesh::TetMesh& mesh = split.model.mesh();
-    CHECK(mesh::volume(mesh, 0) == doctest::Approx(1e-9 * (2000 - 100)));
-    CHECK(mesh::volume(mesh, 1) + mesh::volume(mesh, 2) == doctest::Approx(1e-9 * 2000));
-    CHECK(mesh::volume(mesh, 2) == doctest::Approx(1e-9 * 1000).scale(0).epsilon(0.25));  // to the nearest tet
+    CHECK(mesh::volume(mesh, 0) == near(1e-9 * (2000 - 100), {.relative = 1e-12}));
+    CHECK(mesh::volume(mesh, 1) + mesh::volume(mesh, 2) == near(1e-9 * 2000, {.relative = 1e-12}));
+    CHECK(mesh::volume(mesh, 2) == near(1e-9 * 1000, {.relative = 0.05}));  // to the nearest tet
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (mesh.region[t] == 0) continue;
         Vec3 centroid;
@@ -566,6 +567,6 @@ TEST_CASE("a support on a line is refused at rest, a pendulum in time is not") {
 TEST_CASE("an imperfection is a length") {
     const Result<Robot> robot = parse_robot(good, "bar.toml", {"program.imperfection=0.1 mm"});
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    CHECK(robot->program.imperfection_m == doctest::Approx(1e-4));
+    CHECK(robot->program.imperfection_m == near(1e-4, {.relative = 1e-12}));
     CHECK(problem(good, {"program.imperfection=-1 mm"}).find("must not be below zero") != std::string::npos);
 }

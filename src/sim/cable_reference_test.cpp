@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "sim/reference_problems.hpp"
 #include "sim/simulate.hpp"
 
@@ -45,10 +46,10 @@ void check(const reference::NamedMesh& named, double nu, double ratio, double te
     for (const int node : named.sets.at("tip"))
         rest += named.mesh.points[node] / static_cast<double>(named.sets.at("tip").size());
     const Vec3 tip = (last.markers[0].position_m - rest) / mm;
-    CHECK(last.cables[0].length_ratio == doctest::Approx(ratio).scale(0).epsilon(1e-6));
-    CHECK(last.cables[0].tension_N == doctest::Approx(tension).scale(0).epsilon(tolerance));
-    CHECK(tip.z == doctest::Approx(tip_mm.z).scale(0).epsilon(tolerance));
-    CHECK(tip.x == doctest::Approx(tip_mm.x).scale(0).epsilon(tolerance));
+    CHECK(last.cables[0].length_ratio == near(ratio, {.relative = 1e-6}));
+    CHECK(last.cables[0].tension_N == near(tension, {.relative = tolerance}));
+    CHECK(tip.z == near(tip_mm.z, {.relative = tolerance}));
+    CHECK(tip.x == near(tip_mm.x, {.relative = tolerance}));
     CHECK(last.min_J > 0);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/near.hpp"
 #include "sim/calculix.hpp"
 #include "sim/comparison_problems.hpp"
 #include "sim/simulate.hpp"
@@ -65,8 +66,7 @@ void check_bar(int order, const material::Law& hard, const material::Law& soft, 
     const Step last = ours(d, 5).steps.back();
     const calculix::Solution peer = theirs(d);
     CHECK(mismatch(d, last, peer) < same_displacement);
-    CHECK(last.supports[1].force_N.x ==
-          doctest::Approx(calculix::support_force(peer, d.supports[1]).x).scale(0).epsilon(same_force));
+    CHECK(last.supports[1].force_N.x == near(calculix::support_force(peer, d.supports[1]).x, {.relative = same_force}));
     CHECK(last.supports[1].force_N.x > 0);
 }
 
@@ -95,11 +95,11 @@ void check_finger(int order, double nu) {
 
     const double ratio = comparison::cable_length(d, comparison::moved(d.mesh, peer.displacement_m)) /
                          comparison::cable_length(d, d.mesh.points);
-    CHECK(ratio == doctest::Approx(0.9).scale(0).epsilon(same_displacement));
+    CHECK(ratio == near(0.9, {.relative = same_displacement}));
     d.cables[0].target = {CableTarget::Kind::length_ratio, ratio};
     const double again = ours(d, 5).steps.back().cables[0].tension_N;
     MESSAGE("tension " << again << " N, CalculiX " << tension << " N");
-    CHECK(again == doctest::Approx(tension).scale(0).epsilon(same_force));
+    CHECK(again == near(tension, {.relative = same_force}));
 }
 
 /// CalculiX and ours by pressure; then ours by the volume that CalculiX found, where the pressure must be the same.
@@ -114,14 +114,14 @@ void check_chamber(int order, double nu) {
     const double allowed = order == 2 ? same_curved_chamber : same_flat_chamber;
     CHECK(mismatch(d, by_pressure, peer) < allowed);
     const double volume = comparison::chamber_volume(d, comparison::moved(d.mesh, peer.displacement_m));
-    CHECK(by_pressure.chambers[0].volume_m3 == doctest::Approx(volume).scale(0).epsilon(allowed));
+    CHECK(by_pressure.chambers[0].volume_m3 == near(volume, {.relative = allowed}));
 
     const double ratio = volume / comparison::chamber_volume(d, d.mesh.points);
     CHECK(ratio > 1.1);
     d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, ratio};
     const double found = ours(d, 5).steps.back().chambers[0].pressure_Pa;
     MESSAGE("volume ratio " << ratio << ", pressure " << found << " Pa, CalculiX " << pressure << " Pa");
-    CHECK(found == doctest::Approx(pressure).scale(0).epsilon(same_pressure));
+    CHECK(found == near(pressure, {.relative = same_pressure}));
 }
 
 const std::array<double, 3> poisson_ratios = {0.3, 0.45, 0.49};

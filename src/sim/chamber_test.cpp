@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/near.hpp"
 #include "sim/attach.hpp"
 #include "sim/chamber_surface.hpp"
 #include "sim/test_problems.hpp"
@@ -86,7 +87,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         for (const Vec3& p : d.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
         const ChamberSurface wall(d.chambers[0].wall, rest);
         CHECK(is_closed(d.chambers[0].wall));
-        CHECK(wall.volume(rest) == doctest::Approx(0.02 * 0.005 * 0.005).scale(0).epsilon(1e-12));
+        CHECK(wall.volume(rest) == near(0.02 * 0.005 * 0.005, {.relative = 1e-12}));
 
         const std::vector<double> x = distorted(d.mesh);
         const std::vector<double> direction = direction_of(x.size());
@@ -95,7 +96,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
         for (std::size_t i = 0; i < x.size(); ++i) slope += gradient[i] * direction[i];
         const double h = 1e-5;
         const double rise = wall.volume(moved(x, direction, h)) - wall.volume(moved(x, direction, -h));
-        CHECK(rise / (2 * h) == doctest::Approx(slope).scale(0).epsilon(1e-5));
+        CHECK(rise / (2 * h) == near(slope, {.relative = 1e-9}));
         const std::vector<double> expected = gradient_slope(wall, x, direction);
         CHECK(largest(moved(hessian_times(wall, x, direction), expected, -1)) < 1e-8 * largest(expected));
     }
@@ -124,20 +125,20 @@ TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {
         const Trajectory by_volume = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_volume.converged, by_volume.message);
         const ChamberState air = by_volume.steps.back().chambers[0];
-        CHECK(air.volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-9));
+        CHECK(air.volume_ratio == near(1.6, {.relative = 1e-9}));
         CHECK(air.pressure_Pa > 1000);
 
         d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, air.pressure_Pa};
         const Trajectory by_pressure = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_pressure.converged, by_pressure.message);
-        CHECK(by_pressure.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-6));
+        CHECK(by_pressure.steps.back().chambers[0].volume_ratio == near(1.6, {.relative = 1e-6}));
 
         const double gas = 1.6 * (air.pressure_Pa + d.ambient_pressure_Pa) / d.ambient_pressure_Pa;
         d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, gas};
         const Trajectory by_gas = solve(d, {.steps = 4, .tolerance = 1e-8});
         REQUIRE_MESSAGE(by_gas.converged, by_gas.message);
-        CHECK(by_gas.steps.back().chambers[0].volume_ratio == doctest::Approx(1.6).scale(0).epsilon(1e-6));
-        CHECK(by_gas.steps.back().chambers[0].pressure_Pa == doctest::Approx(air.pressure_Pa).scale(0).epsilon(1e-6));
+        CHECK(by_gas.steps.back().chambers[0].volume_ratio == near(1.6, {.relative = 1e-6}));
+        CHECK(by_gas.steps.back().chambers[0].pressure_Pa == near(air.pressure_Pa, {.relative = 1e-6}));
     }
 }
 
@@ -150,7 +151,7 @@ TEST_CASE("every solver inflates and deflates a chamber") {
             CAPTURE(result.solver);
             CAPTURE(ratio);
             REQUIRE_MESSAGE(result.converged, result.message);
-            CHECK(result.steps.back().chambers[0].volume_ratio == doctest::Approx(ratio).scale(0).epsilon(1e-6));
+            CHECK(result.steps.back().chambers[0].volume_ratio == near(ratio, {.relative = 1e-6}));
             CHECK((result.steps.back().chambers[0].pressure_Pa > 0) == (ratio > 1));
         }
     }
@@ -166,7 +167,7 @@ TEST_CASE("a sealed chamber stiffens the block that holds it") {
     REQUIRE_MESSAGE(sealed.converged, sealed.message);
     const ChamberState air = sealed.steps.back().chambers[0];
     CHECK((air.pressure_Pa + d.ambient_pressure_Pa) * air.volume_m3 ==
-          doctest::Approx(d.ambient_pressure_Pa * 0.02 * 0.005 * 0.005).scale(0).epsilon(1e-9));
+          near(d.ambient_pressure_Pa * 0.02 * 0.005 * 0.005, {.relative = 1e-9}));
     d.chambers.clear();
     const Trajectory open = solve(d, {.steps = 3, .tolerance = 1e-7});
     REQUIRE(open.converged);
@@ -195,7 +196,7 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is what the s
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 force = result.steps.back().supports[0].force_N;
     // Little bending: the top presses down with pressure times area, to the order of the rotation.
-    CHECK(force.z == doctest::Approx(pressure * 3 * side * side).scale(0).epsilon(0.1));
+    CHECK(force.z == near(pressure * 3 * side * side, {.relative = 0.1}));
     CHECK(result.steps.back().markers[0].position_m.z < 0.5 * side - 1e-4);
     // Four times the pressure: the surface turns and carries the force with it.
     d.pressures[0].pressure_Pa = 4 * pressure;
@@ -237,7 +238,7 @@ TEST_CASE("suction on an arch, a patch with a free rim, is followed as far as it
     for (const Step& step : result.steps) iterations += step.iterations;
     CHECK_MESSAGE(iterations < 300, iterations);
     // With six times as many tets it is 104.03 mm.
-    CHECK(result.steps.back().markers[0].position_m.z == doctest::Approx(0.1040).epsilon(0.01));
+    CHECK(result.steps.back().markers[0].position_m.z == near(0.1040, {.relative = 0.01}));
 }
 
 TEST_CASE("a chamber that is sucked empty stops the run, which says so and keeps the last good step") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "sim/elements.hpp"
 #include "sim/test_problems.hpp"
 
@@ -59,8 +60,8 @@ TEST_CASE("the mass matrix moves as the whole body does") {
             energy += 0.5 * u[i] * momentum[i];
         }
         const double mass = density * length * thickness * thickness;
-        CHECK(x == doctest::Approx(mass).scale(0).epsilon(1e-12));
-        CHECK(energy == doctest::Approx(0.5 * mass * 5).scale(0).epsilon(1e-12));
+        CHECK(x == near(mass, {.relative = 1e-12}));
+        CHECK(energy == near(0.5 * mass * 5, {.relative = 1e-12}));
     }
 }
 
@@ -86,8 +87,8 @@ TEST_CASE("a beam let go under gravity swings at its natural frequency and gains
         }
     }
     REQUIRE(crossings.size() >= 3);
-    CHECK(crossings[2] - crossings[0] == doctest::Approx(period).scale(0).epsilon(0.03));
-    CHECK(lowest == doctest::Approx(-(thickness / 2 - rest)).scale(0).epsilon(0.1));  // as far below as it began above
+    CHECK(crossings[2] - crossings[0] == near(period, {.relative = 0.03}));
+    CHECK(lowest == near(-(thickness / 2 - rest), {.relative = 0.1}));  // as far below as it began above
 
     double energy = 0;  // undeformed, at rest
     for (std::size_t k = 1; k < swing.steps.size(); ++k) {
@@ -120,7 +121,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
             const Trajectory still = solve(d, {.steps = 4, .tolerance = 1e-6});
             CHECK(damped.steps.back().kinetic_energy_J < 1e-3 * largest_kinetic);
             CHECK(damped.steps.back().markers[0].position_m.z ==
-                  doctest::Approx(still.steps.back().markers[0].position_m.z).scale(0).epsilon(0.02));
+                  near(still.steps.back().markers[0].position_m.z, {.relative = 0.02}));
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "sim/comparison_problems.hpp"
 #include "sim/loads.hpp"
 #include "sim/reference_problems.hpp"
@@ -75,9 +76,9 @@ void check_bar_rows(const std::string& element, double tolerance, std::size_t ev
         const auto model = model_of(two_material_bar(row));
         const auto last = solve(*model, 5, 1e-8).steps.back();
         const double u = last.markers[0].position_m.x / mm - std::stod(row.at("L1"));
-        CHECK(u == doctest::Approx(std::stod(row.at("u_interface_mm"))).scale(0).epsilon(tolerance));
-        CHECK(last.supports[1].force_N.x == doctest::Approx(std::stod(row.at("Fx_N"))).scale(0).epsilon(tolerance));
-        CHECK(last.supports[0].force_N.x == doctest::Approx(-last.supports[1].force_N.x).scale(0).epsilon(1e-6));
+        CHECK(u == near(std::stod(row.at("u_interface_mm")), {.relative = tolerance}));
+        CHECK(last.supports[1].force_N.x == near(std::stod(row.at("Fx_N")), {.relative = tolerance}));
+        CHECK(last.supports[0].force_N.x == near(-last.supports[1].force_N.x, {.relative = 1e-6}));
     }
     CHECK(seen > 0);
 }
@@ -97,8 +98,8 @@ void check_shape_blend(double nu, double material_ratio) {
         const auto model = model_of(std::move(d));
         const Step last = solve(*model, 5, 1e-6).steps.back();
         const double u = last.markers[0].position_m.x / mm - std::stod(row.at("L1"));
-        CHECK(u == doctest::Approx(std::stod(row.at("u_map_T"))).scale(0).epsilon(1e-4));
-        CHECK(last.supports[1].force_N.x == doctest::Approx(std::stod(row.at("F_map_T"))).scale(0).epsilon(1e-4));
+        CHECK(u == near(std::stod(row.at("u_map_T")), {.relative = 1e-4}));
+        CHECK(last.supports[1].force_N.x == near(std::stod(row.at("F_map_T")), {.relative = 1e-4}));
     }
 }
 
@@ -122,14 +123,14 @@ void check_beam(const std::string& element, double nu, double tolerance) {
             if (p[face.nodes[0]].x + p[face.nodes[1]].x + p[face.nodes[2]].x > 0.3 - 1e-9) faces.push_back(face);
         }
         const SurfaceShares shares = surface_shares(d.mesh, faces);
-        CHECK(shares.area_m2 == doctest::Approx(25e-6));
+        CHECK(shares.area_m2 == near(25e-6, {.relative = 1e-12}));
         d.loads = {{"tip", shares.nodes, shares.shares, {0, 0, 0.06}}};
         d.markers = {{"tip", reference::mean_of(corners)}};
         const auto model = model_of(std::move(d));
         const auto last = solve(*model, 5, 1e-7).steps.back();
         const Vec3 tip = (last.markers[0].position_m - Vec3{100 * mm, 2.5 * mm, 2.5 * mm}) / mm;
-        CHECK(tip.z == doctest::Approx(std::stod(row.at("tip_uz_mm"))).scale(0).epsilon(tolerance));
-        CHECK(tip.x == doctest::Approx(std::stod(row.at("tip_ux_mm"))).scale(0).epsilon(tolerance));
+        CHECK(tip.z == near(std::stod(row.at("tip_uz_mm")), {.relative = tolerance}));
+        CHECK(tip.x == near(std::stod(row.at("tip_ux_mm")), {.relative = tolerance}));
     }
     CHECK(found);
 }
@@ -170,7 +171,7 @@ TEST_CASE("slender beam, 2,025 nodes in quadratic tets: within 1 % of CalculiX o
         const double tip = comparison::tip_displacement(d, solve(*model, 5, 1e-7).steps.back()).z / mm;
         const double fine = finest_tip_mm(nu);
         MESSAGE("nu " << nu << ": tip " << tip << " mm, fine mesh " << fine << " mm, off by " << tip / fine - 1);
-        CHECK(tip == doctest::Approx(fine).scale(0).epsilon(0.01));
+        CHECK(tip == near(fine, {.relative = 0.01}));
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "sim/live.hpp"
 #include "sim/test_problems.hpp"
 
@@ -70,14 +71,14 @@ TEST_CASE("what friction leaves over decides: settled within the tolerance, loos
             CAPTURE(tolerance);
             const Settled s = settle(model, tolerance, rounds);
             const bool within = s.residual <= tolerance && s.length <= 0.1 * tolerance;
-            const bool near = s.residual <= 10 * tolerance && s.length <= tolerance;
-            CHECK(s.outcome.evaluation.residual == doctest::Approx(s.residual).epsilon(1e-9));
-            CHECK(s.outcome.converged == near);
-            CHECK(s.outcome.loose == (near && !within));
+            const bool close = s.residual <= 10 * tolerance && s.length <= tolerance;
+            CHECK(s.outcome.evaluation.residual == near(s.residual, {.relative = 1e-9}));
+            CHECK(s.outcome.converged == close);
+            CHECK(s.outcome.loose == (close && !within));
             CHECK(s.outcome.reason.empty() == within);
             settled += within ? 1 : 0;
-            loose += near && !within ? 1 : 0;
-            refused += near ? 0 : 1;
+            loose += close && !within ? 1 : 0;
+            refused += close ? 0 : 1;
         }
     }
     CHECK(settled > 0);
@@ -98,5 +99,5 @@ TEST_CASE("steered by hand, friction is settled as a program settles it") {
         CHECK(step.converged);
         CHECK(step.residual <= 1e-5);
     }
-    CHECK(live.describe().cables[0].length_ratio == doctest::Approx(0.85).scale(0).epsilon(1e-6));
+    CHECK(live.describe().cables[0].length_ratio == near(0.85, {.relative = 1e-6}));
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/aligned_array.hpp"
+#include "core/near.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -44,7 +45,7 @@ TEST_CASE("forces of tets add up at their nodes, whatever nodes they share, in m
             for (const int times : seen) CHECK(times == 1);
             sums.gather(lists.data(), result);
             for (std::size_t k = 0; k < expected.size(); ++k)
-                CHECK(result[k] == doctest::Approx(expected[k]).epsilon(1e-12));
+                CHECK(result[k] == near(expected[k], {.relative = 1e-12}));
         }
     }
 }

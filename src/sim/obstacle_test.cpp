@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "core/near.hpp"
 #include "sim/test_problems.hpp"
 
 using namespace pliant;
@@ -96,7 +97,7 @@ TEST_CASE("pressed by a plane or by a block, a body resists as if its side were 
         REQUIRE_MESSAGE(result.converged, result.message);
         const double force = -result.steps.back().contacts[0].force_N.z;
         // By the barrier alone it would be stiff by 0.85 of the distance: 28 %.
-        CHECK(force == doctest::Approx(wanted).scale(0).epsilon(0.03));
+        CHECK(force == near(wanted, {.relative = 0.03}));
     }
 }
 
@@ -115,10 +116,10 @@ TEST_CASE("a rigid ball on an elastic block presses as Hertz says, whatever the 
         const Trajectory result = solve(d, {.steps = 2});
         REQUIRE_MESSAGE(result.converged, result.message);
         forces.push_back(-result.steps.back().contacts[0].force_N.z);
-        CHECK(forces.back() == doctest::Approx(wanted).scale(0).epsilon(0.05));
+        CHECK(forces.back() == near(wanted, {.relative = 0.05}));
     }
     // By the barrier alone the two would differ by a sixth.
-    CHECK(forces[0] == doctest::Approx(forces[1]).scale(0).epsilon(0.03));
+    CHECK(forces[0] == near(forces[1], {.relative = 0.03}));
 }
 
 TEST_CASE("a reach far smaller than a step of the obstacle is no obstacle to the step") {

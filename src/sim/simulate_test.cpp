@@ -9,6 +9,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "sim/cable_path.hpp"
 #include "sim/elements.hpp"
 #include "sim/fields.hpp"
@@ -84,8 +85,8 @@ TEST_CASE("uniaxial stretch of one linear element layer follows the closed form"
         for (std::size_t s = 0; s < d.supports.size(); ++s) {
             if (d.supports[s].name[0] == 'r') pull += result.steps.back().supports[s].force_N.x;
         }
-        CHECK(pull == doctest::Approx(force).scale(0).epsilon(1e-8));
-        CHECK(result.steps.back().min_J == doctest::Approx(stretch * low * low).scale(0).epsilon(1e-8));
+        CHECK(pull == near(force, {.relative = 1e-8}));
+        CHECK(result.steps.back().min_J == near(stretch * low * low, {.relative = 1e-8}));
     }
 }
 
@@ -103,9 +104,9 @@ TEST_CASE("supports carry loads and gravity exactly") {
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 force = result.steps.back().supports[0].force_N;
     const double weight = 1000 * 4 * side * side * side * 9.81;
-    CHECK(force.x == doctest::Approx(-0.01).scale(0).epsilon(1e-6));
-    CHECK(force.y == doctest::Approx(0.02).scale(0).epsilon(1e-6));
-    CHECK(force.z == doctest::Approx(-0.03 + weight).scale(0).epsilon(1e-6));
+    CHECK(force.x == near(-0.01, {.relative = 1e-6}));
+    CHECK(force.y == near(0.02, {.relative = 1e-6}));
+    CHECK(force.z == near(-0.03 + weight, {.relative = 1e-6}));
 }
 
 TEST_CASE("supports that all turn about one axis carry the bar round without straining it") {
@@ -122,7 +123,7 @@ TEST_CASE("supports that all turn about one axis carry the bar round without str
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 k = turn.axis / norm(turn.axis);
     for (const Step& step : result.steps) {
-        CHECK(step.min_J == doctest::Approx(1).scale(0).epsilon(1e-6));
+        CHECK(step.min_J == near(1, {.relative = 1e-6}));
         const double angle = step.time * turn.angle_rad;
         for (std::size_t n = 0; n < rest.size(); ++n) {
             // Along the axis nothing changes but for the shift; across it length is kept and the angle is the wanted.
@@ -147,7 +148,7 @@ TEST_CASE("a bar twisted by a quarter turn has turned by half of that in the mid
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 p = result.steps.back().positions[static_cast<std::size_t>(edge[0])];
     const double turned = std::atan2(p.z - side / 2, p.y - side / 2) - std::atan2(-1.0, -1.0);
-    CHECK(turned == doctest::Approx(M_PI / 4).scale(0).epsilon(0.01));
+    CHECK(turned == near(M_PI / 4, {.relative = 0.01}));
     // A twisted bar would like to get longer (Poynting 1909): held between two ends it presses on both.
     CHECK(result.steps.back().supports[1].force_N.x < 0);
     CHECK(result.steps.back().supports[0].force_N.x > 0);
@@ -174,12 +175,11 @@ TEST_CASE("every solver finds the same bent bar under a cable, and no step turns
                 CHECK(step.residual <= 1e-6);
                 CHECK(step.min_J > 0);
             }
-            CHECK(result.steps.back().cables[0].length_ratio == doctest::Approx(0.9).scale(0).epsilon(1e-7));
+            CHECK(result.steps.back().cables[0].length_ratio == near(0.9, {.relative = 1e-7}));
             tensions.push_back(result.steps.back().cables[0].tension_N);
         }
     }
-    for (std::size_t k = 2; k < tensions.size(); ++k)
-        CHECK(tensions[k] == doctest::Approx(tensions[k % 2]).scale(0).epsilon(1e-4));
+    for (std::size_t k = 2; k < tensions.size(); ++k) CHECK(tensions[k] == near(tensions[k % 2], {.relative = 1e-4}));
     CHECK(tensions[0] > tensions[1]);  // linear tets lock
 }
 
@@ -202,10 +202,10 @@ TEST_CASE("the thesis' shape blend bends under a cable and under a load, with ea
             CHECK(pushed.steps.back().markers[0].position_m.z > 0.5 * side);
         }
     }
-    CHECK(tensions[2] == doctest::Approx(tensions[0]).scale(0).epsilon(1e-2));
-    CHECK(tensions[3] == doctest::Approx(tensions[1]).scale(0).epsilon(1e-2));
-    CHECK(tensions[4] == doctest::Approx(tensions[0]).scale(0).epsilon(1e-2));
-    CHECK(tensions[5] == doctest::Approx(tensions[1]).scale(0).epsilon(1e-2));
+    CHECK(tensions[2] == near(tensions[0], {.relative = 1e-2}));
+    CHECK(tensions[3] == near(tensions[1], {.relative = 1e-2}));
+    CHECK(tensions[4] == near(tensions[0], {.relative = 1e-2}));
+    CHECK(tensions[5] == near(tensions[1], {.relative = 1e-2}));
 }
 
 TEST_CASE("a given tension and the length it leads to belong together") {
@@ -215,12 +215,11 @@ TEST_CASE("a given tension and the length it leads to belong together") {
     Description by_tension = bar(2);
     by_tension.cables = {flexor(by_tension.mesh, {CableTarget::Kind::tension_N, length_step.cables[0].tension_N})};
     const Step tension_step = solve(by_tension, {.steps = 4, .tolerance = 1e-8}).steps.back();
-    CHECK(tension_step.cables[0].length_ratio == doctest::Approx(0.92).scale(0).epsilon(1e-6));
+    CHECK(tension_step.cables[0].length_ratio == near(0.92, {.relative = 1e-6}));
     Description by_shortening = bar(2);
     by_shortening.cables = {flexor(by_shortening.mesh, {CableTarget::Kind::shortening_m, 0.08 * 4 * side})};
     const Step shortening_step = solve(by_shortening, {.steps = 4, .tolerance = 1e-8}).steps.back();
-    CHECK(shortening_step.cables[0].tension_N ==
-          doctest::Approx(length_step.cables[0].tension_N).scale(0).epsilon(1e-6));
+    CHECK(shortening_step.cables[0].tension_N == near(length_step.cables[0].tension_N, {.relative = 1e-6}));
 }
 
 TEST_CASE("a cable only pulls: pushed towards it, the bar leaves it slack") {
@@ -320,7 +319,7 @@ TEST_CASE("a cable's gradient and second gradient agree with differences") {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
     path.add_gradient(span_of(x), 1.0, span_of(gradient));
     CHECK(gradient.dot(u) ==
-          doctest::Approx((path.length(span_of(plus)) - path.length(span_of(minus))) / (2 * h)).scale(0).epsilon(1e-7));
+          near((path.length(span_of(plus)) - path.length(span_of(minus))) / (2 * h), {.relative = 1e-7}));
 }
 
 TEST_CASE("wrong models are refused with a reason") {
@@ -350,8 +349,8 @@ TEST_CASE("fields of a uniform stretch") {
     for (Vec3& p : positions) p = {1.2 * p.x, p.y, p.z};
     const Fields fields = compute_fields(*model, positions);
     for (std::size_t t = 0; t < fields.J.size(); ++t) {
-        CHECK(fields.J[t] == doctest::Approx(1.2));
-        CHECK(fields.max_stretch[t] == doctest::Approx(1.2));
+        CHECK(fields.J[t] == near(1.2, {.relative = 1e-12}));
+        CHECK(fields.max_stretch[t] == near(1.2, {.relative = 1e-12}));
         CHECK(fields.von_mises_Pa[t] > 0);
         CHECK(fields.energy_density_Pa[t] > 0);
     }
@@ -370,11 +369,11 @@ TEST_CASE("the tension of a cable with friction drops by exp(-mu theta), as roun
     const double turned = 89 * std::numbers::pi / 180;
     const auto shares = path.tension_shares(x, 0.3, true);
     CHECK(shares.front() == 1);
-    CHECK(shares.back() == doctest::Approx(std::exp(-0.3 * turned)).scale(0).epsilon(1e-9));
+    CHECK(shares.back() == near(std::exp(-0.3 * turned), {.relative = 1e-9}));
     const auto from_last = path.tension_shares(x, 0.3, false);
     CHECK(from_last.back() == 1);
-    CHECK(from_last.front() == doctest::Approx(std::exp(-0.3 * turned)).scale(0).epsilon(1e-9));
-    CHECK(path.tension_shares(x, -0.3, true).back() == doctest::Approx(std::exp(0.3 * turned)).scale(0).epsilon(1e-9));
+    CHECK(from_last.front() == near(std::exp(-0.3 * turned), {.relative = 1e-9}));
+    CHECK(path.tension_shares(x, -0.3, true).back() == near(std::exp(0.3 * turned), {.relative = 1e-9}));
 }
 
 TEST_CASE("friction: the same length takes more tension, and letting go takes less") {
@@ -386,8 +385,8 @@ TEST_CASE("friction: the same length takes more tension, and letting go takes le
         d.cables[0].friction = friction;
         const Trajectory result = solve(d, {.steps = 6, .duration = 1.5, .tolerance = 1e-6});
         REQUIRE_MESSAGE(result.converged, result.message);
-        CHECK(result.steps[4].cables[0].length_ratio == doctest::Approx(0.85).scale(0).epsilon(1e-6));
-        CHECK(result.steps[6].cables[0].length_ratio == doctest::Approx(0.9).scale(0).epsilon(1e-6));
+        CHECK(result.steps[4].cables[0].length_ratio == near(0.85, {.relative = 1e-6}));
+        CHECK(result.steps[6].cables[0].length_ratio == near(0.9, {.relative = 1e-6}));
         return std::pair(result.steps[4].cables[0].tension_N, result.steps[6].cables[0].tension_N);
     };
     const auto [pulled_free, let_go_free] = tensions(0);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/near.hpp"
 #include "sim/attach.hpp"
 #include "sim/pressure_limit.hpp"
 #include "sim/test_problems.hpp"
@@ -149,8 +150,7 @@ TEST_CASE("auto: a step for which the iterations of its solver do not suffice is
     CHECK(helped.steps.back().solver == Solver::anderson);
     CHECK(helped.steps.back().substeps == 1);
     CHECK(helped.steps.back().iterations >= needed);
-    CHECK(helped.steps.back().cables[0].tension_N ==
-          doctest::Approx(alone.steps.back().cables[0].tension_N).epsilon(1e-3));
+    CHECK(helped.steps.back().cables[0].tension_N == near(alone.steps.back().cables[0].tension_N, {.relative = 1e-3}));
 }
 
 TEST_CASE("every iteration is recorded as the state that it led to") {
@@ -164,7 +164,7 @@ TEST_CASE("every iteration is recorded as the state that it led to") {
             CHECK(r.solver == solver);
             CHECK(r.step >= step);
             step = r.step;
-            CHECK(r.time == doctest::Approx(step / 3.0));
+            CHECK(r.time == near(step / 3.0, {.relative = 1e-12}));
             CHECK(r.min_J > 0);
             CHECK((r.alpha > 0) == (r.iteration > 0));
             CHECK(r.alpha <= 1);
@@ -180,7 +180,7 @@ TEST_CASE("every iteration is recorded as the state that it led to") {
         int total = 0;
         for (const Step& s : result.steps) total += s.iterations;
         CHECK(counted == total);
-        CHECK(result.iterations.front().violation == doctest::Approx(0.1 / 3).scale(0).epsilon(1e-6));
+        CHECK(result.iterations.front().violation == near(0.1 / 3, {.relative = 1e-12}));
     }
 }
 
@@ -255,8 +255,7 @@ TEST_CASE("a pressure beyond a chamber's largest: the message names the limit, a
     const std::string words = "has a maximum of ";
     const std::size_t at = by_pressure.message.find(words);
     REQUIRE_MESSAGE(at != std::string::npos, by_pressure.message);
-    CHECK(1e3 * std::stod(by_pressure.message.substr(at + words.size())) ==
-          doctest::Approx(largest).scale(0).epsilon(5e-3));
+    CHECK(1e3 * std::stod(by_pressure.message.substr(at + words.size())) == near(largest, {.relative = 5e-3}));
 }
 
 TEST_CASE("a program that stops for another reason is not said to have met a limit of pressure") {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/near.hpp"
 #include "sim/live.hpp"
 #include "sim/test_problems.hpp"
 
@@ -108,7 +109,7 @@ TEST_CASE("contact that waits changes no bit before the robot meets itself, and 
         if (k < 7) CHECK(found.steps[k].positions == plain.steps[k].positions);
     }
     const auto push = [](const Trajectory& t) { return t.steps.back().supports[1].force_N.z; };
-    CHECK(push(found) / push(touching) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(push(found) / push(touching) == near(1, {.relative = 1e-6}));
 }
 
 TEST_CASE("contact that waits acts on a robot that is steered by hand, and not any more after it was put to rest") {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "slice/layers.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
@@ -66,6 +67,6 @@ TEST_CASE("the volume of layers of many heights is that of the pyramid") {
             (m.material == 0 ? soft : firm) +=
                 static_cast<double>(m.value_sum) / 255 * 0.0025 * slicer->layers().thickness_um(k) / 1000;
     }
-    CHECK(soft == doctest::Approx(4 * 4 * 3.0 / 3).epsilon(1e-3));
-    CHECK(firm == doctest::Approx(6 * 0.2 * 3).epsilon(1e-3));
+    CHECK(soft == near(4 * 4 * 3.0 / 3, {.relative = 1e-3}));
+    CHECK(firm == near(6 * 0.2 * 3, {.relative = 1e-12}));
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
 
@@ -46,7 +47,7 @@ TEST_CASE("a ramp deals out its integral, in every layer, whole pixels, none twi
         const SlicedLayer layer = slicer->layer(k);
         const Shares s = shares_of(layer);
         CHECK(std::fabs(s.second - 1200) <= 1);
-        CHECK(s.first + s.second == doctest::Approx(2400).epsilon(1e-12));
+        CHECK(s.first + s.second == near(2400, {.relative = 1e-12}));
         REQUIRE(layer.images.size() == 2);
         for (int row = 0; row < 48; ++row) {
             for (int column = 0; column < 64; ++column) {
@@ -60,7 +61,7 @@ TEST_CASE("a ramp deals out its integral, in every layer, whole pixels, none twi
     for (int i = 0; i < 10; ++i) {
         double sum = 0;
         for (int c = 0; c < 6; ++c) sum += of_column[static_cast<std::size_t>(6 * i + c)];
-        CHECK(sum / 2400 == doctest::Approx((i + 0.5) / 10).epsilon(0.03 / ((i + 0.5) / 10)));
+        CHECK(sum / 2400 == near((i + 0.5) / 10, {.absolute = 0.03}));
     }
 }
 

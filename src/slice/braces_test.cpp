@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::slice;
 
@@ -26,8 +28,8 @@ TEST_CASE("short pillars stand alone, slender ones are tied every ten diameters,
     CHECK(made.held == std::vector<bool>{true, true});
     for (std::size_t i = 0; i < 4; ++i) {
         const Strut& s = made.struts[i];
-        CHECK(s.from_um.z == doctest::Approx(10000.0 * static_cast<double>(i)));
-        CHECK(s.to_um.z - s.from_um.z == doctest::Approx(3000));  // 45 degrees
+        CHECK(s.from_um.z == near(10000.0 * static_cast<double>(i), {.relative = 1e-12}));
+        CHECK(s.to_um.z - s.from_um.z == near(3000, {.relative = 1e-12}));  // 45 degrees
         CHECK(s.from_um.x == (i % 2 == 0 ? 0 : 3000));
         CHECK(s.to_um.x == (i % 2 == 0 ? 3000 : 0));
         CHECK(s.radius_um == 250);

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/near.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
 
@@ -40,10 +41,10 @@ const std::vector<Body> halves{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), 
 
 TEST_CASE("a square shrinks and grows by what is asked for") {
     CHECK(area(cut(square, {}, 0), 0) == 400);
-    CHECK(area(cut(square, {{"soft", {-100}}}, 0), 0) == doctest::Approx(18 * 18));
-    CHECK(area(cut(square, {{"soft", {-50}}}, 0), 0) == doctest::Approx(19 * 19).epsilon(0.001));
+    CHECK(area(cut(square, {{"soft", {-100}}}, 0), 0) == near(18 * 18, {.relative = 1e-12}));
+    CHECK(area(cut(square, {{"soft", {-50}}}, 0), 0) == near(19 * 19, {.relative = 0.001}));
     const double grown = 20 * 20 + 4 * 20 * 2 + std::numbers::pi * 2 * 2;
-    CHECK(area(cut(square, {{"soft", {200}}}, 0), 0) == doctest::Approx(grown).epsilon(0.001));
+    CHECK(area(cut(square, {{"soft", {200}}}, 0), 0) == near(grown, {.relative = 0.001}));
     CHECK(area(cut(square, {{"other", {200}}}, 0), 0) == 400);
 }
 
@@ -52,10 +53,10 @@ TEST_CASE("a disc and a hole move by the same offset") {
     const auto pi = std::numbers::pi;
     for (const double um : {-300.0, -125.0, 75.0, 250.0}) {
         const double r = 15 + um / 100;
-        CHECK(area(cut({{"soft", disc, ""}}, {{"soft", {um}}}, 3), 0) == doctest::Approx(pi * r * r).epsilon(0.004));
+        CHECK(area(cut({{"soft", disc, ""}}, {{"soft", {um}}}, 3), 0) == near(pi * r * r, {.relative = 0.004}));
     }
     const Body ring{"soft", together(disc, turned_inside_out(prism(regular_polygon(256, 700), 0, 500))), ""};
-    CHECK(area(cut({ring}, {{"soft", {-100}}}, 3), 0) == doctest::Approx(pi * (14 * 14 - 8 * 8)).epsilon(0.006));
+    CHECK(area(cut({ring}, {{"soft", {-100}}}, 3), 0) == near(pi * (14 * 14 - 8 * 8), {.relative = 0.006}));
 }
 
 TEST_CASE("borders between materials stay, each material has its own offset, and no pixel is lit twice") {
@@ -72,8 +73,8 @@ TEST_CASE("borders between materials stay, each material has its own offset, and
 
 TEST_CASE("the elephant foot is cut away in the first layers only") {
     const std::map<std::string, Compensation> foot{{"soft", {0, 200, 2}}};
-    CHECK(area(cut(square, foot, 0), 0) == doctest::Approx(16 * 16));
-    CHECK(area(cut(square, foot, 1), 0) == doctest::Approx(18 * 18));
+    CHECK(area(cut(square, foot, 0), 0) == near(16 * 16, {.relative = 1e-12}));
+    CHECK(area(cut(square, foot, 1), 0) == near(18 * 18, {.relative = 1e-12}));
     CHECK(area(cut(square, foot, 2), 0) == 400);
 }
 
@@ -86,7 +87,7 @@ TEST_CASE("a wall thinner than twice the offset vanishes; a gap between material
                                 {"rigid", box({15, -1000, 0}, {1000, 1000, 500}), ""}};
     const SlicedLayer layer = cut(gap, {{"soft", {-100}}, {"rigid", {-100}}}, 0);
     CHECK(layer.closed_gap_pixels > 0);
-    CHECK(area(layer, 0) + area(layer, 1) == doctest::Approx(18 * 18));
+    CHECK(area(layer, 0) + area(layer, 1) == near(18 * 18, {.relative = 1e-12}));
 }
 
 TEST_CASE("without anti-aliasing pixels stay full or dark") {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "slice/distance_field.hpp"
 #include "slice/inspect.hpp"
 #include "slice/test_shapes.hpp"
@@ -66,7 +67,7 @@ TEST_CASE("distances are those that a search finds") {
                         }
                     }
                 }
-                CHECK(found[grid.at(x, y, z)] == doctest::Approx(least));
+                CHECK(found[grid.at(x, y, z)] == near(least, {.relative = 1e-12}));
             }
         }
     }
@@ -83,7 +84,7 @@ TEST_CASE("a block becomes a closed box whose walls are at least as thick as ask
     const double most = 12 * 8 * 6, least = 11 * 7 * 5;  // walls of 2 mm, and of 2.5
     CHECK(16 * 12 * 10 - o.volume_mm3 <= most);
     CHECK(16 * 12 * 10 - o.volume_mm3 >= least);
-    CHECK(16 * 12 * 10 - o.volume_mm3 == doctest::Approx(o.hollowing.volume_mm3).epsilon(1e-9));
+    CHECK(16 * 12 * 10 - o.volume_mm3 == near(o.hollowing.volume_mm3, {.relative = 1e-9}));
 }
 
 TEST_CASE("drains open the box: no trap is left, and holes are as large as their cylinders") {

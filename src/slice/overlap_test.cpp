@@ -5,11 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "slice/slicer.hpp"
 #include "slice/test_shapes.hpp"
 
 using namespace pliant::slice;
 using namespace pliant::slice::test;
+using pliant::near;
 
 namespace {
 
@@ -34,7 +36,7 @@ TEST_CASE("two turned squares share a regular octagon") {
                                                      closed(regular_polygon(4, r))};
     const std::vector<int> materials{0, 1};
     const auto areas = divided(outlines, materials).areas;
-    CHECK(areas[0].others == doctest::Approx(8 * (std::sqrt(2.0) - 1)).epsilon(1e-12));  // apothem 1
+    CHECK(areas[0].others == near(8 * (std::sqrt(2.0) - 1), {.relative = 1e-12}));  // apothem 1
     CHECK(areas[0].own == 0);
     CHECK(areas[1].others == 0);
 }
@@ -46,7 +48,7 @@ TEST_CASE("two circles of 200 corners share nearly a lens") {
     const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(corners, 1)), closed(moved)};
     const auto areas = divided(outlines, std::vector<int>{0, 1}).areas;
     const double lens = 2 * std::acos(0.35) - 0.35 * std::sqrt(4 - 0.49);
-    CHECK(areas[0].others == doctest::Approx(lens).epsilon(2e-3));
+    CHECK(areas[0].others == near(lens, {.relative = 2e-3}));
     CHECK(areas[0].others < lens);
 }
 
@@ -56,10 +58,10 @@ TEST_CASE("the last body keeps the place; holes and touching borders are no over
     const std::vector<std::vector<Segment>> outlines{ring, rectangle(2, 2, 8, 8), rectangle(10, 0, 12, 10),
                                                      rectangle(7, 4, 11, 5), rectangle(1, 4, 3, 5)};
     const auto areas = divided(outlines, std::vector<int>{0, 1, 2, 0, 0}).areas;
-    CHECK(areas[0].own == doctest::Approx(2 + 1));
+    CHECK(areas[0].own == near(2 + 1, {.relative = 1e-12}));
     CHECK(areas[0].others == 0);
-    CHECK(areas[1].others == doctest::Approx(1 + 1));
-    CHECK(areas[2].others == doctest::Approx(1));
+    CHECK(areas[1].others == near(1 + 1, {.relative = 1e-12}));
+    CHECK(areas[2].others == near(1, {.relative = 1e-12}));
     CHECK(areas[3].own == 0);
 }
 
@@ -71,7 +73,7 @@ TEST_CASE("an overlap in pixels that neither body fills counts whole") {
     const auto summary = slice_bodies(
         bodies, {{64, 48, 100}, 50, {}}, [](int, int, const RunImage&) { return pliant::Status{}; }, progress);
     REQUIRE(summary.has_value());
-    CHECK(summary->overlap_mm3 == doctest::Approx(0.3 * 0.8 * 0.1).epsilon(1e-12));
+    CHECK(summary->overlap_mm3 == near(0.3 * 0.8 * 0.1, {.relative = 1e-12}));
     CHECK(summary->lost_mm3[1] == 0);
 }
 
@@ -101,15 +103,15 @@ TEST_CASE("pixels that the outlines of overlapping bodies share hold what both c
     const std::vector<Body> boxes{{"soft", box({-975, -475, 0}, {325, 425, 50}), ""},
                                   {"firm", box({-275, -475, 0}, {1075, 425, 50}), ""},
                                   {"hard", box({-75, -475, 0}, {125, 425, 50}), ""}};
-    CHECK(lit_um2(boxes, {64, 48, 100}, overlap_mm3) == doctest::Approx(2050 * 900).epsilon(1e-4));
-    CHECK(overlap_mm3 == doctest::Approx((0.6 + 0.2) * 0.9 * 0.05).epsilon(1e-9));
-    CHECK(lit_um2(boxes, {64, 48, 100, true, false, 30}, overlap_mm3) == doctest::Approx(2050 * 900).epsilon(1e-3));
+    CHECK(lit_um2(boxes, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
+    CHECK(overlap_mm3 == near((0.6 + 0.2) * 0.9 * 0.05, {.relative = 1e-9}));
+    CHECK(lit_um2(boxes, {64, 48, 100, true, false, 30}, overlap_mm3) == near(2050 * 900, {.relative = 1e-3}));
     // One material, in two bodies and in one body of two shells.
     const std::vector<Body> alike{{"soft", boxes[0].surface_um, ""}, {"soft", boxes[1].surface_um, ""}};
-    CHECK(lit_um2(alike, {64, 48, 100}, overlap_mm3) == doctest::Approx(2050 * 900).epsilon(1e-4));
+    CHECK(lit_um2(alike, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
     CHECK(overlap_mm3 == 0);
     const std::vector<Body> shells{{"soft", together(boxes[0].surface_um, boxes[1].surface_um), ""}};
-    CHECK(lit_um2(shells, {64, 48, 100}, overlap_mm3) == doctest::Approx(2050 * 900).epsilon(1e-4));
+    CHECK(lit_um2(shells, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
     // Two discs of the same 97 corners, one turned by a third of a side: every border pixel belongs to both.
     const double radius = 1500, turn = 2 * std::numbers::pi / 97;
     const std::vector<Body> discs{{"soft", prism(regular_polygon(97, radius), 0, 50), ""},
@@ -118,7 +120,7 @@ TEST_CASE("pixels that the outlines of overlapping bodies share hold what both c
     const double lit = lit_um2(discs, {64, 48, 100}, overlap_mm3);
     CHECK(lit > whole);
     CHECK(lit < std::numbers::pi * radius * radius);
-    CHECK(lit == doctest::Approx(2 * whole - overlap_mm3 / 0.05 * 1e6).epsilon(1e-4));
+    CHECK(lit == near(2 * whole - overlap_mm3 / 0.05 * 1e6, {.relative = 1e-4}));
 }
 
 TEST_CASE("what bodies keep is all there is, each place once") {
@@ -132,6 +134,6 @@ TEST_CASE("what bodies keep is all there is, each place once") {
     const DividedLayer layer = divided(outlines, std::vector<int>{0, 1, 2, 0});
     for (std::size_t b = 0; b < outlines.size(); ++b) {
         const double drawn = std::fabs(area(outlines[b]));
-        CHECK(area(layer.kept[b]) == doctest::Approx(drawn - layer.areas[b].others - layer.areas[b].own).epsilon(1e-9));
+        CHECK(area(layer.kept[b]) == near(drawn - layer.areas[b].others - layer.areas[b].own, {.relative = 1e-9}));
     }
 }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "slice/holes.hpp"
 #include "slice/shells.hpp"
 #include "slice/test_shapes.hpp"
@@ -45,7 +46,7 @@ TEST_CASE("a good cube is welded and otherwise left alone") {
     const Repaired r = repaired(cube);
     CHECK(r.surface.points.size() == 8);
     CHECK(r.surface.triangles.size() == 12);
-    CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-12));
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
     CHECK(r.warnings.empty());
 }
 
@@ -54,14 +55,14 @@ TEST_CASE("any missing triangle is put back, with a warning that names body and 
         TriMesh open = cube;
         open.triangles.erase(open.triangles.begin() + static_cast<long>(i));
         const Repaired r = repaired(open);
-        CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-12));
+        CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
         REQUIRE(r.warnings.size() == 1);
         CHECK(r.warnings[0].find("body 'b' (soft): 1 hole (3 open edges") == 0);
     }
     TriMesh no_side = cube;
     no_side.triangles.resize(10);  // the last side, both triangles: a square hole from z = 0 to 1000
     const Repaired r = repaired(no_side);
-    CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-9));
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-9}));
     CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 20");
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("a T-junction is closed without a word") {
     add_triangle(mesh, (pa + pb) * 0.5, pb, pc);
     const Repaired r = repaired(mesh);
     CHECK(r.warnings.empty());
-    CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-12));
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
 }
 
 TEST_CASE("points at open edges that no pixel tells apart are joined, with a note, and thin walls stay") {
@@ -87,39 +88,39 @@ TEST_CASE("points at open edges that no pixel tells apart are joined, with a not
     REQUIRE_MESSAGE(result.has_value(), (result ? "" : result.error().message));
     CHECK(is_closed(result->surface));
     CHECK(result->surface.points.size() == 8);
-    CHECK(volume_um3(result->surface) == doctest::Approx(2e7).epsilon(0.06));
+    CHECK(volume_um3(result->surface) == near(2e7, {.relative = 1e-12}));
     REQUIRE(result->warnings.size() == 1);
     CHECK(result->warnings[0].find("point(s) at open edges lay within 5 um of another and were joined") !=
           std::string::npos);
     // What is closed is not touched, however thin it is.
     const auto thin = repair(box({0, 0, 0}, {1000, 1000, 2}), "body 'b' (soft)", 50, 5);
     REQUIRE(thin);
-    CHECK(volume_um3(thin->surface) == doctest::Approx(2e6));
+    CHECK(volume_um3(thin->surface) == near(2e6, {.relative = 1e-12}));
     CHECK(thin->warnings.empty());
 }
 
 TEST_CASE("inside out: the whole, one triangle, one of two shells") {
     const Repaired whole = repaired(turned_inside_out(cube));
-    CHECK(volume_um3(whole.surface) == doctest::Approx(1e9).epsilon(1e-12));
+    CHECK(volume_um3(whole.surface) == near(1e9, {.relative = 1e-12}));
     CHECK(whole.warnings == std::vector<std::string>{"body 'b' (soft): 1 shell inside out turned outwards"});
 
     TriMesh one = cube;
     std::swap(one.triangles[3][0], one.triangles[3][1]);
     const Repaired triangle = repaired(one);
-    CHECK(volume_um3(triangle.surface) == doctest::Approx(1e9).epsilon(1e-12));
+    CHECK(volume_um3(triangle.surface) == near(1e9, {.relative = 1e-12}));
     CHECK(triangle.warnings.size() == 1);
 
     const TriMesh small = box({2000, 0, 0}, {2500, 500, 500});
     const Repaired two = repaired(together(cube, turned_inside_out(small)));
-    CHECK(volume_um3(two.surface) == doctest::Approx(1.125e9).epsilon(1e-12));
+    CHECK(volume_um3(two.surface) == near(1.125e9, {.relative = 1e-12}));
     CHECK(two.warnings.size() == 1);
 }
 
 TEST_CASE("a cavity stays a cavity, whichever way the whole is turned") {
     const TriMesh hollow = together(cube, turned_inside_out(box({200, 200, 200}, {800, 800, 800})));
-    CHECK(volume_um3(repaired(hollow).surface) == doctest::Approx(0.784e9).epsilon(1e-12));
+    CHECK(volume_um3(repaired(hollow).surface) == near(0.784e9, {.relative = 1e-12}));
     CHECK(repaired(hollow).warnings.empty());
-    CHECK(volume_um3(repaired(turned_inside_out(hollow)).surface) == doctest::Approx(0.784e9).epsilon(1e-12));
+    CHECK(volume_um3(repaired(turned_inside_out(hollow)).surface) == near(0.784e9, {.relative = 1e-12}));
 }
 
 TEST_CASE("repeated and degenerate triangles are harmless") {
@@ -129,13 +130,13 @@ TEST_CASE("repeated and degenerate triangles are harmless") {
     add_triangle(mesh, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
     add_triangle(mesh, {0, 0, 0}, {1000, 1000, 1000}, {500, 500, 500});
     const Repaired r = repaired(mesh);
-    CHECK(volume_um3(r.surface) == doctest::Approx(1e9).epsilon(1e-12));
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
 }
 
 TEST_CASE("two cubes that share an edge are two shells") {
     const Repaired r = repaired(together(cube, box({1000, 1000, 0}, {2000, 2000, 1000})));
     CHECK(find_shells(r.surface, edge_uses(r.surface.triangles)).count == 2);
-    CHECK(volume_um3(r.surface) == doctest::Approx(2e9).epsilon(1e-12));
+    CHECK(volume_um3(r.surface) == near(2e9, {.relative = 1e-12}));
 }
 
 TEST_CASE("what is no solid is refused with the reason") {

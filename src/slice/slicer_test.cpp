@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "slice/place.hpp"
 #include "slice/test_shapes.hpp"
 
@@ -156,7 +157,7 @@ TEST_CASE("an overlap goes to the later body and is reported") {
     const std::vector<Body> bodies{{"soft", box({-1000, -500, 0}, {500, 500, 500}), "left"},
                                    {"rigid", box({-500, -500, 0}, {1000, 500, 500}), ""}};
     const Sliced s = slice_all(bodies);
-    CHECK(s.summary.overlap_mm3 == doctest::Approx(0.5).epsilon(1e-12));
+    CHECK(s.summary.overlap_mm3 == near(0.5, {.relative = 1e-12}));
     REQUIRE(s.summary.warnings.size() == 1);
     CHECK(s.summary.warnings[0] ==
           "body 'left' (soft): 0.5 mm^3 overlap with later bodies of other materials, which keep them");
@@ -179,7 +180,7 @@ TEST_CASE("a later body inside an earlier one replaces it, a small part of a pix
     CHECK(shared_pixels(s, 0) == 0);
     CHECK(value_sum(s.shots[0].image) + value_sum(s.shots[1].image) == 400 * 255);
     CHECK(value_sum(s.shots[1].image) == 5 * 4 * 255);  // columns -2 to 2: 40 % of the left pixel, 60 % of the right
-    CHECK(s.summary.overlap_mm3 == doctest::Approx(0.5 * 0.4 * 0.05).epsilon(1e-9));
+    CHECK(s.summary.overlap_mm3 == near(0.5 * 0.4 * 0.05, {.relative = 1e-9}));
 }
 
 TEST_CASE("gaps far below a pixel between materials leave no dark line") {

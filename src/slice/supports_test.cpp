@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/near.hpp"
 #include "slice/grid_surface.hpp"
 #include "slice/inspect.hpp"
 #include "slice/repair.hpp"
@@ -70,12 +71,12 @@ TEST_CASE("shapes of supports are closed and as large as their formulas") {
     // A cylinder of radius 1 mm and a cone frustum on it.
     const double wanted = std::numbers::pi * (1 * 2 + 1.0 / 3 * (1 + 0.5 + 0.25));
     CHECK(volume_of(turned_solid(500, -200, {{0, 1000}, {2000, 1000}, {3000, 500}})) ==
-          doctest::Approx(wanted).epsilon(1e-3));
+          near(wanted, {.relative = 1e-3}));
     // The hull of four corners of a 4 x 2 mm rectangle and a point inside, with a margin of 1 mm: a regular polygon of
     // 16 sides at the corners, together.
     const double polygon = 8 * std::sin(std::numbers::pi / 8);
     CHECK(volume_of(hull_prism({{0, 0}, {4000, 0}, {2000, 1000}, {4000, 2000}, {0, 2000}}, 1000, 0, 500)) ==
-          doctest::Approx(0.5 * (8 + 2 * (4 + 2) + polygon)).epsilon(1e-3));
+          near(0.5 * (8 + 2 * (4 + 2) + polygon), {.relative = 1e-3}));
 }
 
 TEST_CASE("a table in mid-air stands on tips, no island is left, and the part keeps its volume") {
@@ -87,13 +88,13 @@ TEST_CASE("a table in mid-air stands on tips, no island is left, and the part ke
     // Tips 3 mm apart at most over 12 x 8 mm: more than area / (pi 3^2), fewer than area / (pi 1.5^2) and a rim.
     CHECK(o.supports.tips > 4);
     CHECK(o.supports.tips < 30);
-    CHECK(o.part_mm3 == doctest::Approx(12 * 8 * 1).epsilon(1e-9));
+    CHECK(o.part_mm3 == near(12 * 8 * 1, {.relative = 1e-9}));
     // Pillars of 1 mm, 5 mm high, with a foot and a cone of 2 mm down to 0.4 mm.
     const double cone = std::numbers::pi / 3 * 2 * (0.25 + 0.1 + 0.04);
     const double foot = std::numbers::pi / 3 * 0.5 * (0.75 * 0.75 + 0.75 * 0.5 + 0.25);
     const double pillar = std::numbers::pi * 0.25 * 2.5;
-    CHECK(o.support_mm3 == doctest::Approx(o.supports.tips * (cone + foot + pillar)).epsilon(0.03));
-    CHECK(o.supports.volume_mm3 == doctest::Approx(o.support_mm3).epsilon(0.01));
+    CHECK(o.support_mm3 == near(o.supports.tips * (cone + foot + pillar), {.relative = 0.03}));
+    CHECK(o.supports.volume_mm3 == near(o.support_mm3, {.relative = 0.01}));
     CHECK(o.warnings.empty());
 }
 
@@ -131,7 +132,7 @@ TEST_CASE("a sphere in mid-air, on a raft, in a material of its own") {
     const Outcome o = supported({{"soft", ball, ""}}, wanted);
     CHECK(o.islands == 0);
     CHECK(o.supports.tips > 3);
-    CHECK(o.part_mm3 == doctest::Approx(4.0 / 3 * std::numbers::pi * 27).epsilon(0.02));
+    CHECK(o.part_mm3 == near(4.0 / 3 * std::numbers::pi * 27, {.relative = 0.02}));
     // The raft reaches 2 mm beyond the outermost pillar on all sides.
     CHECK(o.support_mm3 > 0.8 * 16);
 }
@@ -169,7 +170,7 @@ TEST_CASE("tall supports are braced, the braces need no support themselves, and 
     REQUIRE(lone.tips == 1);
     CHECK(lone.struts == 0);
     const Box3 around = mesh::bounds(lone.bodies[0].surface_um);
-    CHECK(around.size().x == doctest::Approx((32500 - 2000 - 500) / 20.0).epsilon(0.05));
+    CHECK(around.size().x == near((32500 - 2000 - 500) / 20.0, {.relative = 0.05}));
     // A wall between two pillars bars their struts.
     const std::vector<Body> walled{{"soft", box({-5000, -100, 0}, {5000, 100, 24000}), ""},
                                    {"soft", box({-2000, -2000, 24000}, {2000, 2000, 25000}), ""}};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/near.hpp"
 #include "core/test_folder.hpp"
 
 using namespace pliant;
@@ -86,7 +87,7 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
     const Json scene = head_of(ask(studio, "GET", "/api/scene").body);
     CHECK(scene["robot"] == "bar");
     CHECK(scene["actuators"][0]["kind"] == "shortening_mm");
-    CHECK(scene["actuators"][0]["rest"].get<double>() == doctest::Approx(40));
+    CHECK(scene["actuators"][0]["rest"].get<double>() == near(40, {.relative = 1e-12}));
 
     const auto page = studio.join();
     studio.receive(page, R"({"type":"hello","page":"first_page"})");
@@ -94,12 +95,12 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
                    R"({"type":"drive","tag":1,"actuators":[{"name":"flexor","kind":"shortening_mm","value":2}]})");
     const Json bent = arrived(studio, page, 1);
     CHECK(bent["residual"].get<double>() <= 1e-4);
-    CHECK(bent["cables"][0]["length_mm"].get<double>() == doctest::Approx(38).epsilon(1e-5));
+    CHECK(bent["cables"][0]["length_mm"].get<double>() == near(38, {.relative = 1e-6}));
     studio.receive(page, R"({"type":"follow","tag":2,"time":1})");  // the program ends at the same place
     const Json followed = arrived(studio, page, 2);
     for (int k = 0; k < 3; ++k)
         CHECK(followed["markers"][0][k].get<double>() ==
-              doctest::Approx(bent["markers"][0][k].get<double>()).epsilon(1e-4));
+              near(bent["markers"][0][k].get<double>(), {.relative = 1e-12}));
 
     std::string stiffer = bar;
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
@@ -109,7 +110,7 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
     studio.receive(page, R"({"type":"follow","tag":3,"time":1})");
     const Json stiff = arrived(studio, page, 3);
     CHECK(stiff["cables"][0]["tension_N"].get<double>() ==
-          doctest::Approx(2 * bent["cables"][0]["tension_N"].get<double>()).epsilon(1e-2));
+          near(2 * bent["cables"][0]["tension_N"].get<double>(), {.relative = 1e-2}));
 
     CHECK(ask(studio, "POST", "/api/robot/save", "{}", "first_page").status == 200);
     CHECK(file_text(project.base / "project" / "bar.toml") == stiffer);
@@ -135,7 +136,7 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     const auto page = studio.join();
     studio.receive(page, R"({"type":"hello","page":"first_page"})");
     studio.receive(page, R"({"type":"follow","tag":1,"time":0.5})");
-    CHECK(arrived(studio, page, 1)["cables"][0]["length_mm"].get<double>() == doctest::Approx(39).epsilon(1e-5));
+    CHECK(arrived(studio, page, 1)["cables"][0]["length_mm"].get<double>() == near(39, {.relative = 1e-5}));
     const auto arrived_anew = [&](int revision, double time) {
         for (;;) {
             const auto out = page->next();
@@ -149,7 +150,7 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
     REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
     const Json followed = arrived_anew(2, 0.5);
-    CHECK(followed["cables"][0]["length_mm"].get<double>() == doctest::Approx(39).epsilon(1e-5));
+    CHECK(followed["cables"][0]["length_mm"].get<double>() == near(39, {.relative = 1e-5}));
     CHECK(followed["wanted"]["time"] == 0.5);
     CHECK(followed["wanted"]["actuators"].empty());
 
@@ -164,7 +165,7 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
 
     REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"bar.toml"})", "first_page").status == 200);
     const Json fresh = arrived_anew(4, 0);
-    CHECK(fresh["cables"][0]["length_mm"].get<double>() == doctest::Approx(40));
+    CHECK(fresh["cables"][0]["length_mm"].get<double>() == near(40, {.relative = 1e-12}));
     CHECK(fresh["wanted"]["time"] == 0);
     // What cannot be leads the robot nowhere, and no page is told that it does.
     studio.receive(page,
@@ -185,11 +186,11 @@ TEST_CASE("expanding elements are steered by volume, and know no pressure") {
     studio.receive(page, R"({"type":"hello","page":"first_page"})");
     studio.receive(page, R"({"type":"drive","tag":1,"actuators":[{"name":"air","kind":"volume_ratio","value":1.15}]})");
     const Json blown = arrived(studio, page, 1);
-    CHECK(blown["chambers"][0]["ratio"].get<double>() == doctest::Approx(1.15).epsilon(1e-5));
+    CHECK(blown["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
     CHECK(blown["chambers"][0]["pressure_kPa"].get<double>() > 1);
     studio.receive(page, R"({"type":"drive","tag":2,"actuators":[{"name":"air","kind":"pressure_kPa","value":50}]})");
     const Json still = arrived(studio, page, 2);
-    CHECK(still["chambers"][0]["ratio"].get<double>() == doctest::Approx(1.15).epsilon(1e-5));
+    CHECK(still["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
 }
 
 TEST_CASE("a page that comes back hears that there is neither job nor machine") {

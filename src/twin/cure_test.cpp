@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -41,7 +43,7 @@ TEST_CASE("light cures the gap under the platform, in runs of equal pixels") {
     CHECK(layer.vats[0].runs[2].value == 51);
     CHECK(cure.pixels_lit_twice() == 0);
     // 3.2 pixels of 0.01 mm^2 and 50 um: 0.0016 mm^3.
-    CHECK(cure.left_ml()[0] == doctest::Approx(1 - 0.0016e-3));
+    CHECK(cure.left_ml()[0] == near(1 - 0.0016e-3, {.relative = 1e-12}));
     CHECK(cure.faults().empty());
 }
 
@@ -66,10 +68,10 @@ TEST_CASE("a light given in pieces adds up, whether the first piece cures or not
         CHECK(cure.faults().empty());
         REQUIRE(cure.layers().size() == 1);
         REQUIRE(cure.layers()[0].vats[0].lit.size() == 1);
-        CHECK(cure.layers()[0].vats[0].lit[0].seconds == doctest::Approx(2));
+        CHECK(cure.layers()[0].vats[0].lit[0].seconds == near(2, {.relative = 1e-12}));
         CHECK(cure.layers()[0].vats[0].lit[0].pieces == 2);
         CHECK(cure.pixels_lit_twice() == 0);
-        CHECK(cure.left_ml()[0] == doctest::Approx(1 - 0.0016e-3));
+        CHECK(cure.left_ml()[0] == near(1 - 0.0016e-3, {.relative = 1e-12}));
     }
     Cure elsewhere(printer);  // another picture, vat or height does not go on with it
     elsewhere.expose(left, 0, 0.3, 50);
@@ -115,14 +117,14 @@ TEST_CASE("what a vat no longer holds does not cure") {
 TEST_CASE("working curve: the exposure cures the stated depth, its critical share one layer; or as given") {
     auto printer = small();
     const WorkingCurve derived = working_curve(printer, printer.resins[0]);
-    CHECK(derived.depth_um(2) == doctest::Approx(120));  // no irradiance in the file: 1 W/m^2
-    CHECK(derived.depth_um(1.6) == doctest::Approx(50));
+    CHECK(derived.depth_um(2) == near(120, {.relative = 1e-12}));  // no irradiance in the file: 1 W/m^2
+    CHECK(derived.depth_um(1.6) == near(50, {.relative = 1e-12}));
     CHECK(derived.depth_um(0) == 0);
     printer.resins[0].penetration_um = 100;
     printer.resins[0].critical_J_m2 = 50;
     const WorkingCurve given = working_curve(printer, printer.resins[0]);
     CHECK(given.depth_um(50) == 0);
-    CHECK(given.depth_um(50 * 2.718281828459045) == doctest::Approx(100));
+    CHECK(given.depth_um(50 * 2.718281828459045) == near(100, {.relative = 1e-12}));
 }
 
 TEST_CASE("light goes on through a ceiling and cures what should stay liquid below it, more with every layer") {
@@ -138,11 +140,11 @@ TEST_CASE("light goes on through a ceiling and cures what should stay liquid bel
     CHECK(cure.overcure_mm3()[0] == 0);
     cure.expose(all, 0, 2, 150);
     // 200 J/m^2 less 50 um: e^-0.5; 100 ln(200 e^-0.5 / 100) = 19.3 um.
-    CHECK(cure.deepest_overcure_um() == doctest::Approx(100 * (std::log(2.0) - 0.5)));
+    CHECK(cure.deepest_overcure_um() == near(100 * (std::log(2.0) - 0.5), {.relative = 1e-5}));
     // Four pixels of the left image are lit there: the four dark ones hang free.
-    CHECK(cure.overcure_mm3()[0] == doctest::Approx(4 * 0.01 * 0.1 * (std::log(2.0) - 0.5)));
+    CHECK(cure.overcure_mm3()[0] == near(4 * 0.01 * 0.1 * (std::log(2.0) - 0.5), {.relative = 1e-5}));
     cure.expose(all, 0, 2, 200);
-    CHECK(cure.deepest_overcure_um() == doctest::Approx(100 * (std::log(2 * (1 + std::exp(-0.5))) - 0.5)));
+    CHECK(cure.deepest_overcure_um() == near(100 * (std::log(2 * (1 + std::exp(-0.5))) - 0.5), {.relative = 1e-6}));
     for (int z = 250; z <= 1000; z += 50) cure.expose(all, 0, 2, z);
     CHECK(cure.deepest_overcure_um() <= 100);  // the platform is there
     CHECK(cure.faults().empty());

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -121,9 +123,9 @@ Report inspected(const std::vector<double>& heights_mm, double seconds = 2.5) {
 TEST_CASE("the right layers pass, with the drawn volume") {
     const Report r = inspected({0.05, 0.1});
     CHECK_MESSAGE(r.passed, report_text(r));
-    CHECK(r.materials[0].cured_mm3 == doctest::Approx(0.4));
+    CHECK(r.materials[0].cured_mm3 == near(0.4, {.relative = 1e-12}));
     CHECK(r.findings.empty());
-    CHECK(r.resins[0].left_ml == doctest::Approx(700 - 0.4e-3));
+    CHECK(r.resins[0].left_ml == near(700 - 0.4e-3, {.relative = 1e-12}));
     CHECK(r.layers == 2);
     CHECK(report_json(r).find("\"passed\": true") != std::string::npos);
 }
@@ -137,7 +139,7 @@ TEST_CASE("the part is taken off, the vat filled again: the next print begins an
     twin.take_part_off();
     CHECK(twin.closed_layers().empty());
     CHECK(twin.log().exposures == 0);
-    CHECK(twin.cured().left_ml()[0] == doctest::Approx(700 - 0.4e-3));
+    CHECK(twin.cured().left_ml()[0] == near(700 - 0.4e-3, {.relative = 1e-12}));
     twin.fill_vat(1);
     twin.fill_vat(99);  // there is none
     CHECK(twin.cured().left_ml()[0] == 700);
@@ -156,7 +158,7 @@ TEST_CASE("a missing layer, a wrong height, a short or a double light fail") {
     const Report missing = inspected({0.05});
     CHECK_FALSE(missing.passed);
     CHECK(missing.missing_layers == 1);
-    CHECK(missing.materials[0].missing_mm3 == doctest::Approx(0.2));
+    CHECK(missing.materials[0].missing_mm3 == near(0.2, {.relative = 1e-12}));
     CHECK(missing.wrong_pixels == 4);
     const Report high = inspected({0.06, 0.1});
     CHECK_FALSE(high.passed);
@@ -166,7 +168,7 @@ TEST_CASE("a missing layer, a wrong height, a short or a double light fail") {
     const Report twice = inspected({0.05, 0.05, 0.1});
     CHECK_FALSE(twice.passed);
     CHECK(twice.wrong_dose_pixels == 4);
-    CHECK(twice.most_dose == doctest::Approx(2));
+    CHECK(twice.most_dose == near(2, {.relative = 1e-12}));
 }
 
 TEST_CASE("a volume that the images do not hold fails against the model") {
@@ -188,7 +190,7 @@ TEST_CASE("another resin than the material's is foreign") {
     job.materials[0].resin = "rigid-flex";
     const Report r = inspect(twin, job, half_image).value();
     CHECK_FALSE(r.passed);
-    CHECK(r.materials[0].foreign_mm3 == doctest::Approx(0.4));
+    CHECK(r.materials[0].foreign_mm3 == near(0.4, {.relative = 1e-12}));
     CHECK(r.materials[0].missing_mm3 == 0);
 }
 
@@ -216,7 +218,7 @@ TEST_CASE("the oracle sees through the projector's grey and mask") {
     };
     const Report good = verdict(options, shown);
     CHECK_MESSAGE(good.passed, (good.reasons.empty() ? "" : good.reasons.front()));
-    CHECK(good.materials[0].cured_mm3 == doctest::Approx(area_mm2 / 10).epsilon(0.005));
+    CHECK(good.materials[0].cured_mm3 == near(area_mm2 / 10, {.relative = 1e-12}));
     // The same images on a projector without that mask, and images without mask on this projector.
     const Report uneven = verdict(Options{}, shown);
     CHECK(!uneven.passed);
@@ -242,7 +244,7 @@ TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and n
         CHECK(!r.passed);
         CHECK(names(r) == "dose");
         CHECK(r.wrong_dose_pixels == 4);
-        CHECK((share > 1 ? r.most_dose : r.least_dose) == doctest::Approx(share));
+        CHECK((share > 1 ? r.most_dose : r.least_dose) == near(share, {.relative = 1e-12}));
         CHECK(r.first_deviation ==
               fmt::format("layer 1: 4 pixels lit {:.3g} times as long as the job says (exposure)", share));
     }
@@ -313,8 +315,8 @@ TEST_CASE(
     // Doses of all layers add up to a geometric series: 70 um + Dp ln(1 / (1 - exp(-50 / Dp))), with a first layer.
     const double dp = 70 / std::log(1 / 0.8), step = std::exp(-50 / dp);
     const double deepest_um = 70 + dp * std::log((1 - std::pow(step, 20)) / (1 - step));
-    CHECK(deep.deepest_overcure_um == doctest::Approx(deepest_um).epsilon(1e-3));
-    CHECK(deep.resins[0].overcure_beyond_mm3 == doctest::Approx(7 * (deepest_um - 120) / 1000).epsilon(1e-3));
+    CHECK(deep.deepest_overcure_um == near(deepest_um, {.relative = 1e-3}));
+    CHECK(deep.resins[0].overcure_beyond_mm3 == near(7 * (deepest_um - 120) / 1000, {.relative = 1e-3}));
     CHECK(deep.first_deviation.find("layer 20: ") == 0);
     const Report accepted = printed({{Finding::Kind::overcure}});
     CHECK(accepted.passed);
@@ -341,9 +343,9 @@ TEST_CASE("only what a job may mean can be accepted, and a slip is told") {
 TEST_CASE("the tolerance of a volume: a surface that may lie half a layer off, and grey that is rounded") {
     // A cube of 5 mm, pixels of 158.75 um, layers of 50 um: 3 %, where 1 % and half a pixel were 10.5 %.
     const double border_um = border_error_um(158.75, true, false);
-    CHECK(border_um == doctest::Approx(0.4402).epsilon(1e-3));
-    CHECK(volume_tolerance_mm3(150, border_um, 50) == doctest::Approx(3.7506).epsilon(1e-4));
-    CHECK(border_error_um(158.75, false, false) == doctest::Approx(79.375));
-    CHECK(border_error_um(158.75, true, true) == doctest::Approx(20.4402).epsilon(1e-4));
-    CHECK(border_error_um(30, true, true) == doctest::Approx(15 + 30 * 1.41421356 / 510));
+    CHECK(border_um == near(0.4402, {.relative = 1e-3}));
+    CHECK(volume_tolerance_mm3(150, border_um, 50) == near(3.7506, {.relative = 1e-4}));
+    CHECK(border_error_um(158.75, false, false) == near(79.375, {.relative = 1e-12}));
+    CHECK(border_error_um(158.75, true, true) == near(20.4402, {.relative = 1e-4}));
+    CHECK(border_error_um(30, true, true) == near(15 + 30 * 1.41421356 / 510, {.relative = 1e-9}));
 }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -50,7 +52,7 @@ TEST_CASE("a job is told how deep its own light will cure below an underside, ho
         const Screen screen(printer.projector, std::nullopt);
         const Cure cure = planned_cure(printer, table(), table_image, screen).value();
         CHECK(cure.layers().size() == 40);
-        CHECK(cure.deepest_overcure_um() == doctest::Approx(deepest_um(penetration_um)).epsilon(1e-3));
+        CHECK(cure.deepest_overcure_um() == near(deepest_um(penetration_um), {.relative = 1e-3}));
         CHECK(cure.deepest_overcure().z_um == 500);
         const auto warnings = overcure_warnings(cure, printer);
         if (penetration_um < 100) {

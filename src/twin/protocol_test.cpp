@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "twin/test_peer.hpp"
 #include "twin/twin.hpp"
@@ -201,7 +202,7 @@ TEST_CASE("stopping: a move goes on for 0.9 s after M112 alone, and not at all a
         CHECK_FALSE(p.twin.interlock().homed(Axis::platform));
         return before_um - p.z_um();
     };
-    CHECK(way_um(false) == doctest::Approx(13500).epsilon(0.02));  // 15 mm/s for 0.9 s
+    CHECK(way_um(false) == near(13500, {.relative = 1e-12}));  // 15 mm/s for 0.9 s
     CHECK(way_um(true) == 0);
 }
 
@@ -433,7 +434,7 @@ TEST_CASE("machine: the door's switch is on its input, and light behind an open 
     CHECK(holds(says(), "y_max: TRIGGERED"));
     twin.advance_to(62);
     twin.light_off();
-    CHECK(twin.log().lit_while_open_s == doctest::Approx(1.5));
+    CHECK(twin.log().lit_while_open_s == near(1.5, {.relative = 1e-12}));
     twin.advance_to(81);
     CHECK(holds(says(), "y_max: open"));
 }

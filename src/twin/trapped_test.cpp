@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/near.hpp"
+
 using namespace pliant::twin;
+using pliant::near;
 
 namespace {
 
@@ -38,7 +41,7 @@ TEST_CASE("a pocket between two plates is closed, and its volume and place are k
     const auto found = trapped_in({drawn(1, plate), drawn(2, ring), drawn(3, ring), drawn(4, plate)});
     REQUIRE(found.size() == 1);
     CHECK(found[0].closed);
-    CHECK(found[0].ml == doctest::Approx(2 * 0.1 * 2 / 1000));  // 2 pixels of 1 mm^2, two layers of 0.1 mm
+    CHECK(found[0].ml == near(2 * 0.1 * 2 / 1000, {.relative = 1e-12}));  // 2 pixels of 1 mm^2, two layers of 0.1 mm
     CHECK(found[0].z_begin_um == 100);
     CHECK(found[0].z_end_um == 300);
     CHECK(found[0].x_begin_px == 2);
@@ -53,7 +56,7 @@ TEST_CASE("what is open below or at its lowest side drains; what is open at its 
     const auto cup = trapped_in({drawn(1, plate), drawn(2, open_ring), drawn(3, ring), drawn(4, plate)});
     REQUIRE(cup.size() == 1);
     CHECK_FALSE(cup[0].closed);
-    CHECK(cup[0].ml == doctest::Approx(2 * 0.1 / 1000));  // only the layer below the opening stays full
+    CHECK(cup[0].ml == near(2 * 0.1 / 1000, {.relative = 1e-12}));  // only the layer below the opening stays full
     CHECK(cup[0].z_begin_um == 200);
     // The order in which layers cured does not matter, only their heights.
     CHECK(trapped_in({drawn(4, plate), drawn(3, ring), drawn(2, open_ring), drawn(1, plate)}).size() == 1);
@@ -64,10 +67,10 @@ TEST_CASE("two pockets that join further up are one, largest first; a solid part
     const std::vector<std::string> wide = {"       ", " ##### ", " #   # ", " ##### ", "       "};
     const auto joined = trapped_in({drawn(1, plate), drawn(2, wide), drawn(3, two), drawn(4, plate)});
     REQUIRE(joined.size() == 1);
-    CHECK(joined[0].ml == doctest::Approx(5 * 0.1 / 1000));
+    CHECK(joined[0].ml == near(5 * 0.1 / 1000, {.relative = 1e-12}));
     const auto apart = trapped_in({drawn(1, plate), drawn(2, two), drawn(3, plate), drawn(4, ring), drawn(5, plate)});
     REQUIRE(apart.size() == 3);
-    CHECK(apart[0].ml == doctest::Approx(2 * 0.1 / 1000));
+    CHECK(apart[0].ml == near(2 * 0.1 / 1000, {.relative = 1e-12}));
     CHECK(trapped_in({drawn(1, plate), drawn(2, plate)}).empty());
     CHECK(trapped_in({}).empty());
 }

@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -37,15 +39,15 @@ TEST_CASE("a part hangs where its images are, mirrored as the projector is, with
     part.add(0, 1000, 0, block(10, 30, 120, 160));
     part.add(1000, 2000, 1, block(10, 30, 120, 140));
     const wash::PartCells cells = wet_part(part, projector(false, false));
-    CHECK(solid(cells) == doctest::Approx(4 * 2 * 1 + 2 * 2 * 1).epsilon(0.02));
-    CHECK(cells.x_mm == doctest::Approx(2).epsilon(0.02));
-    CHECK(cells.y_mm == doctest::Approx(2).epsilon(0.05));
-    CHECK(cells.height_mm() == doctest::Approx(2).epsilon(0.02));
+    CHECK(solid(cells) == near(4 * 2 * 1 + 2 * 2 * 1, {.relative = 1e-12}));
+    CHECK(cells.x_mm == near(2, {.relative = 1e-12}));
+    CHECK(cells.y_mm == near(2, {.relative = 1e-12}));
+    CHECK(cells.height_mm() == near(2, {.relative = 1e-12}));
     CHECK(cells.at(cells.columns - 1, 0, 0));
     CHECK_FALSE(cells.at(cells.columns - 1, 0, cells.slabs - 1));
     const wash::PartCells mirrored = wet_part(part, projector(true, true));
-    CHECK(mirrored.x_mm == doctest::Approx(-6).epsilon(0.02));
-    CHECK(mirrored.y_mm == doctest::Approx(-4).epsilon(0.05));
+    CHECK(mirrored.x_mm == near(-6, {.relative = 1e-12}));
+    CHECK(mirrored.y_mm == near(-4, {.relative = 1e-12}));
     CHECK_FALSE(mirrored.at(0, 0, mirrored.slabs - 1));
     CHECK(mirrored.at(mirrored.columns - 1, 0, mirrored.slabs - 1));
 }

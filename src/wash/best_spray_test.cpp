@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "wash/run_off.hpp"
 #include "wash/test_parts.hpp"
@@ -32,14 +33,14 @@ TEST_CASE("the best spray takes less solution than the printer's own for the sam
     MESSAGE(best->strokes.x_um << " um, " << best->strokes.z_um << " um, " << best->seconds << " s");
     CHECK(own > 0.95);
     CHECK(best->seconds < p.cleaning.spray_s);
-    CHECK(best->solution_ml / best->seconds == doctest::Approx(20.0 / 15));
+    CHECK(best->solution_ml / best->seconds == near(20.0 / 15, {.relative = 1e-12}));
     CHECK(best->removed >= 0.95);
     const auto rates = washed_rates(part, faces, p, best->strokes);
-    CHECK(cleanness(faces, rates, best->seconds).removed == doctest::Approx(best->removed));
+    CHECK(cleanness(faces, rates, best->seconds).removed == near(best->removed, {.relative = 1e-12}));
     // The hooks, the way to them and that of the tower by a slot take 2 (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40 /
     // 200) s, which is more than this disc needs.
     const double store_s = 2 * (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40.0 / 200);
-    CHECK(best->seconds == doctest::Approx(store_s).epsilon(0.01));
+    CHECK(best->seconds == near(store_s, {.relative = 0.01}));
 }
 
 TEST_CASE("on a machine whose moves take no time nobody who tries other strokes by hand finds a shorter cleaning") {

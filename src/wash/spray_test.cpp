@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/near.hpp"
 #include "wash/run_off.hpp"
 #include "wash/test_parts.hpp"
 
@@ -54,7 +55,7 @@ TEST_CASE("a plate over one head gets the flow that its distance and the cone gi
         const bool middle = faces[f].normal == Vec3{0, 0, -1} && std::hypot(faces[f].middle.x, faces[f].middle.y) < 0.5;
         if (!middle) continue;
         ++middles;
-        CHECK(rates[f] / expected == doctest::Approx(1).epsilon(1e-3));
+        CHECK(rates[f] / expected == near(1, {.relative = 1e-3}));
     }
     CHECK(middles == 4);
 }
@@ -65,7 +66,7 @@ TEST_CASE("beyond the cone, behind another piece and on its far side a part stay
     const std::vector<Face> faces = wet_faces(plate);
     const std::vector<double> rates = spray_rates(plate, faces, one_head(20), {});
     const double radius = 84.55 * std::tan(std::numbers::pi / 18);
-    CHECK(seen_mm2(faces, rates) / (std::numbers::pi * radius * radius) == doctest::Approx(1).epsilon(0.03));
+    CHECK(seen_mm2(faces, rates) / (std::numbers::pi * radius * radius) == near(1, {.relative = 0.03}));
     // A stem of 10 x 10 mm with a plate at its far end: what hangs above the plate is in its shade.
     const PartCells shade = test::cells_of(
         40, 30, 0.5, [](double x, double y, double d) { return d > 28 || (std::abs(x) < 5 && std::abs(y) < 5); });
@@ -75,7 +76,7 @@ TEST_CASE("beyond the cone, behind another piece and on its far side a part stay
         if (all[f].middle.z > -27) CHECK(few[f] == 0);
     }
     const Cleanness c = cleanness(all, few, 1e6);
-    CHECK(c.removed / (1 - c.unseen) == doctest::Approx(1));
+    CHECK(c.removed / (1 - c.unseen) == near(1, {.relative = 1e-12}));
     CHECK(c.unseen > 0.5);
 }
 
@@ -87,7 +88,7 @@ TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as 
         double cells = 0;
         for (const std::uint8_t solid : m.part.solid) cells += solid;
         const double ml = cells * m.part.cell_mm * m.part.cell_mm * m.part.high_mm / 1000;
-        CHECK(ml * 1.12 / m.weight_g == doctest::Approx(1).epsilon(0.06));  // g/ml of cured resin
+        CHECK(ml * 1.12 / m.weight_g == near(1, {.relative = 0.06}));  // g/ml of cured resin
         const Cleanness c = cleaned(m.part, p);
         MESSAGE(name << ": " << 100 * c.removed << " %, measured " << 100 * m.removed << " %, unseen " << 100 * c.unseen
                      << " %");
@@ -105,9 +106,9 @@ TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as 
 TEST_CASE("cells that are joined keep where the part is, and about its surface") {
     const PartCells fine = test::cylinder();
     const PartCells coarse = coarsened(fine, 54);
-    CHECK(coarse.cell_mm == doctest::Approx(1));
+    CHECK(coarse.cell_mm == near(1, {.relative = 1e-12}));
     CHECK(coarse.x_mm == fine.x_mm);
-    CHECK(coarse.height_mm() == doctest::Approx(fine.height_mm()));
+    CHECK(coarse.height_mm() == near(fine.height_mm(), {.relative = 1e-12}));
     const auto area = [](const PartCells& part) {
         double sum = 0;
         for (const Face& face : wet_faces(part)) sum += face.area_mm2;
@@ -115,6 +116,6 @@ TEST_CASE("cells that are joined keep where the part is, and about its surface")
     };
     // A disc and its rim: pi r (r + 2 h).
     const double exact = std::numbers::pi * 26.5 * (26.5 + 12);
-    CHECK(area(fine) == doctest::Approx(exact).epsilon(0.06));
-    CHECK(area(coarse) == doctest::Approx(exact).epsilon(0.12));
+    CHECK(area(fine) == near(exact, {.relative = 0.06}));
+    CHECK(area(coarse) == near(exact, {.relative = 0.12}));
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/near.hpp"
 #include "sim/contact/test_derivatives.hpp"
 
 using namespace pliant;
@@ -23,7 +24,7 @@ double distance(Features features, const Stencil& x) {
 
 TEST_CASE("a point that falls on a triangle stops at the share it must keep") {
     const Stencil x{{{0.2, 0.2, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, dx{{{0, 0, -2}, {}, {}, {}}};
-    CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 1) == doctest::Approx(0.45).scale(0).epsilon(2e-3));
+    CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 1) == near(0.45, {.relative = 2e-3}));
     CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 0.3) == 0.3);
     const Stencil away{{{0, 0, 5}, {}, {}, {}}};
     CHECK(largest_step(Features::point_triangle, x, away, 0.1, 1) == 1);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/near.hpp"
 #include "sim/contact/test_bodies.hpp"
 #include "sim/contact/test_derivatives.hpp"
 
@@ -263,7 +264,7 @@ TEST_CASE("a cube that is let down on a plane rests above it and presses with it
         const SurfaceAreas areas = surface_areas(make_surface(body.triangles), body.rest);
         for (std::size_t i = 0; i < areas.points.size(); ++i)
             carried += forces.pressure_Pa[make_surface(body.triangles).points[i]] * areas.points[i];
-        CHECK(carried == doctest::Approx(weight).scale(0).epsilon(0.01));
+        CHECK(carried == near(weight, {.relative = 0.01}));
     }
 }
 
@@ -293,7 +294,7 @@ TEST_CASE("two boxes that are squashed against each other never intersect") {
         moved += step * push;
         REQUIRE(statics.minimise(x, nullptr, 1e-7, look) >= 0);
     }
-    CHECK(moved == doctest::Approx(0.006));
+    CHECK(moved == near(0.006, {.relative = 1e-12}));
     const Forces forces = contact.forces(contact.find(span(x)), span(x), nullptr);
     CHECK(forces.smallest_distance_m > 0);
     CHECK(forces.self_N > 0.05);
@@ -355,7 +356,7 @@ TEST_CASE("a block on an incline sticks where friction is enough, and slides as 
     CHECK(std::abs(stuck.acceleration) < 1e-3);
     for (const double share : {0.0, 0.4, 0.8}) {
         const Slide sliding = slide_down(share * steep);
-        CHECK(sliding.acceleration == doctest::Approx(9.81 * 0.5 * (1 - share)).scale(0).epsilon(0.01));
+        CHECK(sliding.acceleration == near(9.81 * 0.5 * (1 - share), {.relative = 0.01}));
     }
 }
 
@@ -375,8 +376,8 @@ TEST_CASE("forces on the robot from an obstacle that drags along it point along 
     const Vec3 all = contact.forces(pairs, span(x), &friction).on_robot_N[0];
     CHECK(pressed.z > 0);
     CHECK(std::abs(pressed.x) < 1e-9 * pressed.z);
-    CHECK(all.x == doctest::Approx(0.5 * pressed.z));
-    CHECK(all.z == doctest::Approx(pressed.z));
+    CHECK(all.x == near(0.5 * pressed.z, {.relative = 1e-12}));
+    CHECK(all.z == near(pressed.z, {.relative = 1e-12}));
 }
 
 namespace {
@@ -556,6 +557,6 @@ TEST_CASE("an obstacle acts where it is drawn: the robot rests on it within a te
         }();
         CHECK(std::abs(lowest) < 0.1 * usual.distance_m);
         const double apart = contact.smallest_distance(contact.find(span(x)), span(x));
-        CHECK(apart == doctest::Approx(lowest).scale(1e-3).epsilon(0.05));
+        CHECK(apart == near(lowest, {.relative = 1e-9}));
     }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/near.hpp"
 #include "sim/contact/test_derivatives.hpp"
 
 using namespace pliant;
@@ -56,7 +57,7 @@ void check_cases(const std::vector<Case>& cases, Find find) {
             const Stencil x = motion(c.x);
             const Nearest n = find(x);
             CHECK(n.free == c.free);
-            CHECK(std::sqrt(squared_distance(n, x)) == doctest::Approx(c.distance).scale(0).epsilon(1e-12));
+            CHECK(std::sqrt(squared_distance(n, x)) == near(c.distance, {.relative = 1e-12}));
             const auto D = [&](const Stencil& y) { return squared_distance(find(y), y); };
             const auto dD = [&](const Stencil& y) { return squared_distance_gradient(find(y), y); };
             CHECK((dD(x) - numeric_gradient(D, x, 1e-6)).norm() < 1e-8);
@@ -118,25 +119,25 @@ TEST_CASE("no sampled point of the features is nearer, and one is nearly as near
 TEST_CASE("the quick bound is the distance itself where features face each other") {
     const Stencil pt{{{0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}},
         ee{{{-1, 0, 0}, {1, 0, 0}, {0, -2, 3}, {0, 2, 3}}};
-    CHECK(distance_bound(Features::point_triangle, pt) == doctest::Approx(1));
-    CHECK(distance_bound(Features::edge_edge, ee) == doctest::Approx(3));
+    CHECK(distance_bound(Features::point_triangle, pt) == near(1, {.relative = 1e-12}));
+    CHECK(distance_bound(Features::edge_edge, ee) == near(3, {.relative = 1e-12}));
 }
 
 TEST_CASE("nearly parallel edges that cross keep their true distance") {
     for (const double angle : {1e-2, 1e-4, 1e-6, 1e-7}) {
         const double gap = 1e-5;
         const Stencil x{{{-1, 0, 0}, {1, 0, 0}, {-1, -angle, gap}, {1, angle, gap}}};
-        CHECK(std::sqrt(squared_distance(nearest_edges(x), x)) == doctest::Approx(gap).scale(0).epsilon(1e-6));
+        CHECK(std::sqrt(squared_distance(nearest_edges(x), x)) == near(gap, {.relative = 1e-12}));
     }
     const Stencil parallel{{{-1, 0, 0}, {1, 0, 0}, {-0.5, 0, 0.25}, {3, 0, 0.25}}};
-    CHECK(squared_distance(nearest_edges(parallel), parallel) == doctest::Approx(0.0625));
+    CHECK(squared_distance(nearest_edges(parallel), parallel) == near(0.0625, {.relative = 1e-12}));
 }
 
 TEST_CASE("degenerate features: a triangle without area, an edge without length") {
     const Stencil line{{{0.5, 1, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}}};
-    CHECK(squared_distance(nearest_point_triangle(line), line) == doctest::Approx(1));
+    CHECK(squared_distance(nearest_point_triangle(line), line) == near(1, {.relative = 1e-12}));
     const Stencil point{{{0, 0, 1}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}};
-    CHECK(squared_distance(nearest_edges(point), point) == doctest::Approx(1));
+    CHECK(squared_distance(nearest_edges(point), point) == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("squared cross product of two edges and its derivatives") {
@@ -147,5 +148,5 @@ TEST_CASE("squared cross product of two edges and its derivatives") {
         CHECK((squared_cross_hessian(x) - numeric_hessian(squared_cross_gradient, x, 1e-5)).norm() < 1e-7);
     }
     const Stencil square{{{0, 0, 0}, {2, 0, 0}, {0, 0, 1}, {0, 3, 1}}};
-    CHECK(squared_cross(square) == doctest::Approx(36));
+    CHECK(squared_cross(square) == near(36, {.relative = 1e-12}));
 }
