@@ -19,8 +19,8 @@ namespace pliant::bench {
 [[nodiscard]] sim::Description air_bar();
 
 /// The thesis' models at the size that it names: a bar of 100 x 20 x 15 mm of its two materials (T3.4 with equal
-/// weights, R_omega 1 and 7.08) with five notches that are meshed as gap elements (T3.5), and a cable that pulls it to 0.88 of
-/// its length; or the air bar of the soft one with meshed air (T3.6). 7,200 linear tets each.
+/// weights, R_omega 1 and 7.08) with five notches that are meshed as gap elements (T3.5), and a cable that pulls it to
+/// 0.88 of its length; or the air bar of the soft one with meshed air (T3.6). 7,200 linear tets each.
 [[nodiscard]] sim::Description thesis_gap_bar();
 [[nodiscard]] sim::Description thesis_air_bar();
 
