@@ -6,7 +6,22 @@
 #
 # Each test file is one CTest entry. A reference test reads the folder that PLIANT_REFERENCE_DATA names and is
 # reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp). A peer test
-# runs CalculiX (ccx) beside Pliant, meshio_peer_test.cpp meshio, display_peer_test.cpp Xvfb, and is skipped likewise where it is not installed.
+# runs CalculiX (ccx) beside Pliant, meshio_peer_test.cpp meshio, display_peer_test.cpp Xvfb, and is skipped likewise
+# where it is not installed. With PLIANT_NO_SKIPS=1 they fail instead.
+
+# Every entry of CTest has a label for its kind (unit, reference, peer, document, web, example, print, fuzz), and those
+# over some 20 s, which PliantLongTests.cmake lists, the label `long`: ctest -L unit, ctest -LE long.
+
+include(PliantLongTests)
+
+# Labels a test by its kind; called where the test is added, and again where a kind is not the usual one.
+function(pliant_label test kind)
+  set(labels ${kind})
+  if(test IN_LIST PLIANT_LONG_TESTS)
+    list(APPEND labels long)
+  endif()
+  set_tests_properties(${test} PROPERTIES LABELS "${labels}")
+endfunction()
 
 add_library(pliant_flags INTERFACE)
 target_include_directories(pliant_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
@@ -38,12 +53,14 @@ function(pliant_test_program name tests reference_tests libraries) # then the pe
     string(REGEX REPLACE "_test\\.cpp$" "" stem ${file})
     add_test(NAME ${name}/${stem} COMMAND ${program} --source-file=*/${file} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${name}/${stem} PROPERTIES TIMEOUT 600)
+    pliant_label(${name}/${stem} unit)
   endforeach()
   foreach(file IN LISTS reference_tests)
     string(REGEX REPLACE "_reference_test\\.cpp$" "" stem ${file})
     add_test(NAME ${name}/reference/${stem} COMMAND ${program} --reference --source-file=*/${file}
              WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${name}/reference/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+    pliant_label(${name}/reference/${stem} reference)
   endforeach()
   foreach(file IN LISTS ARGN)
     string(REGEX REPLACE "_peer_test\\.cpp$" "" stem ${file})
@@ -56,5 +73,6 @@ function(pliant_test_program name tests reference_tests libraries) # then the pe
     add_test(NAME ${name}/peer/${stem} COMMAND ${program} --peer=${peer} --source-file=*/${file}
              WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${name}/peer/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+    pliant_label(${name}/peer/${stem} peer)
   endforeach()
 endfunction()

@@ -34,6 +34,32 @@ export function stopRecording() {
   recording.value = false;
 }
 
+/// Whether the keys between two lie on the straight line from one to the other, to a thousandth.
+function isStraight(keys: Key[], from: number, to: number, names: string[]): boolean {
+  const a = keys[from];
+  const b = keys[to];
+  return keys.slice(from + 1, to).every((k) => {
+    const share = (k.time - a.time) / (b.time - a.time);
+    return names.every((n) => {
+      const [v, v0, v1] = [k, a, b].map((key) => key.values[n].value);
+      return Math.abs(v0 + share * (v1 - v0) - v) <= 1e-3 * Math.max(Math.abs(v0), Math.abs(v1), 1e-9);
+    });
+  });
+}
+
+/// The keys that the others can be drawn between. Each stretch is held against all of its keys: of a motion that bends
+/// slowly no three neighbours show that it bends.
+function corners(keys: Key[], names: string[]): Key[] {
+  const kept = keys.slice(0, 1);
+  let from = 0;
+  for (let to = 2; to < keys.length; ++to) {
+    if (isStraight(keys, from, to, names)) continue;
+    from = to - 1;
+    kept.push(keys[from]);
+  }
+  return keys.length > 1 ? [...kept, keys[keys.length - 1]] : kept;
+}
+
 /// Of each actuator only what it was driven by at the end, and of keys in a straight line only the ends.
 export function asProgram(): string {
   const keys = recorded.value;
@@ -41,17 +67,7 @@ export function asProgram(): string {
   if (keys.length < 2) return '';
   const kinds = Object.fromEntries(names.map((n) => [n, keys[keys.length - 1].values[n]?.kind]));
   const usable = keys.filter((k) => names.every((n) => k.values[n]?.kind === kinds[n]));
-  const kept = usable.filter((k, i) => {
-    const before = usable[i - 1];
-    const after = usable[i + 1];
-    if (!before || !after) return true;
-    const share = (k.time - before.time) / (after.time - before.time);
-    return names.some((n) => {
-      const from = before.values[n].value;
-      const to = after.values[n].value;
-      return Math.abs(from + share * (to - from) - k.values[n].value) > 1e-3 * Math.max(Math.abs(to), Math.abs(from), 1e-9);
-    });
-  });
+  const kept = corners(usable, names);
   const bare = (n: string) => (/^[A-Za-z0-9_-]+$/.test(n) ? n : JSON.stringify(n));
   const text = (n: string, v: number) => {
     const u = unit[kinds[n] ?? ''];

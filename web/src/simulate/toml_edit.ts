@@ -11,7 +11,7 @@ export function setKey(text: string, table: string, key: string, value: string):
   if (begin >= 0) {
     const found = lines.findIndex((l, i) => i > begin && /^\s*\[/.test(l));
     const end = found < 0 ? lines.length : found;
-    const own = new RegExp(`^(\\s*${escaped(key)}\\s*=\\s*)("[^"]*"|'[^']*'|[^#\\s]+)`);
+    const own = new RegExp(`^(\\s*${escaped(key)}\\s*=\\s*)("[^"]*"|'[^']*'|\\[[^\\]]*\\]|[^#\\s]+)`);
     for (let i = begin + 1; i < end; ++i) {
       if (!own.test(lines[i])) continue;
       lines[i] = lines[i].replace(own, `$1${value}`);
@@ -25,7 +25,7 @@ export function setKey(text: string, table: string, key: string, value: string):
   const at = lines.findIndex((l) => inline.test(l));
   if (at < 0) return null;
   lines[at] = lines[at].replace(inline, (_, open: string, inner: string, close: string) => {
-    const own = new RegExp(`((?:^|,)\\s*${escaped(key)}\\s*=\\s*)("[^"]*"|'[^']*'|[^,}\\s]+)`);
+    const own = new RegExp(`((?:^|,)\\s*${escaped(key)}\\s*=\\s*)("[^"]*"|'[^']*'|\\[[^\\]]*\\]|[^,}\\s]+)`);
     return open + (own.test(inner) ? inner.replace(own, `$1${value}`) : `${inner.trimEnd()}, ${key} = ${value} `) + close;
   });
   return lines.join('\n');

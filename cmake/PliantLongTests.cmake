@@ -1,0 +1,9 @@
+# The tests that take over some 20 s on two cores: they get the label `long`.
+set(PLIANT_LONG_TESTS
+  sim/random_programs
+  sim/peer/calculix
+  print/kill
+  examples/cable_gripper/make
+  examples/printed_as_drawn
+  examples/gripper_holds_a_ball
+)
