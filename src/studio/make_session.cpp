@@ -88,10 +88,7 @@ Status MakeSession::slice(SliceOrder order) {
     if (thread_.joinable()) thread_.join();
     cancelled_ = false;
     order.order.version = version_;
-    thread_ = std::thread([this, order = std::move(order)] {
-        work(order);
-        slicing_ = false;
-    });
+    thread_ = std::thread([this, order = std::move(order)] { work(order); });
     return {};
 }
 
@@ -104,6 +101,7 @@ void MakeSession::work(const SliceOrder& order) {
     const std::filesystem::path file = scratch_ / ("job_" + random_key() + ".zip");
     Result<std::vector<std::string>> colours = slice_robot(order, file, watch);
     Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
+    slicing_ = false;  // before it is told: whoever hears of the end may begin the next
     tell_(event({{"type", "slicing"},
                  {"stage", ""},
                  {"fraction", 1},

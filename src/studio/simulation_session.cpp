@@ -252,7 +252,7 @@ void SimulationSession::build(RobotText source) {
         events_.text(R"({"type":"build","stage":"","fraction":1})");
         if (!problem.empty()) tell("problem", problem);
         const std::lock_guard lock(mutex_);
-        built_once_ = true;
+        built_once_ = !to_build_;  // who waits, waits for the last
         changed_.notify_all();
     };
     const auto refuse = [&](const Error& error) {
