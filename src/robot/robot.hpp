@@ -140,8 +140,8 @@ struct CableSpec {
     double eyelet_radius = 0;          ///< length units
     double friction = 0;               ///< coefficient in the guides
     sim::CableTarget target;
-    bool gap_elements = false;  ///< the thesis' model (T3.5) instead of the length constraint
-    bool fill_notches = false;  ///< the notches that it crosses are gaps
+    bool gap_elements = false;                ///< the thesis' model (T3.5) instead of the length constraint
+    bool fill_notches = false;                ///< the notches that it crosses are gaps
     double weight = sim::default_gap_weight;  ///< of its gap elements, where their gap has none of its own
     int line = 0;
 };
@@ -173,7 +173,7 @@ struct ChamberSpec {
     std::string name;
     Geometry air;
     sim::ChamberTarget target;
-    bool elements = false;  ///< the thesis' model (T3.6) instead of the volume constraint
+    bool elements = false;                    ///< the thesis' model (T3.6) instead of the volume constraint
     double weight = sim::default_air_weight;  ///< of the elements, beside the softest Young's modulus
     int line = 0;
 };
