@@ -2,8 +2,14 @@
 set(PLIANT_LONG_TESTS
   sim/random_programs
   sim/peer/calculix
+  studio/page
+  studio/print_page
+  studio/true_page
   print/kill
   examples/cable_gripper/make
   examples/printed_as_drawn
   examples/gripper_holds_a_ball
+  robot/reference/real_mesh
+  document/docs/tutorial
+  document/examples/printed/README
 )
