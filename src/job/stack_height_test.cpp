@@ -36,19 +36,19 @@ std::string refused(const Files& files) {
 TEST_CASE("every format says its layer height in its own words and unit") {
     CHECK(um({{"config.ini", "action = print\r\nlayerHeight = 0.05\r\n"}}) == near(50, {.relative = 1e-12}));
     CHECK(um({{"prusaslicer.ini", "initial_layer_height = 0.1\nlayer_height=0.025\n"}}) ==
-          near(25, {.relative = 1e-5}));
+          near(25, {.relative = 1e-12}));
     CHECK(um({{"slicer.json", R"({"Thickness": 100, "PWidth": 3})"}}) == near(100, {.relative = 1e-12}));
     CHECK(um({{"profile.json", R"({"Depth": "35"})"}, {"slicer.json", "{}"}}) == near(35, {.relative = 1e-12}));
     CHECK(um({{"slice.conf", "# Nova\nthickness = 0.035  # mm\n"}}) == near(35, {.relative = 1e-12}));
     CHECK(um({{"part.slicing",
                "<SliceBuildConfig><InkConfig><SliceHeight>0.05</SliceHeight></InkConfig>"
                "<InkConfig><SliceHeight> 0.050 </SliceHeight></InkConfig></SliceBuildConfig>"}}) ==
-          near(50, {.relative = 1e-5}));
+          near(50, {.relative = 1e-12}));
     CHECK(um({{"manifest.uvtools", "<Manifest><LayerHeight>0.1</LayerHeight></Manifest>"}}) ==
-          near(100, {.relative = 1e-5}));
+          near(100, {.relative = 1e-12}));
     // The printer goes by config.ini.
     CHECK(um({{"config.ini", "layerHeight = 0.1"}, {"prusaslicer.ini", "layer_height = 0.05"}}) ==
-          near(100, {.relative = 1e-5}));
+          near(100, {.relative = 1e-12}));
     CHECK(um({{"config.ini", "nothing"}, {"prusaslicer.ini", "layer_height = 0.05"}}) == near(50, {.relative = 1e-12}));
 }
 

@@ -68,6 +68,6 @@ TEST_CASE("points outside get the nearest point of the mesh") {
     for (int trial = 0; trial < 300; ++trial) {
         const Vec3 p{uniform(random), uniform(random), uniform(random)};
         const Vec3 nearest{std::clamp(p.x, 0.0, 3.0), std::clamp(p.y, 0.0, 3.0), std::clamp(p.z, 0.0, 3.0)};
-        CHECK(locator.locate(p).distance == near(norm(p - nearest), {.relative = 1e-12}));
+        CHECK(locator.locate(p).distance == near(norm(p - nearest), {.relative = 1e-12, .absolute = 1e-12}));
     }
 }

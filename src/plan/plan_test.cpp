@@ -50,7 +50,7 @@ TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
     // 200 swaps and the final cleaning, 15 s each.
     CHECK(plan.seconds.clean == near(201 * 15, {.relative = 1e-3}));
     CHECK(plan.seconds.total ==
-          near(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move, {.relative = 1e-5}));
+          near(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move, {.relative = 1e-12}));
     // 200 layers of 100 mm^2 x 50 um.
     REQUIRE(plan.vats.size() == 2);
     CHECK(plan.vats[0].resin_ml == near(1, {.relative = 1e-12}));

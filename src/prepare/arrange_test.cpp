@@ -75,7 +75,7 @@ TEST_CASE("--turn, --copies and --spacing") {
           })
               .box()
               .size()
-              .x == near(16000, {.relative = 1e-5}));
+              .x == near(16000, {.relative = 1e-12}));
     CHECK(refused([](Order& o) { o.copies = 0; }).find("0 copies") == 0);
     CHECK(!refused([](Order& o) { o.copies = 1000; }).empty());  // no room
     CHECK(!refused([](Order& o) { o.spacing = "-1 mm"; }).empty());
@@ -97,7 +97,7 @@ TEST_CASE("--support, --lift and --raft") {
               o.raft = "1 mm";
           })
               .box()
-              .low.z == near(6000, {.relative = 1e-5}));  // 5 mm above the raft
+              .low.z == near(6000, {.relative = 1e-12}));  // 5 mm above the raft
     const auto supported = [](const char* lift, const char* raft) {
         return [=](Order& o) {
             o.support = "firm";

@@ -163,8 +163,7 @@ inline std::string described(const RandomProgram& p) {
 /// Leaves one thing out of a program, or says that it is not there.
 using Simplification = std::function<bool(RandomProgram&)>;
 
-/// What may be left out of `p`, the largest things first. The mesh and its materials stay: what hangs on them names
-/// their nodes.
+/// What may be left out of `p`. The mesh stays: cables, chambers and supports name its nodes.
 inline std::vector<Simplification> simplifications(const RandomProgram& p) {
     std::vector<Simplification> all;
     const auto taken_away = [](auto& from) { return from ? (from.reset(), true) : false; };
