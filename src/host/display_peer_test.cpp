@@ -116,8 +116,12 @@ struct Session {
 };
 
 bool cannot_start(const Session& session) {
-    if (!session.server.runs()) MESSAGE("not tested: Xvfb does not start here");
-    return !session.server.runs();
+    if (session.server.runs()) return false;
+    const char* no_skips = std::getenv("PLIANT_NO_SKIPS");
+    const bool fails = no_skips != nullptr && *no_skips != '\0';
+    CHECK_MESSAGE(!fails, "PLIANT_NO_SKIPS is set, and Xvfb does not start here");
+    if (!fails) MESSAGE("not tested: Xvfb does not start here");
+    return true;
 }
 
 ScreenOptions options(int width = width_px, int height = height_px) {
