@@ -101,7 +101,8 @@ TEST_CASE("degenerate and folded tets end with a point, not nearer than any othe
             sum += b;
         }
         CHECK(sum == near(1, {.relative = 1e-12}));
-        CHECK(norm(curved_position(nodes, found.barycentric) - p) == near(found.distance, {.relative = 1e-12, .absolute = 1e-12}));
+        CHECK(norm(curved_position(nodes, found.barycentric) - p) ==
+              near(found.distance, {.relative = 1e-12, .absolute = 1e-12}));
     }
 }
 
