@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "plan/check.hpp"
 #include "plan/plan.hpp"
@@ -88,7 +89,7 @@ TEST_CASE("three materials from three rows and three columns of a wall, and with
         for (int m = 0; m < materials; ++m)
             CHECK(p.report.materials[static_cast<std::size_t>(m)].cured_mm3 /
                       p.job.materials[static_cast<std::size_t>(m)].model_volume_mm3 ==
-                  doctest::Approx(1));
+                  near(1, {.relative = 1e-12}));
     }
 }
 
@@ -152,7 +153,7 @@ TEST_CASE("plan and virtual printer agree about the film: what is brushed back, 
         Print p(name.c_str());
         p.run();
         REQUIRE(p.report.brushed_ml > 0);
-        CHECK(p.report.brushed_ml / p.plan.brushed_ml == doctest::Approx(1).epsilon(1e-6));
+        CHECK(p.report.brushed_ml / p.plan.brushed_ml == near(1, {.relative = 1e-6}));
         // Of what the brush leaves the plan takes the thesis' mean share off, 94.75 %; the twin what its jets reach.
         CHECK(p.report.washed_ml / p.plan.waste_ml > 0.9);
         CHECK(p.report.washed_ml / p.plan.waste_ml < 1);
@@ -161,5 +162,5 @@ TEST_CASE("plan and virtual printer agree about the film: what is brushed back, 
     blind.printer.sprinklers.clear();
     blind.run();
     // Where the tower has further to go the pump runs longer, and takes off a little more.
-    CHECK(blind.report.washed_ml / (0.9475 * blind.plan.waste_ml) == doctest::Approx(1).epsilon(0.02));
+    CHECK(blind.report.washed_ml / (0.9475 * blind.plan.waste_ml) == near(1, {.relative = 0.02}));
 }

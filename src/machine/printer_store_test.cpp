@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "core/files.hpp"
+#include "core/near.hpp"
 #include "core/test_text.hpp"
 #include "machine/gcode.hpp"
 #include "machine/printer.hpp"
@@ -40,8 +41,8 @@ void check_slips(const char* name, std::initializer_list<Slip> slips) {
 TEST_CASE("a magnet in the place of hooks is read, and what it must hold is checked") {
     const Printer p = load_printer("examples/printers/tower_magnet.toml").value();
     CHECK(p.hooks.travel_um == 0);
-    CHECK(p.hooks.magnet.engage_s == doctest::Approx(0.2));
-    CHECK(p.hooks.magnet.release_s == doctest::Approx(0.5));
+    CHECK(p.hooks.magnet.engage_s == near(0.2, {.relative = 1e-12}));
+    CHECK(p.hooks.magnet.release_s == near(0.5, {.relative = 1e-12}));
     CHECK_FALSE(on_without_power(p.hooks.magnet.coil));
     CHECK(on_without_power({"M42 P11 S0", "M42 P11 S255"}));
     CHECK_FALSE(load_printer("examples/printers/tower.toml")->hooks.magnet.present());

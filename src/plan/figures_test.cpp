@@ -78,15 +78,15 @@ TEST_CASE("a wall grows by columns; half of its room is the retriever's; a large
     const machine::Printer wall = machine_of("wall");
     const PrinterFigures f = figures(wall);
     CHECK(f.places == 16);
-    CHECK(f.swap.hooks_s == doctest::Approx(3).epsilon(0.01));
+    CHECK(f.swap.hooks_s == near(3, {.relative = 0.01}));
     // Four vats of 12 in over 3 x 14 + 12 in, four of 4 in over 3 x 6 + 4 in, and as much before them.
-    CHECK(f.store_mm == doctest::Approx(54 * 25.4));
-    CHECK(f.packing == doctest::Approx(48.0 / 54 * 16 / 22 / 2));
+    CHECK(f.store_mm == near(54 * 25.4, {.relative = 1e-12}));
+    CHECK(f.packing == near(48.0 / 54 * 16 / 22 / 2, {.relative = 1e-12}));
     const std::vector<SwapTimes> grown = swap_over_vats(wall, {4, 16, 32});
     CHECK(with_vats(wall, 32).wall.columns == 8);
     CHECK(with_vats(wall, 32).slot_count() == 32);
     CHECK(grown[2].mean_s > grown[0].mean_s);
     CHECK(grown[2].mean_s < grown[0].mean_s + 10);
     CHECK(figures(with_bed(wall, 2, 1)).swap.total_s > f.swap.total_s + 40);
-    CHECK(figures(machine_of("tower_magnet")).swap.hooks_s == doctest::Approx(0.5));
+    CHECK(figures(machine_of("tower_magnet")).swap.hooks_s == near(0.5, {.relative = 1e-12}));
 }

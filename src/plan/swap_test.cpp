@@ -125,11 +125,11 @@ double retriever_seconds(double lift_mm, double rail_mm) {
 TEST_CASE("a magnet takes no stroke: a far slot comes sooner by what hooks need, the next one is hidden in the spray") {
     const machine::Printer magnet = machine_of("tower_magnet");
     const double stroke = 355.6 / 15.2 + 15.2 / 50, back_off = 15 / 15.2 + 15.2 / 50;
-    CHECK(swap_seconds(magnet, 1, 2).total / (2 * stroke + 15) == doctest::Approx(1).epsilon(1e-4));
+    CHECK(swap_seconds(magnet, 1, 2).total / (2 * stroke + 15) == near(1, {.relative = 1e-4}));
     // Released in 0.5 s, while the platform rises 1 mm off the brush; held after 0.2 s.
     const double rise = 2 * std::sqrt(1 / 100.0);
     const double far = 2 * stroke + 0.5 + rise + 0.2 + 2 * back_off + 2 * (304.8 / 40 + 0.2);
-    CHECK(swap_seconds(magnet, 1, 4).total / far == doctest::Approx(1).epsilon(1e-4));
+    CHECK(swap_seconds(magnet, 1, 4).total / far == near(1, {.relative = 1e-4}));
     CHECK(swap_seconds(magnet, 1, 4).total < swap_seconds(test::tower(), 1, 4).total - 4);
     Sequence s = loaded(magnet);
     const std::size_t before = s.text().size();
@@ -157,7 +157,7 @@ TEST_CASE("a wall's swap takes what carriage, hooks and retriever take one after
         retriever_seconds(202.4 - 20 - 30, 711.2) + fork + lift_off + fork + retriever_seconds(270.5 - 202.4, 251.2);
     const double all = 2 * stroke + down + 2 * back_off + put + fetch + up;
     wall.cleaning.spray_s = 0;
-    CHECK(swap_seconds(wall, 1, 7).total / all == doctest::Approx(1).epsilon(1e-4));
+    CHECK(swap_seconds(wall, 1, 7).total / all == near(1, {.relative = 1e-4}));
 }
 
 TEST_CASE("a wall's retriever works while the part is sprayed, and the spray does not wait for it") {
@@ -176,5 +176,5 @@ TEST_CASE("a wall's retriever works while the part is sprayed, and the spray doe
     CHECK(late.total > 200);
     machine::Printer long_spray = wall;
     long_spray.cleaning.spray_s = 100;
-    CHECK(swap_seconds(long_spray, 1, 7).clean == doctest::Approx(100).epsilon(0.02));
+    CHECK(swap_seconds(long_spray, 1, 7).clean == near(100, {.relative = 0.02}));
 }

@@ -112,11 +112,11 @@ TEST_CASE("magnet, lift, rail and fork have bars of their own") {
     };
     const auto magnet = bars("tower_magnet", Device::magnet);
     REQUIRE(magnet.size() == 2);
-    CHECK(magnet[0].end_s - magnet[0].begin_s == doctest::Approx(0.5));
-    CHECK(magnet[1].end_s - magnet[1].begin_s == doctest::Approx(0.2));
+    CHECK(magnet[0].end_s - magnet[0].begin_s == near(0.5, {.relative = 1e-12}));
+    CHECK(magnet[1].end_s - magnet[1].begin_s == near(0.2, {.relative = 1e-12}));
     const auto fork = bars("wall", Device::fork);
     REQUIRE(fork.size() == 4);
-    for (const Stretch& s : fork) CHECK(s.end_s - s.begin_s == doctest::Approx(1.5));
+    for (const Stretch& s : fork) CHECK(s.end_s - s.begin_s == near(1.5, {.relative = 1e-12}));
     CHECK(bars("wall", Device::rail).size() == 3);
     CHECK(bars("wall", Device::lift).size() >= 5);
     CHECK(device_name(Device::lift) == "lift");

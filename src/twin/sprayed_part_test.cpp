@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/near.hpp"
+
 using namespace pliant;
 using namespace pliant::twin;
 
@@ -73,11 +75,11 @@ TEST_CASE("the lower end of the part is what has cured in this layer, or the lay
     const job::Image left = picture([](double x, double y) { return x < 0 && std::abs(x) < 10 && std::abs(y) < 10; });
     const job::Image right = picture([](double x, double y) { return x > 0 && std::abs(x) < 10 && std::abs(y) < 10; });
     cure.expose(left, 0, light_s, 500);
-    CHECK(cure.section_mm2() == doctest::Approx(200));
+    CHECK(cure.section_mm2() == near(200, {.relative = 1e-12}));
     cure.expose(right, 1, light_s, 500);
-    CHECK(cure.section_mm2() == doctest::Approx(400));
+    CHECK(cure.section_mm2() == near(400, {.relative = 1e-12}));
     cure.expose(right, 1, light_s, 1000);
-    CHECK(cure.section_mm2() == doctest::Approx(400));
+    CHECK(cure.section_mm2() == near(400, {.relative = 1e-12}));
     cure.expose(left, 0, light_s, 1500);
-    CHECK(cure.section_mm2() == doctest::Approx(200));
+    CHECK(cure.section_mm2() == near(200, {.relative = 1e-12}));
 }

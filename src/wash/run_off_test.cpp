@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near.hpp"
 #include "wash/test_parts.hpp"
 
 using namespace pliant;
@@ -37,7 +38,7 @@ TEST_CASE("down a wall everything runs on, nothing goes up, and the lower edge t
         if (is_side(faces[f]) && faces[f].middle.z > -0.5) hit += faces[f].area_mm2;
         if (faces[f].axis.z < 0) off += rates[f] * faces[f].area_mm2;
     }
-    CHECK(off / hit == doctest::Approx(1));
+    CHECK(off / hit == near(1, {.relative = 1e-12}));
     const auto low = flow(column, faces, [](const Face& f) { return is_side(f) && f.middle.z < -9.5; });
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (faces[f].middle.z > -9.5) CHECK(low[f] == 0);
@@ -66,9 +67,9 @@ TEST_CASE("off an underside it drips onto the ledge below, covers it and leaves 
         }
         if (faces[f].axis.z < 0 && faces[f].middle.z < -7.5) off_below += q;
     }
-    CHECK(on_ledge / hit == doctest::Approx(1));
-    CHECK(most / least == doctest::Approx(1));
-    CHECK(off_below / hit == doctest::Approx(1));
+    CHECK(on_ledge / hit == near(1, {.relative = 1e-12}));
+    CHECK(most / least == near(1, {.relative = 1e-12}));
+    CHECK(off_below / hit == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("into a pit whose tip points up nothing runs") {
