@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/tri_mesh.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 
 namespace pliant::bench {
 

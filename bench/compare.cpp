@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/calculix.hpp"
-#include "sim/comparison_problems.hpp"
-#include "sim/simulate.hpp"
+#include "simulation/peers/calculix.hpp"
+#include "simulation/peers/comparison_problems.hpp"
+#include "simulation/run/simulate.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;

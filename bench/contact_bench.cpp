@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "sim/contact/contact.hpp"
-#include "sim/reference_problems.hpp"
+#include "simulation/contact/contact.hpp"
+#include "simulation/peers/reference_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;

@@ -4,12 +4,12 @@
 
 #include <filesystem>
 
-#include "core/files.hpp"
-#include "core/progress.hpp"
-#include "mesh/mesher.hpp"
-#include "mesh/tet_file.hpp"
-#include "mesh/tet_writer.hpp"
-#include "sim/reference_problems.hpp"
+#include "base/core/files.hpp"
+#include "base/core/progress.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "geometry/files/tet_writer.hpp"
+#include "geometry/mesher/mesher.hpp"
+#include "simulation/peers/reference_problems.hpp"
 
 using namespace pliant;
 

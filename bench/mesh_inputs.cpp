@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/files.hpp"
-#include "mesh/mesh_report.hpp"
-#include "mesh/mesher.hpp"
-#include "mesh/surface_file.hpp"
-#include "threemf/read_3mf.hpp"
+#include "base/core/files.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/mesh_report.hpp"
+#include "geometry/mesher/mesher.hpp"
+#include "geometry/threemf/read_3mf.hpp"
 
 using namespace pliant;
 

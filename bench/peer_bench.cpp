@@ -14,11 +14,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/core/files.hpp"
+#include "base/zip/zip_file.hpp"
 #include "bumpy_ball.hpp"
-#include "core/files.hpp"
-#include "job/png.hpp"
-#include "mesh/surface_file.hpp"
-#include "zip/zip_file.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "printing/job/png.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;

@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "plan/check.hpp"
-#include "plan/plan.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/plan.hpp"
 
 using namespace pliant;
 

@@ -2,11 +2,11 @@
 
 #include <numeric>
 
-#include "mesh/tet_file.hpp"
-#include "sim/actuated_space.hpp"
-#include "sim/attach.hpp"
-#include "sim/loads.hpp"
-#include "sim/reference_problems.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "simulation/actuators/attach.hpp"
+#include "simulation/actuators/loads.hpp"
+#include "simulation/elements/actuated_space.hpp"
+#include "simulation/peers/reference_problems.hpp"
 
 namespace pliant::bench {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/model.hpp"
+#include "simulation/model/model.hpp"
 
 namespace pliant::bench {
 

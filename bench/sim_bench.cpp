@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "problems.hpp"
-#include "sim/simulate.hpp"
+#include "simulation/run/simulate.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;

@@ -1,11 +1,11 @@
 // Speed of slicing and of encoding layer images, on all cores that the process may use.
 #include <benchmark/benchmark.h>
 
+#include "base/core/parallel.hpp"
+#include "base/core/progress.hpp"
 #include "bumpy_ball.hpp"
-#include "core/parallel.hpp"
-#include "core/progress.hpp"
-#include "job/job.hpp"
-#include "slice/slicer.hpp"
+#include "printing/job/job.hpp"
+#include "printing/slice/slicer.hpp"
 
 using namespace pliant;
 

@@ -17,11 +17,11 @@
 #include <optional>
 #include <string>
 
-#include "core/files.hpp"
+#include "base/core/files.hpp"
+#include "presentation/draw/plot.hpp"
 #include "problems.hpp"
-#include "report/plot.hpp"
-#include "sim/calculix.hpp"
-#include "sim/simulate.hpp"
+#include "simulation/peers/calculix.hpp"
+#include "simulation/run/simulate.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;

@@ -2,7 +2,7 @@
 // 0.1 mm: are all islands held, by how much material?
 //     pliant_supports FILE.stl...
 // An island is what Pliant's own inspection calls so, in the images of either program. Volumes are light in the images.
-#include "slice/supports.hpp"
+#include "printing/slice/supports.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -11,12 +11,12 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/files.hpp"
-#include "job/image_stack.hpp"
-#include "mesh/surface_file.hpp"
-#include "slice/inspect.hpp"
-#include "slice/place.hpp"
-#include "slice/slicer.hpp"
+#include "base/core/files.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "printing/job/image_stack.hpp"
+#include "printing/slice/inspect.hpp"
+#include "printing/slice/place.hpp"
+#include "printing/slice/slicer.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;

@@ -2,7 +2,7 @@
 #   cmake -DOUTPUT=x.cpp -DFOLDER=data/materials -P EmbedMaterials.cmake
 file(GLOB files "${FOLDER}/*.toml")
 list(SORT files)
-set(text "// Made by cmake/EmbedMaterials.cmake.\n#include \"robot/material_library.hpp\"\n\n")
+set(text "// Made by cmake/EmbedMaterials.cmake.\n#include \"robot/file/material_library.hpp\"\n\n")
 string(APPEND text "namespace pliant::robot {\n\nstd::span<const LibraryFile> library_files() {\n")
 string(APPEND text "    static constexpr LibraryFile files[] = {\n")
 foreach(file IN LISTS files)

@@ -32,15 +32,7 @@ function(pliant_find_plain target header library)
   target_link_libraries(${target} INTERFACE ${${target}_LIBRARY})
 endfunction()
 
-pliant_find_plain(gmsh gmshc.h gmsh)
-
-# Gmsh is not linked but loaded when it is needed (src/mesh/gmsh_library.hpp): under the name that the loader knows.
-execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${gmsh_LIBRARY} OUTPUT_VARIABLE gmsh_headers COMMAND_ERROR_IS_FATAL ANY)
-string(REGEX MATCH "SONAME +([^ \n]+)" gmsh_soname "${gmsh_headers}")
-add_library(gmsh_when_needed INTERFACE)
-target_include_directories(gmsh_when_needed SYSTEM INTERFACE ${gmsh_INCLUDE})
-target_compile_definitions(gmsh_when_needed INTERFACE PLIANT_GMSH_LIBRARY="${CMAKE_MATCH_1}")
-target_link_libraries(gmsh_when_needed INTERFACE ${CMAKE_DL_LIBS})
+pliant_find_plain(gmsh gmsh.h gmsh)
 pliant_find_plain(civetweb civetweb.h civetweb)
 
 # Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose

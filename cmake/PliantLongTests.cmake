@@ -1,7 +1,7 @@
 # The tests that take over some 20 s on two cores: they get the label `long`.
 set(PLIANT_LONG_TESTS
-  sim/random_programs
-  sim/peer/calculix
+  simulation/run/random_programs
+  simulation/peers/peer/calculix
   studio/page
   studio/print_page
   studio/true_page
@@ -9,7 +9,7 @@ set(PLIANT_LONG_TESTS
   examples/cable_gripper/make
   examples/printed_as_drawn
   examples/gripper_holds_a_ball
-  robot/reference/real_mesh
+  simulation/scene/reference/real_mesh
   document/docs/tutorial
   document/examples/printed/README
 )

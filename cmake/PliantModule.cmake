@@ -1,14 +1,19 @@
-# One recipe for every module: a static library pliant_<name> and, where it has tests, one test program.
+# One recipe for every module: the folder src/WING/ROOM is the static library pliant_WING_ROOM, made of its .cpp files,
+# and where it has tests, one test program.
 #
-#   pliant_module(NAME core SOURCES a.cpp USES <libraries that the headers need> PRIVATE_USES <the rest>
-#                 TESTS a_test.cpp REFERENCE_TESTS a_reference_test.cpp PEER_TESTS a_peer_test.cpp
-#                 TEST_USES <libraries of the tests>)
+#   pliant_module(USES <what its headers need> PRIVATE_USES <the rest> TEST_USES <more, for its tests>
+#                 SOURCES <generated files> EXCEPT <files of other targets of this folder>
+#                 QUICK: compiled quickly, see below; PLAIN: without what the others share)
 #
-# Each test file is one CTest entry. A reference test reads the folder that PLIANT_REFERENCE_DATA names and is
-# reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp). A peer test
-# runs CalculiX (ccx) beside Pliant, meshio_peer_test.cpp meshio, display_peer_test.cpp Xvfb, and is skipped likewise
-# where it is not installed. With PLIANT_NO_SKIPS=1 they fail instead.
-
+# Other modules are named by their folders, WING/ROOM; everything else is the name of a target. A module sees the
+# headers of what it names, and no others: there is no common include folder, only one for each module that shows that
+# module alone (pliant_show). tools/check_arrows says more about the order.
+#
+# Each test file is one CTest entry. x_reference_test.cpp reads the folder that PLIANT_REFERENCE_DATA names and is
+# reported as skipped, with the reason, where the variable is not set (exit status 77, see test_main.cpp). x_peer_test.cpp
+# runs another program beside Pliant (CalculiX; meshio and Xvfb by the names of the files) and is skipped likewise where
+# it is not installed. With PLIANT_NO_SKIPS=1 they fail instead.
+#
 # Every entry of CTest has a label for its kind (unit, reference, peer, document, web, example, print, fuzz), and those
 # over some 20 s, which PliantLongTests.cmake lists, the label `long`: ctest -L unit, ctest -LE long.
 
@@ -24,9 +29,9 @@ function(pliant_label test kind)
 endfunction()
 
 add_library(pliant_flags INTERFACE)
-target_include_directories(pliant_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 target_compile_options(pliant_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>) # false alarms of GCC 12
+                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # false alarms of GCC 12
+                                              $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # what ccache asks for
 if(PLIANT_SANITIZE)
   target_compile_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -g)
   target_link_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE})
@@ -35,44 +40,138 @@ if(PLIANT_FUZZ)
   target_compile_options(pliant_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-function(pliant_module)
-  cmake_parse_arguments(M "" "NAME" "SOURCES;USES;PRIVATE_USES;TESTS;REFERENCE_TESTS;PEER_TESTS;TEST_USES" ${ARGN})
-  set(library pliant_${M_NAME})
-  add_library(${library} STATIC ${M_SOURCES})
-  target_link_libraries(${library} PUBLIC pliant_flags ${M_USES} PRIVATE ${M_PRIVATE_USES})
-  if(PLIANT_TESTS AND (M_TESTS OR M_REFERENCE_TESTS OR M_PEER_TESTS))
-    pliant_test_program(${M_NAME} "${M_TESTS}" "${M_REFERENCE_TESTS}" "${library};${M_TEST_USES}" ${M_PEER_TESTS})
+# What compiling costs. A full optimisation (-O3) is for rooms in which people wait for the processor; those marked QUICK
+# and all tests make do with -O1, which the compiler finishes in a third less time. The standard library, fmt and, in
+# tests, doctest are parsed once for all that is compiled alike. PLIANT_PRECOMPILE=OFF shows what a file forgot to include.
+option(PLIANT_PRECOMPILE "Parse the standard library once instead of once for every file" ON)
+set(pliant_quick_flags $<$<CONFIG:Release>:-O1>)
+
+function(pliant_headers name)
+  add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE pliant_flags fmt::fmt tl::expected Threads::Threads)
+  target_precompile_headers(${name} PRIVATE
+    <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numeric> <optional>
+    <set> <span> <sstream> <string> <string_view> <tuple> <utility> <variant> <vector> <fmt/format.h> <tl/expected.hpp>)
+endfunction()
+if(PLIANT_PRECOMPILE)
+  pliant_headers(pliant_headers_full)
+  pliant_headers(pliant_headers_quick)
+  target_compile_options(pliant_headers_quick PRIVATE ${pliant_quick_flags})
+  if(PLIANT_TESTS)
+    pliant_headers(pliant_headers_test)
+    target_compile_options(pliant_headers_test PRIVATE ${pliant_quick_flags})
+    target_link_libraries(pliant_headers_test PRIVATE doctest::doctest)
+    target_precompile_headers(pliant_headers_test PRIVATE <doctest/doctest.h>)
+  endif()
+endif()
+
+# pliant_compile(TARGET full|quick|test): how it is compiled.
+function(pliant_compile target kind)
+  if(NOT kind STREQUAL "full")
+    target_compile_options(${target} PRIVATE ${pliant_quick_flags})
+  endif()
+  if(PLIANT_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM pliant_headers_${kind})
   endif()
 endfunction()
 
-function(pliant_test_program name tests reference_tests libraries) # then the peer tests
-  set(program pliant_${name}_test)
-  add_executable(${program} ${tests} ${reference_tests} ${ARGN} ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
-  target_link_libraries(${program} PRIVATE ${libraries} doctest::doctest)
-  foreach(file IN LISTS tests)
-    string(REGEX REPLACE "_test\\.cpp$" "" stem ${file})
-    add_test(NAME ${name}/${stem} COMMAND ${program} --source-file=*/${file} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    set_tests_properties(${name}/${stem} PROPERTIES TIMEOUT 600)
-    pliant_label(${name}/${stem} unit)
-  endforeach()
-  foreach(file IN LISTS reference_tests)
-    string(REGEX REPLACE "_reference_test\\.cpp$" "" stem ${file})
-    add_test(NAME ${name}/reference/${stem} COMMAND ${program} --reference --source-file=*/${file}
-             WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    set_tests_properties(${name}/reference/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
-    pliant_label(${name}/reference/${stem} reference)
-  endforeach()
-  foreach(file IN LISTS ARGN)
-    string(REGEX REPLACE "_peer_test\\.cpp$" "" stem ${file})
-    set(peer ccx)
-    if(stem STREQUAL "meshio")
-      set(peer meshio)
-    elseif(stem STREQUAL "display")
-      set(peer Xvfb)
+# The targets of a list of names: pliant_base_core for base/core, all others as they are.
+function(pliant_targets result)
+  set(targets)
+  foreach(name IN LISTS ARGN)
+    if(name MATCHES "^[a-z0-9_]+/[a-z0-9_]+$")
+      string(REPLACE "/" "_" name pliant_${name})
     endif()
-    add_test(NAME ${name}/peer/${stem} COMMAND ${program} --peer=${peer} --source-file=*/${file}
-             WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    set_tests_properties(${name}/peer/${stem} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
-    pliant_label(${name}/peer/${stem} peer)
+    list(APPEND targets ${name})
+  endforeach()
+  set(${result} ${targets} PARENT_SCOPE)
+endfunction()
+
+# target_link_libraries with names as above: pliant_link(TARGET PUBLIC base/core PRIVATE hwy::hwy).
+function(pliant_link target)
+  pliant_targets(libraries ${ARGN})
+  target_link_libraries(${target} ${libraries})
+endfunction()
+
+# Lets users of `target` include "WING/ROOM/..." of this folder and of no other.
+function(pliant_show target folder)
+  string(REPLACE "/" "_" name ${folder})
+  set(view ${PROJECT_BINARY_DIR}/see/${name})
+  cmake_path(GET folder PARENT_PATH wing)
+  file(MAKE_DIRECTORY ${view}/${wing})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${folder} ${view}/${folder} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${view})
+endfunction()
+
+# A further library of a module's folder.
+function(pliant_part name)
+  cmake_parse_arguments(M "QUICK;PLAIN" "" "SOURCES;USES;PRIVATE_USES" ${ARGN})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/src OUTPUT_VARIABLE folder)
+  add_library(${name} STATIC ${M_SOURCES})
+  pliant_show(${name} ${folder})
+  pliant_link(${name} PUBLIC pliant_flags ${M_USES} PRIVATE ${M_PRIVATE_USES})
+  if(M_QUICK)
+    pliant_compile(${name} quick)
+  elseif(NOT M_PLAIN)
+    pliant_compile(${name} full)
+  endif()
+endfunction()
+
+function(pliant_module)
+  cmake_parse_arguments(M "QUICK;PLAIN" "" "SOURCES;EXCEPT;USES;PRIVATE_USES;TEST_USES" ${ARGN})
+  set(kind)
+  foreach(option IN ITEMS QUICK PLAIN)
+    if(M_${option})
+      set(kind ${option})
+    endif()
+  endforeach()
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/src OUTPUT_VARIABLE folder)
+  pliant_targets(library ${folder})
+  file(GLOB files RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
+  set(tests ${files})
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(FILTER files EXCLUDE REGEX "^test_.*|_test\\.cpp$")
+  foreach(file IN LISTS M_EXCEPT)
+    list(REMOVE_ITEM files ${file})
+  endforeach()
+  pliant_part(${library} ${kind} SOURCES ${files} ${M_SOURCES} USES ${M_USES} PRIVATE_USES ${M_PRIVATE_USES})
+  if(PLIANT_TESTS AND tests)
+    pliant_test_program(${folder} TESTS ${tests} USES ${library} ${M_PRIVATE_USES} ${M_TEST_USES})
+  endif()
+endfunction()
+
+# pliant_test_program(WING/ROOM TESTS a_test.cpp ... USES <what they need>): one program, an entry for each file.
+function(pliant_test_program folder)
+  cmake_parse_arguments(T "" "" "TESTS;USES" ${ARGN})
+  string(REPLACE "/" "_" program pliant_${folder}_test)
+  add_executable(${program} ${T_TESTS} ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
+  pliant_link(${program} PRIVATE pliant_flags ${T_USES} doctest::doctest)
+  if(NOT "CGAL::CGAL" IN_LIST T_USES) # its flags are not those of the shared headers
+    pliant_compile(${program} test)
+  endif()
+  add_dependencies(${program} pliant_mesh)
+  foreach(file IN LISTS T_TESTS)
+    string(REGEX REPLACE "_test\\.cpp$" "" stem ${file})
+    set(name ${folder}/${stem})
+    set(options)
+    set(kind unit)
+    if(stem MATCHES "^(.*)_reference$")
+      set(kind reference)
+      set(name ${folder}/reference/${CMAKE_MATCH_1})
+      set(options --reference)
+    elseif(stem MATCHES "^(.*)_peer$")
+      set(kind peer)
+      set(name ${folder}/peer/${CMAKE_MATCH_1})
+      set(peer ccx)
+      if(CMAKE_MATCH_1 STREQUAL "meshio")
+        set(peer meshio)
+      elseif(CMAKE_MATCH_1 STREQUAL "display")
+        set(peer Xvfb)
+      endif()
+      set(options --peer=${peer})
+    endif()
+    add_test(NAME ${name} COMMAND ${program} ${options} --source-file=*/${file} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
+    pliant_label(${name} ${kind})
   endforeach()
 endfunction()

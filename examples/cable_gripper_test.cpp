@@ -1,9 +1,9 @@
 // examples/cable_gripper with expected numbers. They are this program's own on this mesh (4 mm), to notice changes; how
-// the same solver stands against CalculiX is in src/sim/cable_reference_test.cpp.
+// the same solver stands against CalculiX is in src/simulation/run/cable_reference_test.cpp.
 #include <doctest/doctest.h>
 
-#include "core/near.hpp"
-#include "robot/test_run.hpp"
+#include "base/core/near.hpp"
+#include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
 

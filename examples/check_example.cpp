@@ -13,9 +13,11 @@
 #include <string_view>
 #include <vector>
 
-#include "report/summary.hpp"
-#include "robot/build.hpp"
-#include "sim/simulate.hpp"
+#include "presentation/report/summary.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_model.hpp"
 
 using namespace pliant;
 using Json = nlohmann::ordered_json;

@@ -4,8 +4,9 @@
 
 #include <cmath>
 
-#include "robot/test_run.hpp"
-#include "sim/fields.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/run/fields.hpp"
+#include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
 

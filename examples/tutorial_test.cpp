@@ -2,8 +2,8 @@
 // changes).
 #include <doctest/doctest.h>
 
-#include "core/near.hpp"
-#include "robot/test_run.hpp"
+#include "base/core/near.hpp"
+#include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
 

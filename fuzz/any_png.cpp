@@ -1,6 +1,6 @@
 // PNG images of any kind, as stacks of other programs hold them.
 #include "input.hpp"
-#include "job/png.hpp"
+#include "printing/job/png.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto found = pliant::job::any_png_size(as_text(data, size), "fuzz.png");

@@ -1,7 +1,7 @@
 // Whole jobs: libzip reads files only.
 #include "file.hpp"
 #include "input.hpp"
-#include "job/job.hpp"
+#include "printing/job/job.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const TemporaryFile file(as_text(data, size), ".zip");

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "input.hpp"
-#include "robot/robot.hpp"
+#include "robot/file/robot_file.hpp"
 
 namespace {
 

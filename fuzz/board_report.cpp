@@ -1,4 +1,4 @@
-#include "machine/board_report.hpp"
+#include "printing/machine/board_report.hpp"
 
 #include "input.hpp"
 

@@ -1,12 +1,12 @@
 // What a page or a program asks of a running host over HTTP: a method, a path and a body a line, three to a request.
 // The controller is one that answers well.
-#include "host/control_api.hpp"
+#include "printing/host/control_api.hpp"
 
 #include <string>
 #include <utility>
 
-#include "host/test_devices.hpp"
 #include "input.hpp"
+#include "printing/host/test_devices.hpp"
 #include "tower.hpp"
 
 namespace {

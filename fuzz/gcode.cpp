@@ -1,5 +1,5 @@
 // Single lines of G-code, and the host's directives in its comments.
-#include "machine/gcode.hpp"
+#include "printing/machine/gcode.hpp"
 
 #include "input.hpp"
 

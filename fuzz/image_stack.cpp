@@ -1,5 +1,5 @@
 // Layer images of other programs in a zip file: .sl1, .cws and their like.
-#include "job/image_stack.hpp"
+#include "printing/job/image_stack.hpp"
 
 #include "file.hpp"
 #include "input.hpp"

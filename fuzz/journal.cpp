@@ -1,12 +1,12 @@
 // A journal of any bytes: what can be read of it must give facts or a reason, and where a print would go on from there.
-#include "host/journal.hpp"
+#include "printing/host/journal.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "host/journal_facts.hpp"
-#include "host/resume_point.hpp"
 #include "input.hpp"
+#include "printing/host/journal_facts.hpp"
+#include "printing/host/resume_point.hpp"
 #include "tower.hpp"
 
 namespace {

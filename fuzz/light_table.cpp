@@ -1,5 +1,5 @@
-#include "host/test_patterns.hpp"
 #include "input.hpp"
+#include "printing/host/projector_patterns.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto table = pliant::host::parse_light_table(as_text(data, size), "fuzz.txt");

@@ -1,5 +1,5 @@
 // A controller that says anything at all: the host's link must come to an end, and say why where it does not like it.
-#include "host/link.hpp"
+#include "printing/wire/link.hpp"
 
 #include <algorithm>
 #include <string>

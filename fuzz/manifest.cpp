@@ -1,4 +1,4 @@
-#include "job/manifest.hpp"
+#include "printing/job/manifest.hpp"
 
 #include "input.hpp"
 

@@ -1,7 +1,7 @@
 // Which format is it? The readers have targets of their own.
+#include "geometry/files/surface_file.hpp"
+#include "geometry/files/tet_file.hpp"
 #include "input.hpp"
-#include "mesh/surface_file.hpp"
-#include "mesh/tet_file.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes = as_text(data, size);

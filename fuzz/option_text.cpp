@@ -1,5 +1,5 @@
 // What options of a slice say: a number that is taken is one, and within its limits.
-#include "prepare/option_text.hpp"
+#include "printing/prepare/option_text.hpp"
 
 #include <cmath>
 #include <string>

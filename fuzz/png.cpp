@@ -1,5 +1,5 @@
 // Layer images: the size in the head is a claim, the decoder is told the size that the manifest promises.
-#include "job/png.hpp"
+#include "printing/job/png.hpp"
 
 #include "input.hpp"
 

@@ -1,4 +1,4 @@
-#include "machine/printer.hpp"
+#include "printing/machine/printer.hpp"
 
 #include "input.hpp"
 

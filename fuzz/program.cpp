@@ -1,7 +1,7 @@
 // Programs of G-code from anywhere: checked against the tower, and wherever they stand, ended safely.
 #include "input.hpp"
-#include "plan/check.hpp"
-#include "plan/safe_stop.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/safe_stop.hpp"
 #include "tower.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

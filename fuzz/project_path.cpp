@@ -4,7 +4,7 @@
 #include <string>
 
 #include "input.hpp"
-#include "studio/project_folder.hpp"
+#include "presentation/studio/project_folder.hpp"
 
 namespace {
 

@@ -1,7 +1,6 @@
 // Robot files: TOML, parameters and formulas, shapes, units; files that they name do not exist.
-#include "robot/robot.hpp"
-
 #include "input.hpp"
+#include "robot/file/robot_file.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)pliant::robot::parse_robot(as_text(data, size), "fuzz.toml", {"program.steps=2"});

@@ -1,6 +1,6 @@
 // What comes over the socket between a host and the program that holds its panel: raw bytes, and messages of any kind
 // to a panel's holder, which must be dark in the end.
-#include "host/screen_wire.hpp"
+#include "printing/screen/screen_wire.hpp"
 
 #include <fmt/format.h>
 #include <sys/socket.h>
@@ -9,7 +9,7 @@
 #include <array>
 
 #include "bytes.hpp"
-#include "host/screen_server.hpp"
+#include "printing/screen/screen_server.hpp"
 
 namespace {
 

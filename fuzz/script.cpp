@@ -1,5 +1,5 @@
 // A job's G-code as the host takes it, and when each of its steps begins.
-#include "host/script.hpp"
+#include "printing/host/script.hpp"
 
 #include "input.hpp"
 #include "tower.hpp"

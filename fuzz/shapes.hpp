@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bytes.hpp"
-#include "mesh/tri_mesh.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 
 namespace shapes {
 

@@ -1,11 +1,11 @@
 // Bodies that touch, overlap, cut through themselves or are no bodies at all, sliced: no pixel has two owners, and what
 // a layer says of its images is so.
-#include "slice/slicer.hpp"
+#include "printing/slice/slicer.hpp"
 
 #include <algorithm>
 
+#include "printing/slice/place.hpp"
 #include "shapes.hpp"
-#include "slice/place.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // STEP files. Open CASCADE, which takes them apart, is not built with sanitizers: what is looked for is what it does to
 // the program.
 #include "file.hpp"
+#include "geometry/mesher/step_file.hpp"
 #include "input.hpp"
-#include "mesh/step_file.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const TemporaryFile file(as_text(data, size), ".step");

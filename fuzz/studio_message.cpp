@@ -1,6 +1,6 @@
 // What a page says over the studio's WebSocket.
 #include "input.hpp"
-#include "studio/message.hpp"
+#include "presentation/studio/message.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)pliant::studio::parse_message(as_text(data, size));

@@ -1,6 +1,6 @@
 // What a page asks of the slicer.
 #include "input.hpp"
-#include "studio/slice_order.hpp"
+#include "presentation/studio/slice_order.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = as_text(data, size);

@@ -1,9 +1,9 @@
 // One target per reader of surfaces: PLIANT_PARSER is parse_stl, parse_obj, parse_ply or parse_off.
+#include "geometry/files/surface_file.hpp"
+#include "geometry/files/surface_mending.hpp"
+#include "geometry/repair/surface_check.hpp"
+#include "geometry/repair/surface_slivers.hpp"
 #include "input.hpp"
-#include "mesh/surface_check.hpp"
-#include "mesh/surface_file.hpp"
-#include "mesh/surface_mending.hpp"
-#include "mesh/surface_slivers.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     auto surface = pliant::mesh::PLIANT_PARSER(as_text(data, size), "fuzz.surface");

@@ -1,6 +1,6 @@
 // Tables of tensile tests, and the fit of what they hold.
-#include "calibrate/fit.hpp"
 #include "input.hpp"
+#include "simulation/calibrate/fit.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace pliant::calibrate;

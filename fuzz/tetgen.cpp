@@ -1,9 +1,9 @@
 // TetGen's two files, divided by the first byte 0.
 #include <algorithm>
 
+#include "geometry/files/tet_file.hpp"
+#include "geometry/mesh/mesh_report.hpp"
 #include "input.hpp"
-#include "mesh/mesh_report.hpp"
-#include "mesh/tet_file.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view both = as_text(data, size);

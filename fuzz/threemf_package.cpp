@@ -1,7 +1,7 @@
 // Whole 3MF files: what the zip file holds, relationships, and models that name each other.
 #include "file.hpp"
+#include "geometry/threemf/read_3mf.hpp"
 #include "input.hpp"
-#include "threemf/read_3mf.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const TemporaryFile file(as_text(data, size), ".3mf");

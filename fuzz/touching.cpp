@@ -2,9 +2,9 @@
 // which no tet is inside out and none is of a body that is not there.
 #include <string>
 
-#include "mesh/mesher.hpp"
-#include "mesh/surface_check.hpp"
-#include "mesh/touching_bodies.hpp"
+#include "geometry/mesher/mesher.hpp"
+#include "geometry/meshing/touching_bodies.hpp"
+#include "geometry/repair/surface_check.hpp"
 #include "shapes.hpp"
 
 namespace {

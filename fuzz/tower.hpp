@@ -1,7 +1,7 @@
 // The printer that targets run on.
 #pragma once
 
-#include "machine/printer.hpp"
+#include "printing/machine/printer.hpp"
 
 inline const pliant::machine::Printer& tower() {
     static const auto loaded = pliant::machine::load_printer("examples/printers/tower.toml");

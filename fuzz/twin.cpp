@@ -1,5 +1,5 @@
 // The virtual printer under arbitrary bytes on its wire, for an hour of its own time.
-#include "twin/twin.hpp"
+#include "printing/twin/twin.hpp"
 
 #include <algorithm>
 

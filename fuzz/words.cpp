@@ -1,10 +1,10 @@
 // Short words from command lines and journals: faults of the virtual printer, emergency lines, states of the machine.
 #include <string>
 
-#include "host/emergency_line.hpp"
-#include "host/journal_facts.hpp"
 #include "input.hpp"
-#include "twin/fault.hpp"
+#include "printing/host/journal_facts.hpp"
+#include "printing/twin/fault.hpp"
+#include "printing/wire/emergency_line.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view word = as_text(data, size);

@@ -8,7 +8,7 @@ function(write_missing_page why)
   file(READ ${SOURCE}/missing.html content HEX)
   string(REGEX REPLACE "(..)" "\\\\x\\1" content "${content}")
   file(WRITE ${BUILD}/page.cpp
-       "// Made by web/build.cmake.\n#include \"studio/examples.hpp\"\n\nnamespace pliant::studio {\n\n"
+       "// Made by web/build.cmake.\n#include \"presentation/studio/examples.hpp\"\n\nnamespace pliant::studio {\n\n"
        "std::span<const PageFile> page_files() {\n    static constexpr PageFile files[] = {"
        "{\"/\", \"text/html; charset=utf-8\", \"${content}\", false}};\n    return files;\n}\n\n"
        "}  // namespace pliant::studio\n")
@@ -25,7 +25,7 @@ if(NOT NODE OR NOT NPM)
 endif()
 
 file(REMOVE_RECURSE ${BUILD}/src ${BUILD}/dist)
-foreach(name src index.html package.json package-lock.json .npmrc tsconfig.json vite.config.ts embed.mjs)
+foreach(name src index.html package.json package-lock.json .npmrc tsconfig.json vite.config.ts embed.mjs notices.mjs)
   file(COPY ${SOURCE}/${name} DESTINATION ${BUILD})
 endforeach()
 
@@ -44,7 +44,8 @@ if(NOT installed STREQUAL lock)
   file(WRITE ${BUILD}/node_modules/.pliant_lock ${lock})
 endif()
 
-foreach(step "node_modules/typescript/bin/tsc;--noEmit" "node_modules/vite/bin/vite.js;build;--logLevel;warn" "embed.mjs;dist;page.cpp")
+foreach(step "node_modules/typescript/bin/tsc;--noEmit" "node_modules/vite/bin/vite.js;build;--logLevel;warn" "notices.mjs;dist/notices.txt"
+        "embed.mjs;dist;page.cpp")
   execute_process(COMMAND ${NODE} ${step} WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "building the studio's page failed: node ${step}")

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/error.hpp"
+#include "base/core/error.hpp"
 
 namespace pliant::app {
 

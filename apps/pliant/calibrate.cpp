@@ -6,13 +6,13 @@
 #include <map>
 #include <vector>
 
-#include "calibrate/elongation.hpp"
-#include "calibrate/fit.hpp"
-#include "calibrate/ratio.hpp"
+#include "base/core/files.hpp"
+#include "base/core/units.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
-#include "core/units.hpp"
-#include "report/plot.hpp"
+#include "presentation/draw/plot.hpp"
+#include "simulation/calibrate/elongation.hpp"
+#include "simulation/calibrate/fit.hpp"
+#include "simulation/calibrate/ratio.hpp"
 
 namespace pliant::app {
 namespace {

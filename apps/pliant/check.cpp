@@ -1,5 +1,5 @@
 // pliant check: is a robot, printer, job or mesh file what it should be?
-#include "plan/check.hpp"
+#include "printing/plan/check.hpp"
 
 #include <fmt/core.h>
 
@@ -10,21 +10,22 @@
 #include <string>
 #include <vector>
 
+#include "base/core/config.hpp"
+#include "base/core/counted.hpp"
+#include "base/core/files.hpp"
 #include "board.hpp"
 #include "command.hpp"
-#include "core/config.hpp"
-#include "core/counted.hpp"
-#include "core/files.hpp"
+#include "geometry/mesh/mesh_report.hpp"
+#include "geometry/open/describe_file.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "job/job.hpp"
-#include "machine/board_report.hpp"
-#include "machine/printer.hpp"
-#include "mesh/mesh_report.hpp"
-#include "operate/proved_job.hpp"
-#include "plan/safe_stop.hpp"
-#include "robot/build.hpp"
-#include "threemf/read_3mf.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/board_report.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/operate/proved_job.hpp"
+#include "printing/plan/safe_stop.hpp"
+#include "robot/bodies/build.hpp"
+#include "simulation/scene/build_model.hpp"
 
 namespace pliant::app {
 namespace {
@@ -95,20 +96,6 @@ Result<std::string> check_job(const std::string& file, const Options& options) {
     return text;
 }
 
-Result<std::string> check_3mf(const std::string& file) {
-    const Result<threemf::ThreeMf> read = threemf::read_3mf(file);
-    if (!read) return tl::unexpected(read.error());
-    std::string text = "3MF file: " + bodies(read->bodies.size());
-    for (const threemf::Body& body : read->bodies) {
-        text += body.slices.empty()
-                    ? fmt::format("\n  {} ({}): {} triangles, {:.6g} mm^3", body.name, body.material,
-                                  body.mesh_mm.triangles.size(), mesh::signed_volume(body.mesh_mm))
-                    : fmt::format("\n  {} ({}): {} slices", body.name, body.material, body.slices.size());
-    }
-    for (const std::string& warning : read->warnings) text += "\n  warning: " + warning;
-    return text;
-}
-
 /// G-code from anywhere, against the machine that is to run it.
 Result<std::string> check_program(const std::string& file, const Options& options) {
     if (options.printer.empty()) return input_error("{}: give --printer, the machine that is to run it", file);
@@ -152,7 +139,6 @@ Result<std::string> check(const std::string& file, const Options& options, Progr
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
     if (extension == ".zip") return check_job(file, options);
-    if (extension == ".3mf") return check_3mf(file);
     if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
     return mesh::describe_mesh_file(file);
 }

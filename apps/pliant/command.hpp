@@ -6,8 +6,8 @@
 #include <string>
 #include <type_traits>
 
-#include "core/error.hpp"
-#include "core/progress.hpp"
+#include "base/core/error.hpp"
+#include "base/core/progress.hpp"
 
 namespace pliant::app {
 

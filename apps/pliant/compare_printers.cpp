@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
 #include "inputs.hpp"
-#include "machine/printer.hpp"
-#include "report/printers_page.hpp"
+#include "presentation/print_report/printers_page.hpp"
+#include "printing/machine/printer.hpp"
 
 namespace pliant::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/files.hpp"
+#include "base/core/files.hpp"
 #include "interrupt.hpp"
-#include "report/convergence.hpp"
+#include "presentation/report/convergence.hpp"
 
 namespace pliant::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "command.hpp"
-#include "sim/simulate.hpp"
+#include "simulation/run/simulate.hpp"
 
 namespace pliant::app {
 

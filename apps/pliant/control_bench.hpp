@@ -11,13 +11,13 @@
 #include <optional>
 #include <string>
 
-#include "core/test_folder.hpp"
+#include "base/core/test_folder.hpp"
 #include "halves.hpp"
-#include "host/control.hpp"
-#include "host/journal.hpp"
-#include "operate/programs.hpp"
-#include "plan/plan.hpp"
-#include "twin/inspect.hpp"
+#include "printing/host/control.hpp"
+#include "printing/host/journal.hpp"
+#include "printing/operate/programs.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
 #include "twin_bench.hpp"
 
 namespace pliant::app {

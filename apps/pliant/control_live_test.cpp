@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "control_bench.hpp"
-#include "host/control_api.hpp"
-#include "host/scaled_time.hpp"
-#include "host/serial.hpp"
+#include "printing/host/control_api.hpp"
+#include "printing/twin/serve.hpp"
+#include "printing/wire/scaled_time.hpp"
+#include "printing/wire/serial.hpp"
 #include "shared_light.hpp"
-#include "twin/serve.hpp"
 
 using namespace pliant;
 using namespace pliant::app;

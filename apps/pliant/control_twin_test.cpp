@@ -7,9 +7,9 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
 #include "control_bench.hpp"
-#include "core/files.hpp"
-#include "core/near.hpp"
 
 using namespace pliant;
 using namespace pliant::app;

@@ -1,5 +1,5 @@
 // pliant export: a job's images as other programs take them.
-#include "job/export.hpp"
+#include "printing/job/export.hpp"
 
 #include <fmt/core.h>
 

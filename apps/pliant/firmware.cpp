@@ -1,18 +1,18 @@
 // pliant firmware: what the controller must be built with for a machine; and asking a board what it was built with.
-#include "machine/firmware.hpp"
+#include "printing/machine/firmware.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <filesystem>
 
+#include "base/core/files.hpp"
 #include "board.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
-#include "host/serial.hpp"
-#include "host/steady_clock.hpp"
 #include "inputs.hpp"
-#include "machine/marlin_files.hpp"
+#include "printing/machine/marlin_files.hpp"
+#include "printing/wire/serial.hpp"
+#include "printing/wire/steady_clock.hpp"
 
 namespace pliant::app {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "core/error.hpp"
-#include "job/job.hpp"
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
 
 namespace pliant::app::halves {
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 
-#include "core/config.hpp"
-#include "core/files.hpp"
-#include "core/text.hpp"
-#include "studio/examples.hpp"
+#include "base/core/config.hpp"
+#include "base/core/files.hpp"
+#include "base/core/text.hpp"
+#include "presentation/studio/examples.hpp"
+#include "robot/file/robot_file.hpp"
 
 namespace pliant::app {
 namespace {

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
-#include "job/job.hpp"
-#include "machine/printer.hpp"
-#include "operate/job_file.hpp"
-#include "operate/proved_job.hpp"
-#include "robot/robot.hpp"
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/operate/proved_job.hpp"
+#include "robot/description/robot.hpp"
 
 namespace pliant::app {
 

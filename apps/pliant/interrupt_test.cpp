@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/files.hpp"
-#include "core/test_folder.hpp"
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;

@@ -23,15 +23,15 @@
 #include <thread>
 #include <vector>
 
-#include "core/files.hpp"
-#include "core/test_folder.hpp"
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
 #include "halves.hpp"
-#include "job/png.hpp"
-#include "machine/printer.hpp"
-#include "operate/clock_file.hpp"
-#include "plan/plan.hpp"
-#include "twin/inspect.hpp"
-#include "twin/serve.hpp"
+#include "printing/job/png.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/operate/clock_file.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
+#include "printing/twin/serve.hpp"
 
 namespace {
 

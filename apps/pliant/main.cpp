@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/core/text.hpp"
 #include "command.hpp"
-#include "core/text.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "command.hpp"
-#include "robot/material_library.hpp"
+#include "robot/file/material_library.hpp"
 
 namespace pliant::app {
 namespace {

@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "base/core/files.hpp"
+#include "base/core/units.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
-#include "core/units.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "geometry/files/tet_writer.hpp"
+#include "geometry/mesh/mesh_report.hpp"
+#include "geometry/open/describe_file.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "mesh/mesh_report.hpp"
-#include "mesh/tet_file.hpp"
-#include "mesh/tet_writer.hpp"
-#include "report/mesh_picture.hpp"
-#include "robot/build.hpp"
-#include "sim/calculix_deck.hpp"
+#include "presentation/report/mesh_picture.hpp"
+#include "robot/bodies/build.hpp"
+#include "simulation/peers/calculix_deck.hpp"
+#include "simulation/scene/build_model.hpp"
 
 namespace pliant::app {
 namespace {

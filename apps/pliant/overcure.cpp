@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "operate/job_file.hpp"
-#include "twin/planned_cure.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/twin/planned_cure.hpp"
 
 namespace pliant::app {
 

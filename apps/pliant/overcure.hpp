@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
-#include "job/job.hpp"
-#include "machine/printer.hpp"
-#include "plan/plan.hpp"
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/plan/plan.hpp"
 
 namespace pliant::app {
 

@@ -1,15 +1,15 @@
 // pliant plan: what a job takes on its printer: vats, swaps, times, resin.
-#include "plan/plan.hpp"
+#include "printing/plan/plan.hpp"
 
 #include <fmt/core.h>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
 #include "inputs.hpp"
-#include "operate/job_file.hpp"
 #include "overcure.hpp"
-#include "plan/timeline.hpp"
-#include "report/plan_picture.hpp"
+#include "presentation/print_report/plan_picture.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/plan/timeline.hpp"
 #include "spray_plan.hpp"
 
 namespace pliant::app {

@@ -1,24 +1,24 @@
 // pliant print: prints a job, on a machine at a serial port or on the virtual printer, which obeys the same G-code and
 // sees the same images.
-#include "host/print.hpp"
+#include "printing/host/print.hpp"
 
 #include <fmt/core.h>
 
 #include <map>
 #include <utility>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
-#include "host/serial.hpp"
 #include "inputs.hpp"
-#include "operate/job_file.hpp"
-#include "operate/programs.hpp"
-#include "operate/proved_job.hpp"
-#include "plan/plan.hpp"
+#include "presentation/print_report/print_report.hpp"
 #include "print_live.hpp"
 #include "print_vats.hpp"
-#include "report/print_report.hpp"
-#include "twin/inspect.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/operate/programs.hpp"
+#include "printing/operate/proved_job.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
+#include "printing/wire/serial.hpp"
 #include "twin_bench.hpp"
 
 namespace pliant::app {

@@ -11,21 +11,21 @@
 #include <thread>
 #include <utility>
 
-#include "core/files.hpp"
-#include "host/control.hpp"
-#include "host/scaled_time.hpp"
-#include "host/steady_clock.hpp"
+#include "base/core/files.hpp"
 #include "interrupt.hpp"
-#include "operate/job_file.hpp"
-#include "operate/layer_command.hpp"
-#include "operate/port_station.hpp"
-#include "operate/print_job.hpp"
-#include "plan/plan.hpp"
+#include "presentation/print_report/print_report.hpp"
 #include "print_vats.hpp"
-#include "report/print_report.hpp"
+#include "printing/host/control.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/operate/layer_command.hpp"
+#include "printing/operate/port_station.hpp"
+#include "printing/operate/print_job.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
+#include "printing/twin/serve.hpp"
+#include "printing/wire/scaled_time.hpp"
+#include "printing/wire/steady_clock.hpp"
 #include "shared_light.hpp"
-#include "twin/inspect.hpp"
-#include "twin/serve.hpp"
 #include "twin_bench.hpp"
 
 namespace pliant::app {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/core/error.hpp"
 #include "command.hpp"
-#include "core/error.hpp"
-#include "twin/finding.hpp"
+#include "printing/twin/finding.hpp"
 
 namespace pliant::app {
 

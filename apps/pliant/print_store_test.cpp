@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "core/near.hpp"
-#include "core/test_text.hpp"
-#include "plan/check.hpp"
-#include "plan/plan.hpp"
-#include "plan/proof.hpp"
-#include "twin/inspect.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/plan/proof.hpp"
+#include "printing/twin/inspect.hpp"
 #include "twin_bench.hpp"
 
 using namespace pliant;

@@ -8,13 +8,13 @@
 #include <map>
 #include <random>
 
-#include "core/near.hpp"
-#include "core/test_text.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
 #include "halves.hpp"
-#include "operate/programs.hpp"
-#include "plan/check.hpp"
-#include "plan/plan.hpp"
-#include "twin/inspect.hpp"
+#include "printing/operate/programs.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
 #include "twin_bench.hpp"
 
 using namespace pliant;

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/core/error.hpp"
 #include "command.hpp"
-#include "core/error.hpp"
-#include "plan/plan.hpp"
+#include "printing/plan/plan.hpp"
 
 namespace pliant::app {
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <thread>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
-#include "host/projector.hpp"
-#include "host/test_patterns.hpp"
 #include "inputs.hpp"
-#include "job/png.hpp"
-#include "machine/printer.hpp"
+#include "printing/host/projector_patterns.hpp"
+#include "printing/job/png.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/screen/projector.hpp"
 
 namespace pliant::app {
 namespace {

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/files.hpp"
-#include "core/test_folder.hpp"
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
 #include "document.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <optional>
 
-#include "host/devices.hpp"
-#include "twin/twin.hpp"
+#include "printing/twin/twin.hpp"
+#include "printing/wire/devices.hpp"
 
 namespace pliant::app {
 

@@ -1,5 +1,5 @@
 // pliant simulate: runs the actuation program of a robot file and writes the result folder.
-#include "sim/simulate.hpp"
+#include "simulation/run/simulate.hpp"
 
 #include <fmt/core.h>
 #include <sys/resource.h>
@@ -13,16 +13,17 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/files.hpp"
+#include "base/core/stopwatch.hpp"
 #include "command.hpp"
 #include "compare_solvers.hpp"
-#include "core/files.hpp"
-#include "core/stopwatch.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "report/results.hpp"
-#include "report/summary.hpp"
-#include "robot/build.hpp"
-#include "sim/fields.hpp"
+#include "presentation/report/results.hpp"
+#include "presentation/report/summary.hpp"
+#include "robot/bodies/build.hpp"
+#include "simulation/run/fields.hpp"
+#include "simulation/scene/build_model.hpp"
 
 namespace pliant::app {
 namespace {

@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "base/core/counted.hpp"
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/counted.hpp"
-#include "core/files.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "job/png.hpp"
-#include "operate/job_file.hpp"
 #include "overcure.hpp"
-#include "plan/plan.hpp"
-#include "prepare/slice_job.hpp"
-#include "report/job_picture.hpp"
+#include "presentation/print_report/job_picture.hpp"
+#include "printing/job/png.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/prepare/slice_job.hpp"
 
 namespace pliant::app {
 namespace {

@@ -17,13 +17,13 @@
 #include <string>
 #include <thread>
 
-#include "host/link.hpp"
-#include "host/serial.hpp"
-#include "host/steady_clock.hpp"
-#include "machine/gcode.hpp"
-#include "plan/plan.hpp"
-#include "twin/inspect.hpp"
-#include "twin/serve.hpp"
+#include "printing/machine/gcode.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/twin/inspect.hpp"
+#include "printing/twin/serve.hpp"
+#include "printing/wire/link.hpp"
+#include "printing/wire/serial.hpp"
+#include "printing/wire/steady_clock.hpp"
 #include "twin_bench.hpp"
 
 namespace {

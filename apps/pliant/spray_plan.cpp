@@ -6,11 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/files.hpp"
-#include "report/wash_picture.hpp"
-#include "twin/runs.hpp"
-#include "twin/wet_part.hpp"
-#include "wash/run_off.hpp"
+#include "base/core/files.hpp"
+#include "presentation/print_report/wash_picture.hpp"
+#include "printing/twin/runs.hpp"
+#include "printing/twin/wet_part.hpp"
+#include "printing/wash/run_off.hpp"
 
 namespace pliant::app {
 namespace {

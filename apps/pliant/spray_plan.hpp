@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "core/error.hpp"
-#include "job/job.hpp"
-#include "machine/printer.hpp"
-#include "wash/best_spray.hpp"
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/wash/best_spray.hpp"
 
 namespace pliant::app {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "command.hpp"
-#include "studio/access.hpp"
-#include "studio/server.hpp"
+#include "presentation/studio/access.hpp"
+#include "presentation/studio/server.hpp"
 
 namespace pliant::app {
 namespace {

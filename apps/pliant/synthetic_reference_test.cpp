@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/near.hpp"
-#include "plan/order.hpp"
-#include "slice/place.hpp"
-#include "slice/slicer.hpp"
-#include "threemf/read_3mf.hpp"
+#include "base/core/near.hpp"
+#include "geometry/threemf/read_3mf.hpp"
+#include "printing/plan/order.hpp"
+#include "printing/slice/place.hpp"
+#include "printing/slice/slicer.hpp"
 
 using namespace pliant;
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "job/manifest.hpp"
-#include "job/png.hpp"
-#include "job/sha256.hpp"
-#include "machine/gcode.hpp"
-#include "zip/zip_file.hpp"
+#include "base/zip/zip_file.hpp"
+#include "printing/job/manifest.hpp"
+#include "printing/job/png.hpp"
+#include "printing/job/sha256.hpp"
+#include "printing/machine/gcode.hpp"
 
 namespace pliant::app::tamper {
 namespace {

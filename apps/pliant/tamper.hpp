@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "job/job.hpp"
-#include "machine/printer.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
 
 namespace pliant::app::tamper {
 

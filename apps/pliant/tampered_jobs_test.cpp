@@ -7,13 +7,13 @@
 #include <random>
 #include <set>
 
-#include "core/files.hpp"
-#include "core/test_folder.hpp"
-#include "core/test_text.hpp"
-#include "operate/print_job.hpp"
-#include "operate/proved_job.hpp"
-#include "prepare/slice_job.hpp"
-#include "prepare/test_order.hpp"
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "printing/operate/print_job.hpp"
+#include "printing/operate/proved_job.hpp"
+#include "printing/prepare/slice_job.hpp"
+#include "printing/prepare/test_order.hpp"
 #include "tamper.hpp"
 
 using namespace pliant;

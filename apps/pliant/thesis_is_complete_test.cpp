@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files.hpp"
+#include "base/core/files.hpp"
 #include "document.hpp"
 
 using namespace pliant;

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
-#include "core/files.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "job/png.hpp"
-#include "machine/printer.hpp"
-#include "operate/clock_file.hpp"
-#include "operate/job_file.hpp"
-#include "twin/serve.hpp"
+#include "printing/job/png.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/operate/clock_file.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/twin/serve.hpp"
 
 namespace pliant::app {
 namespace {

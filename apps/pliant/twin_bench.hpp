@@ -6,9 +6,9 @@
 //     twin::inspect(bench.twin(), manifest, images);
 #pragma once
 
-#include "host/devices.hpp"
-#include "host/print.hpp"
-#include "twin/twin.hpp"
+#include "printing/host/print.hpp"
+#include "printing/twin/twin.hpp"
+#include "printing/wire/devices.hpp"
 
 namespace pliant::app {
 

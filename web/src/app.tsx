@@ -47,6 +47,11 @@ function Open() {
               {name}
             </button>
           ))}
+          <p class="quiet">
+            <a href="/notices.txt" target="_blank" rel="noopener" data-testid="notices">
+              Licences of this page
+            </a>
+          </p>
         </div>
       )}
     </div>

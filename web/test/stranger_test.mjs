@@ -101,3 +101,17 @@ test('a studio that is gone is said to be gone, in the middle of a print too', a
   await page.getByTestId('emergency').click();
   await told(page, /The studio does not answer/);
 });
+
+test('the page carries the licences of what it is made of', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('open').click();
+  const address = await page.getByTestId('notices').evaluate((link) => link.href);
+  const answer = await page.request.get(address);
+  assert.equal(answer.status(), 200);
+  const text = await answer.text();
+  for (const name of ['preact', '@preact/signals', '@preact/signals-core', 'three', 'uplot']) {
+    assert.match(text, new RegExp(`^${name} [0-9.]+ \\(MIT\\)$`, 'm'));
+  }
+  assert.ok(text.match(/Permission is hereby granted/g).length >= 5);
+});

@@ -1,4 +1,4 @@
-// The field colours of src/report/colour.cpp: dark violet over teal to yellow, lightness rising evenly.
+// The field colours of src/presentation/draw/colour.cpp: dark violet over teal to yellow, lightness rising evenly.
 const stops = [
   [0.267, 0.004, 0.329],
   [0.271, 0.2, 0.475],

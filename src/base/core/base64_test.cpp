@@ -1,0 +1,28 @@
+#include "base/core/base64.hpp"
+
+#include <doctest/doctest.h>
+
+using pliant::base64;
+
+TEST_CASE("base64 gives the values of RFC 4648, section 10") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foo") == "Zm9v");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+}
+
+TEST_CASE("base64 takes bytes above 127 and zeros") {
+    CHECK(base64(std::string_view("\xff\xfe\x00", 3)) == "//4A");
+}
+
+TEST_CASE("base64 is read back, piece after piece, and wrong signs are noticed") {
+    std::string all;
+    for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
+    CHECK(pliant::base64_decoded(base64(all), 256) == all);
+    CHECK(pliant::base64_decoded("Zg==\n Zm9v", 4) == "ffoo");
+    CHECK(pliant::base64_decoded("Zm9vYmFy", 2) == "fo");
+    CHECK_FALSE(pliant::base64_decoded("Zm9v", 4));
+    CHECK_FALSE(pliant::base64_decoded("Zm<9v", 3));
+    CHECK_FALSE(pliant::base64_decoded("Zm9v", std::size_t{1} << 60));
+}

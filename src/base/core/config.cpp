@@ -1,0 +1,327 @@
+#include "base/core/config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/core/text.hpp"
+
+namespace pliant::config {
+namespace {
+
+std::string_view type_name(const Value& value) {
+    constexpr std::string_view names[] = {"true or false", "a whole number", "a number", "a text", "a list", "a table"};
+    return names[value.data.index()];
+}
+
+const Value* find_entry(const Value& table, std::string_view key) {
+    for (const auto& [name, value] : std::get<Table>(table.data)) {
+        if (name == key) return &value;
+    }
+    return nullptr;
+}
+
+std::optional<double> as_number(const Value& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return static_cast<double>(*whole);
+    if (const auto* real = std::get_if<double>(&value.data); real != nullptr && std::isfinite(*real)) return *real;
+    return std::nullopt;
+}
+
+std::optional<std::vector<double>> as_numbers(const Value& value) {
+    const auto* list = std::get_if<Array>(&value.data);
+    if (list == nullptr) return std::nullopt;
+    std::vector<double> numbers;
+    for (const Value& item : *list) {
+        const auto number = as_number(item);
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+std::optional<Vec3> as_vector(const Value& value) {
+    const auto numbers = as_numbers(value);
+    if (!numbers || numbers->size() != 3) return std::nullopt;
+    return Vec3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+}  // namespace
+
+void Problems::add(int line, std::string_view key, std::string_view text) {
+    found_.push_back({file_, line, std::string(key), std::string(text)});
+}
+
+Status Problems::status() const {
+    if (found_.empty()) return {};
+    std::vector<Diagnostic> sorted = found_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    // More than a screenful helps nobody: with so much wrong it is the wrong file, or one slip near the top.
+    constexpr std::size_t most = 12;
+    if (sorted.size() > most) {
+        const std::size_t more = sorted.size() - most;
+        sorted.resize(most);
+        sorted.push_back({file_, 0, "", fmt::format("and {} problems more", more)});
+    }
+    return tl::unexpected(error_of(Cause::input, std::move(sorted)));
+}
+
+Reader::Reader(const Value& table, Problems& problems, std::string path)
+    : table_(&table), problems_(&problems), path_(std::move(path)), marks_(std::make_shared<Marks>()) {
+    static const Value empty{};
+    if (!std::holds_alternative<Table>(table.data)) {
+        problems.add(table.line, path_, fmt::format("is {}, a table is needed", type_name(table)));
+        table_ = &empty;
+    }
+}
+
+std::string Reader::key_path(std::string_view key) const {
+    if (key.empty()) return path_;
+    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+bool Reader::has(std::string_view key) const {
+    return find_entry(*table_, key) != nullptr;
+}
+
+int Reader::line_of(std::string_view key) const {
+    const Value* value = find_entry(*table_, key);
+    return value != nullptr ? value->line : table_->line;
+}
+
+std::vector<std::string> Reader::keys() const {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : std::get<Table>(table_->data)) names.push_back(name);
+    return names;
+}
+
+void Reader::problem(std::string_view key, std::string_view text) {
+    if (!missing_) problems_->add(line_of(key), key_path(key), text);
+}
+
+const Value* Reader::find(std::string_view key) {
+    if (std::find(marks_->asked.begin(), marks_->asked.end(), key) == marks_->asked.end()) {
+        marks_->asked.emplace_back(key);
+    }
+    return find_entry(*table_, key);
+}
+
+const Value* Reader::find_required(std::string_view key, std::string_view what) {
+    const Value* value = find(key);
+    if (value == nullptr) problem("", fmt::format("\"{}\" is missing; it is {}", key, what));
+    return value;
+}
+
+const Value* Reader::raw(std::string_view key) {
+    return find(key);
+}
+
+std::string Reader::text(std::string_view key) {
+    return find_required(key, "a text") != nullptr ? text(key, "") : std::string();
+}
+
+std::string Reader::text(std::string_view key, std::string_view fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return std::string(fallback);
+    if (const auto* string = std::get_if<std::string>(&value->data)) return *string;
+    problem(key, fmt::format("is {}, a text in quotes is needed", type_name(*value)));
+    return std::string(fallback);
+}
+
+double Reader::number(std::string_view key) {
+    return find_required(key, "a number") != nullptr ? number(key, 0.0) : 0.0;
+}
+
+double Reader::number(std::string_view key, double fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return fallback;
+    if (const auto found = as_number(*value)) return *found;
+    problem(key, fmt::format("is {}, a finite number is needed", type_name(*value)));
+    return fallback;
+}
+
+std::int64_t Reader::integer(std::string_view key) {
+    return find_required(key, "a whole number") != nullptr ? integer(key, 0) : 0;
+}
+
+std::int64_t Reader::integer(std::string_view key, std::int64_t fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return fallback;
+    if (const auto* whole = std::get_if<std::int64_t>(&value->data)) return *whole;
+    // A formula gives a real number even where it is whole.
+    if (const auto real = as_number(*value); real && *real == std::floor(*real) && std::fabs(*real) < 1e15) {
+        return static_cast<std::int64_t>(*real);
+    }
+    problem(key, fmt::format("is {}, a whole number is needed", type_name(*value)));
+    return fallback;
+}
+
+bool Reader::boolean(std::string_view key, bool fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return fallback;
+    if (const auto* flag = std::get_if<bool>(&value->data)) return *flag;
+    problem(key, fmt::format("is {}, true or false is needed", type_name(*value)));
+    return fallback;
+}
+
+double Reader::quantity(std::string_view key, Dimension dimension) {
+    return find_required(key, describe(dimension)) != nullptr ? quantity(key, dimension, 0.0) : 0.0;
+}
+
+double Reader::quantity(std::string_view key, Dimension dimension, double fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return fallback;
+    if (const auto* string = std::get_if<std::string>(&value->data)) {
+        const Result<double> parsed = parse_quantity(*string, dimension);
+        if (parsed) return *parsed;
+        problem(key, parsed.error().message);
+        return fallback;
+    }
+    if (const auto bare = as_number(*value)) {
+        problem(key, fmt::format("{} has no unit; write {}", *bare, describe(dimension)));
+    } else {
+        problem(key, fmt::format("is {}; write {}", type_name(*value), describe(dimension)));
+    }
+    return fallback;
+}
+
+std::vector<double> Reader::quantities(std::string_view key, Dimension dimension, std::size_t count) {
+    const Value* value = find(key);
+    std::vector<double> values(count, 0.0);
+    if (value == nullptr) return values;
+    const auto* list = std::get_if<Array>(&value->data);
+    if (list == nullptr || list->size() != count) {
+        problem(key, fmt::format("needs a list of {} values, each {}", count, describe(dimension)));
+        return values;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto* string = std::get_if<std::string>(&(*list)[i].data);
+        const Result<double> parsed =
+            string != nullptr ? parse_quantity(*string, dimension)
+                              : Result<double>(input_error("entry {} has no unit; write {}", i, describe(dimension)));
+        if (parsed)
+            values[i] = *parsed;
+        else
+            problem(key, parsed.error().message);
+    }
+    return values;
+}
+
+std::vector<double> Reader::numbers(std::string_view key, std::size_t count) {
+    const Value* value = find_required(key, "a list of numbers");
+    if (value == nullptr) return std::vector<double>(count, 0.0);
+    auto list = as_numbers(*value);
+    if (list && (count == 0 || list->size() == count)) return *list;
+    problem(key, count == 0 ? std::string("needs a list of finite numbers")
+                            : fmt::format("needs a list of {} finite numbers", count));
+    return std::vector<double>(count, 0.0);
+}
+
+std::vector<std::string> Reader::texts(std::string_view key) {
+    std::vector<std::string> list;
+    const Value* value = find(key);
+    if (value == nullptr) return list;
+    const auto* items = std::get_if<Array>(&value->data);
+    if (items == nullptr) {
+        problem(key, "needs a list of texts");
+        return list;
+    }
+    for (const Value& item : *items) {
+        if (const auto* string = std::get_if<std::string>(&item.data))
+            list.push_back(*string);
+        else
+            problem(key, fmt::format("holds {}, only texts are allowed", type_name(item)));
+    }
+    return list;
+}
+
+Vec3 Reader::vector(std::string_view key) {
+    return find_required(key, "a point [x, y, z]") != nullptr ? vector(key, Vec3{}) : Vec3{};
+}
+
+Vec3 Reader::vector(std::string_view key, const Vec3& fallback) {
+    const Value* value = find(key);
+    if (value == nullptr) return fallback;
+    if (const auto vector = as_vector(*value)) return *vector;
+    problem(key, "needs three finite numbers [x, y, z]");
+    return fallback;
+}
+
+std::vector<Vec3> Reader::vectors(std::string_view key) {
+    std::vector<Vec3> points;
+    const Value* value = find_required(key, "a list of points [[x, y, z], ...]");
+    if (value == nullptr) return points;
+    const auto* list = std::get_if<Array>(&value->data);
+    if (list == nullptr) {
+        problem(key, "needs a list of points [[x, y, z], ...]");
+        return points;
+    }
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        if (const auto point = as_vector((*list)[i]))
+            points.push_back(*point);
+        else
+            problem(key, fmt::format("entry {} is not a point [x, y, z] of finite numbers", i + 1));
+    }
+    return points;
+}
+
+std::string Reader::choice(std::string_view key, const std::vector<std::string>& choices, std::string_view fallback) {
+    const std::string found = fallback.empty() ? text(key) : text(key, fallback);
+    if (std::find(choices.begin(), choices.end(), found) != choices.end()) return found;
+    if (has(key)) {
+        const std::string near = nearest_name(found, choices);
+        problem(key, fmt::format("\"{}\" is not known{}; choose from {}", found,
+                                 near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near), join_names(choices)));
+    }
+    return fallback.empty() ? choices.front() : std::string(fallback);
+}
+
+Reader Reader::table(std::string_view key, bool required) {
+    static const Value empty{};
+    const Value* value = required ? find_required(key, "a table") : find(key);
+    Reader reader(value != nullptr ? *value : empty, *problems_, key_path(key));
+    reader.missing_ = missing_ || (value == nullptr && required);
+    return reader;
+}
+
+std::vector<Reader> Reader::tables(std::string_view key) {
+    std::vector<Reader> readers;
+    const Value* value = find(key);
+    if (value == nullptr) return readers;
+    const auto* list = std::get_if<Array>(&value->data);
+    if (list == nullptr) {
+        problem(key, fmt::format("is {}; write [[{}]] for each", type_name(*value), key_path(key)));
+        return readers;
+    }
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        readers.emplace_back((*list)[i], *problems_, fmt::format("{}[{}]", key_path(key), i));
+    }
+    return readers;
+}
+
+std::vector<std::pair<std::string, Reader>> Reader::named_tables(std::string_view key) {
+    std::vector<std::pair<std::string, Reader>> readers;
+    const Value* value = find(key);
+    if (value == nullptr) return readers;
+    const auto* table = std::get_if<Table>(&value->data);
+    if (table == nullptr) {
+        problem(key, fmt::format("is {}; write [{}.NAME] for each", type_name(*value), key_path(key)));
+        return readers;
+    }
+    for (const auto& [name, entry] : *table) {
+        readers.emplace_back(name, Reader(entry, *problems_, fmt::format("{}.{}", key_path(key), name)));
+    }
+    return readers;
+}
+
+void Reader::finish() {
+    for (const auto& [name, value] : std::get<Table>(table_->data)) {
+        if (std::find(marks_->asked.begin(), marks_->asked.end(), name) != marks_->asked.end()) continue;
+        const std::string near = nearest_name(name, marks_->asked);
+        problem(name, near.empty() ? "nobody reads this key; known here: " + join_names(marks_->asked)
+                                   : fmt::format("nobody reads this key; did you mean \"{}\"?", near));
+    }
+}
+
+}  // namespace pliant::config

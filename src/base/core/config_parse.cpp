@@ -1,0 +1,257 @@
+// The only file that includes toml++ and muParser.
+#include <muParser.h>
+#include <toml++/toml.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "base/core/config.hpp"
+#include "base/core/files.hpp"
+#include "base/core/text.hpp"
+
+namespace pliant::config {
+namespace {
+
+constexpr std::size_t max_text_bytes = 16u << 20;
+constexpr int max_depth = 32;
+
+int line_of(const toml::node& node) {
+    return static_cast<int>(node.source().begin.line);
+}
+
+Result<Value> convert(const toml::node& node, int depth) {
+    if (depth > max_depth) return input_error_at("", line_of(node), "nested deeper than {} levels", max_depth);
+    Value value;
+    value.line = line_of(node);
+    if (const auto* flag = node.as_boolean())
+        value.data = flag->get();
+    else if (const auto* whole = node.as_integer())
+        value.data = whole->get();
+    else if (const auto* real = node.as_floating_point())
+        value.data = real->get();
+    else if (const auto* string = node.as_string())
+        value.data = std::string(string->get());
+    else if (const auto* list = node.as_array()) {
+        Array items;
+        for (const toml::node& item : *list) {
+            Result<Value> converted = convert(item, depth + 1);
+            if (!converted) return converted;
+            items.push_back(std::move(*converted));
+        }
+        value.data = std::move(items);
+    } else if (const auto* table = node.as_table()) {
+        Table entries;
+        for (const auto& [key, item] : *table) {
+            Result<Value> converted = convert(item, depth + 1);
+            if (!converted) return converted;
+            // The line of a scalar is that of its key, which is where a person looks.
+            if (!item.is_table() && !item.is_array()) converted->line = static_cast<int>(key.source().begin.line);
+            entries.emplace_back(std::string(key.str()), std::move(*converted));
+        }
+        // toml++ sorts by name; a reader of messages and `[parameters]` expects the order of the file.
+        std::stable_sort(entries.begin(), entries.end(),
+                         [](const Entry& a, const Entry& b) { return a.second.line < b.second.line; });
+        value.data = std::move(entries);
+    } else {
+        return input_error_at("", line_of(node), "dates and times have no meaning here");
+    }
+    return value;
+}
+
+bool nested_too_deep(std::string_view text) {
+    // toml++ recurses while it parses: brackets are counted before it sees them.
+    int depth = 0;
+    int deepest = 0;
+    for (const char c : text) {
+        if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+        if (c == ']' || c == '}') depth = std::max(0, depth - 1);
+        if (c == '\n' && depth <= 2) depth = 0;  // headings close on their line
+    }
+    return deepest > 4 * max_depth;
+}
+
+Value* find_child(Value& parent, std::string_view part) {
+    if (auto* table = std::get_if<Table>(&parent.data)) {
+        for (auto& [name, value] : *table) {
+            if (name == part) return &value;
+        }
+        return nullptr;
+    }
+    auto* list = std::get_if<Array>(&parent.data);
+    if (list == nullptr) return nullptr;
+    for (Value& item : *list) {
+        auto* entry = std::get_if<Table>(&item.data);
+        if (entry == nullptr) continue;
+        for (auto& [name, value] : *entry) {
+            const auto* text = std::get_if<std::string>(&value.data);
+            if (name == "name" && text != nullptr && *text == part) return &item;
+        }
+    }
+    std::size_t index = 0;
+    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), index);
+    const bool whole = code == std::errc() && end == part.data() + part.size();
+    return whole && index < list->size() ? &(*list)[index] : nullptr;
+}
+
+std::vector<std::string> child_names(const Value& parent) {
+    std::vector<std::string> names;
+    if (const auto* table = std::get_if<Table>(&parent.data)) {
+        for (const auto& [name, value] : *table) names.push_back(name);
+    } else if (const auto* list = std::get_if<Array>(&parent.data)) {
+        for (const Value& item : *list) {
+            const auto* entry = std::get_if<Table>(&item.data);
+            if (entry == nullptr) continue;
+            for (const auto& [name, value] : *entry) {
+                const auto* text = std::get_if<std::string>(&value.data);
+                if (name == "name" && text != nullptr) names.push_back(*text);
+            }
+        }
+    }
+    return names;
+}
+
+bool is_formula(const Value& value) {
+    const auto* text = std::get_if<std::string>(&value.data);
+    return text != nullptr && !text->empty() && text->front() == '=';
+}
+
+class Evaluator {
+public:
+    explicit Evaluator(std::string file) : file_(std::move(file)) {}
+
+    Result<double> evaluate(const Value& value) {
+        const std::string formula = std::get<std::string>(value.data).substr(1);
+        try {
+            parser_.SetExpr(formula);
+            const double result = parser_.Eval();
+            if (std::isfinite(result)) return result;
+            return input_error_at(file_, value.line, "\"={}\" is not a finite number", formula);
+        } catch (const mu::ParserError& error) {
+            return input_error_at(file_, value.line, "\"={}\": {}", formula, error.GetMsg());
+        }
+    }
+
+    Status define(const std::string& name, double value, int line) {
+        try {
+            parser_.DefineConst(name, value);
+            return {};
+        } catch (const mu::ParserError& error) {
+            return input_error_at(file_, line, "parameters.{}: not a name for a parameter; use letters, digits and _",
+                                  name);
+        }
+    }
+
+    Status replace_formulas(Value& value) {
+        if (is_formula(value)) {
+            const Result<double> number = evaluate(value);
+            if (!number) return tl::unexpected(number.error());
+            value.data = *number;
+        } else if (auto* list = std::get_if<Array>(&value.data)) {
+            for (Value& item : *list) {
+                if (Status status = replace_formulas(item); !status) return status;
+            }
+        } else if (auto* table = std::get_if<Table>(&value.data)) {
+            for (auto& [name, item] : *table) {
+                if (Status status = replace_formulas(item); !status) return status;
+            }
+        }
+        return {};
+    }
+
+private:
+    std::string file_;
+    mu::Parser parser_;
+};
+
+}  // namespace
+
+Result<Document> parse(std::string_view text, const std::filesystem::path& file) {
+    if (text.size() > max_text_bytes)
+        return input_error("{}: larger than 16 MB, that is no robot or printer file", file.string());
+    if (nested_too_deep(text)) return input_error("{}: brackets nested too deep", file.string());
+    try {
+        const toml::table table = toml::parse(text, file.string());
+        Result<Value> root = convert(table, 0);
+        if (!root) {
+            Diagnostic problem = root.error().problems.front();
+            problem.file = file.string();
+            return tl::unexpected(error_of(Cause::input, {std::move(problem)}));
+        }
+        return Document{file, std::move(*root)};
+    } catch (const toml::parse_error& error) {
+        return input_error_at(file.string(), error.source().begin.line, "not valid TOML: {}", error.description());
+    }
+}
+
+Result<Document> load(const std::filesystem::path& file) {
+    const Result<std::string> text = read_file(file, max_text_bytes);
+    if (!text) return tl::unexpected(text.error());
+    return parse(*text, file);
+}
+
+Status set(Document& document, std::string_view assignment) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string_view::npos || equals == 0) {
+        return input_error("--set {}: write KEY=VALUE, as in program.steps=10", assignment);
+    }
+    const std::string_view key = assignment.substr(0, equals);
+    const std::string text(assignment.substr(equals + 1));
+    Result<Document> parsed = parse("value = " + text, "--set");
+    Value value;
+    value.data = text;
+    if (parsed && std::get<Table>(parsed->root.data).size() == 1) {
+        value.data = std::get<Table>(parsed->root.data).front().second.data;
+    }
+
+    Value* node = &document.root;
+    for (std::size_t begin = 0; begin <= key.size();) {
+        const std::size_t end = std::min(key.find('.', begin), key.size());
+        const std::string_view part = key.substr(begin, end - begin);
+        Value* child = find_child(*node, part);
+        if (child == nullptr) {
+            // A table that the file leaves out may still be meant, as in program.steps; a slip shows when nobody reads
+            // it.
+            auto* table = std::get_if<Table>(&node->data);
+            if (table == nullptr || part.empty()) {
+                const auto names = child_names(*node);
+                const std::string near = nearest_name(part, names);
+                return input_error("--set {}: there is no \"{}\" in {}{}", key, part, document.file.string(),
+                                   near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+            }
+            table->emplace_back(std::string(part), Value{});
+            child = &table->back().second;
+        }
+        node = child;
+        begin = end + 1;
+    }
+    value.line = node->line;
+    *node = std::move(value);
+    return {};
+}
+
+Status resolve_parameters(Document& document) {
+    Evaluator evaluator(document.file.string());
+    auto& root = std::get<Table>(document.root.data);
+    const auto found = std::find_if(root.begin(), root.end(), [](const Entry& e) { return e.first == "parameters"; });
+    if (found != root.end()) {
+        auto* table = std::get_if<Table>(&found->second.data);
+        if (table == nullptr)
+            return input_error_at(document.file.string(), found->second.line, "parameters: must be a table of numbers");
+        for (auto& [name, value] : *table) {
+            if (Status status = evaluator.replace_formulas(value); !status) return status;
+            double number = 0;
+            if (const auto* whole = std::get_if<std::int64_t>(&value.data))
+                number = static_cast<double>(*whole);
+            else if (const auto* real = std::get_if<double>(&value.data))
+                number = *real;
+            else
+                return input_error_at(document.file.string(), value.line,
+                                      "parameters.{}: must be a number or \"= formula\"", name);
+            if (Status status = evaluator.define(name, number, value.line); !status) return status;
+        }
+        root.erase(found);
+    }
+    return evaluator.replace_formulas(document.root);
+}
+
+}  // namespace pliant::config

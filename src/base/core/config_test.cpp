@@ -1,0 +1,171 @@
+#include "base/core/config.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+
+using namespace pliant;
+using namespace pliant::config;
+
+namespace {
+
+Document document_of(std::string_view text) {
+    Result<Document> document = parse(text, "test.toml");
+    REQUIRE_MESSAGE(document, (document ? "" : document.error().message));
+    return *document;
+}
+
+std::string message(const Problems& problems) {
+    const Status status = problems.status();
+    return status ? "" : status.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("values of every type are read") {
+    const Document document = document_of(R"(
+name = "finger"
+count = 3
+size = "2.5 mm"
+flag = true
+point = [1, 2.5, -3]
+path = [[0, 0, 0], [1, 1, 1]]
+[material.soft]
+density = "1 g/cm^3"
+[[body]]
+name = "a"
+[[body]]
+name = "b"
+)");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    CHECK(root.text("name") == "finger");
+    CHECK(root.integer("count") == 3);
+    CHECK(root.quantity("size", Dimension::length) == near(2.5e-3, {.relative = 1e-12}));
+    CHECK(root.boolean("flag", false));
+    CHECK(root.vector("point") == Vec3{1, 2.5, -3});
+    CHECK(root.vectors("path").size() == 2);
+    auto materials = root.named_tables("material");
+    REQUIRE(materials.size() == 1);
+    CHECK(materials[0].first == "soft");
+    CHECK(materials[0].second.quantity("density", Dimension::density) == near(1000, {.relative = 1e-12}));
+    auto bodies = root.tables("body");
+    REQUIRE(bodies.size() == 2);
+    CHECK(bodies[1].text("name") == "b");
+    CHECK(root.number("missing", 7) == 7);
+    root.finish();
+    CHECK(message(problems).empty());
+}
+
+TEST_CASE("an unread key is an error that names the line and the nearest key") {
+    const Document document = document_of("name = \"x\"\n\ngeometri = 3\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    (void)root.text("name");
+    (void)root.text("geometry", "");
+    root.finish();
+    CHECK(message(problems) == "test.toml:3: geometri: nobody reads this key; did you mean \"geometry\"?");
+}
+
+TEST_CASE("wrong types and missing keys give one line each and no crash") {
+    const Document document = document_of("size = 3\npoint = [1, 2]\ncount = 2.5\n[table]\nlaw = \"neohookean\"\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    (void)root.quantity("size", Dimension::length);
+    (void)root.vector("point");
+    (void)root.integer("count");
+    Reader table = root.table("table");
+    CHECK(table.choice("law", {"neo-hookean", "shape-blend"}) == "neo-hookean");
+    (void)root.text("name");
+    (void)root.table("size", false).text("x", "");
+    const std::string text = message(problems);
+    CAPTURE(text);
+    CHECK(text.find("test.toml:1: size: 3 has no unit; write a length such as \"2.5 mm\"") != std::string::npos);
+    CHECK(text.find("test.toml:2: point: needs three finite numbers") != std::string::npos);
+    CHECK(text.find("test.toml:3: count:") != std::string::npos);
+    CHECK(text.find("test.toml:5: table.law: \"neohookean\" is not known, did you mean \"neo-hookean\"?") !=
+          std::string::npos);
+    CHECK(text.find("\"name\" is missing") != std::string::npos);
+}
+
+TEST_CASE("bad TOML names its line") {
+    const auto result = parse("a = 1\nb = = 2\n", "robot.toml");
+    REQUIRE_FALSE(result);
+    CHECK(result.error().message.find("robot.toml:2:") == 0);
+    CHECK_FALSE(parse(std::string(100000, '['), "deep.toml"));
+    CHECK_FALSE(parse("a = " + std::string(10000, '[') + std::string(10000, ']'), "deep.toml"));
+}
+
+TEST_CASE("--set changes a value anywhere, and explains what it cannot find") {
+    Document document =
+        document_of("[program]\nsteps = 30\n[[cable]]\nname = \"flexor\"\ntarget = { length_ratio = 0.7 }\n");
+    REQUIRE(set(document, "program.steps=5"));
+    REQUIRE(set(document, "cable.flexor.target.length_ratio=0.9"));
+    REQUIRE(set(document, "program.solver=newton"));
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    Reader program = root.table("program");
+    CHECK(program.integer("steps") == 5);
+    CHECK(program.text("solver") == "newton");
+    CHECK(root.tables("cable").at(0).table("target").number("length_ratio") == 0.9);
+    CHECK(set(document, "cable.flexxor.target=1").error().message.find("did you mean \"flexor\"?") !=
+          std::string::npos);
+    REQUIRE(set(document, "new.table.key=1"));
+    CHECK_FALSE(set(document, "steps"));
+    CHECK_FALSE(set(document, "program..steps=1"));
+}
+
+TEST_CASE("parameters and formulas") {
+    Document document =
+        document_of("[parameters]\ngaps = 6\npitch = \"= 84 / gaps\"\n[a]\nx = [\"= pitch * 2\", 1]\nn = \"= gaps\"\n");
+    REQUIRE(set(document, "parameters.gaps=4"));
+    REQUIRE(resolve_parameters(document));
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    Reader a = root.table("a");
+    CHECK(a.numbers("x") == std::vector<double>{42, 1});
+    CHECK(a.integer("n") == 4);
+    root.finish();
+    CHECK(problems.empty());
+
+    Document bad = document_of("[parameters]\na = \"= b + 1\"\n");
+    CHECK(resolve_parameters(bad).error().message.find("test.toml:2:") == 0);
+}
+
+TEST_CASE("a missing table is one problem, not one for each of its keys, and long lists are cut") {
+    const Document document =
+        document_of("a = 1\nb = 1\nc = 1\nd = 1\ne = 1\nf = 1\ng = 1\nh = 1\ni = 1\nj = 1\nk = 1\nl = 1\nm = 1\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    Reader axis = root.table("axis").table("x");
+    (void)axis.text("letter");
+    (void)axis.number("speed");
+    axis.problem("speed", "must be above zero");
+    CHECK(message(problems) == "test.toml:1: \"axis\" is missing; it is a table");
+    root.finish();
+    CHECK(message(problems).find("test.toml: and 2 problems more") != std::string::npos);
+}
+
+TEST_CASE("an error carries file, line and key as data, and shows them in its message") {
+    const Document document = document_of("a = 1\n\n[axis]\nspeed = \"fast\"\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    (void)root.integer("a");
+    (void)root.table("axis").number("speed");
+    const Status status = problems.status();
+    REQUIRE_FALSE(status);
+    REQUIRE(status.error().problems.size() == 1);
+    const Diagnostic& problem = status.error().problems.front();
+    CHECK(problem.file == "test.toml");
+    CHECK(problem.line == 4);
+    CHECK(problem.key == "axis.speed");
+    CHECK(shown(problem) == status.error().message);
+    CHECK(shown({"a.stl", 0, "", "is empty"}) == "a.stl: is empty");
+    CHECK(shown({"", 7, "body \"tip\"", "is empty"}) == "body \"tip\": is empty");
+
+    const auto broken = parse("a = 1\nb = = 2\n", "broken.toml");
+    REQUIRE_FALSE(broken);
+    REQUIRE(broken.error().problems.size() == 1);
+    CHECK(broken.error().problems.front().file == "broken.toml");
+    CHECK(broken.error().problems.front().line == 2);
+}

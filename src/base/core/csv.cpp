@@ -1,0 +1,114 @@
+#include "base/core/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/core/letters.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{64} << 20;
+
+/// One cell, and what follows it: in quotes a separator is a letter as others are, and "" is a quote (RFC 4180).
+std::string take_cell(std::string_view& line, char separator, bool& more) {
+    std::string cell;
+    bool quoted = false;
+    std::size_t at = 0;
+    for (; at < line.size() && (quoted || line[at] != separator); ++at) {
+        if (line[at] != '"')
+            cell += line[at];
+        else if (quoted && at + 1 < line.size() && line[at + 1] == '"')
+            cell += line[++at];
+        else
+            quoted = !quoted;
+    }
+    more = at < line.size();
+    line.remove_prefix(more ? at + 1 : at);
+    return std::string(trimmed(cell));
+}
+
+std::vector<std::string> split(std::string_view line, char separator) {
+    std::vector<std::string> cells;
+    for (bool more = true; more;) cells.push_back(take_cell(line, separator, more));
+    return cells;
+}
+
+/// The first tab or semicolon outside quotes, else a comma.
+char separator_of(std::string_view line) {
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted && (c == '\t' || c == ';')) return c;
+    }
+    return ',';
+}
+
+/// Empty, or a comment, which a spreadsheet may have put in quotes.
+bool is_passed_over(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r\"");
+    return first == std::string_view::npos || line[first] == '#';
+}
+
+}  // namespace
+
+std::string CsvTable::place(int line) const {
+    return fmt::format("{}:{}", file, line);
+}
+
+Result<std::string_view> CsvTable::cell(const CsvRow& row, std::size_t column) const {
+    if (column < row.cells.size()) return std::string_view(row.cells[column]);
+    return input_error("{}: {} columns, the first line names more", place(row.line), row.cells.size());
+}
+
+Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::string_view what) const {
+    const auto text = cell(row, column);
+    if (!text) return tl::unexpected(text.error());
+    const char* first = text->data();
+    const char* last = first + text->size();
+    if (first != last && *first == '+') ++first;
+    double value = 0;
+    const auto [end, code] = std::from_chars(first, last, value);
+    if (code == std::errc() && end == last && std::isfinite(value)) return value;
+    if (text->find(',') != std::string_view::npos)
+        return input_error("{}: {} \"{}\" has a comma; write numbers with a decimal point", place(row.line), what,
+                           text->substr(0, 40));
+    return input_error("{}: {} \"{}\" is not a number", place(row.line), what, text->substr(0, 40));
+}
+
+Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::string_view example) {
+    if (text.size() > most_bytes) return input_error("{}: over 64 MB is more than a table of measurements has", file);
+    constexpr std::string_view mark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 files with it
+    if (text.substr(0, mark.size()) == mark) text.remove_prefix(mark.size());
+    CsvTable table;
+    table.file = file;
+    char separator = ',';
+    for (int number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (is_passed_over(line)) continue;
+        if (table.columns.empty()) {
+            separator = separator_of(line);
+            table.columns = split(line, separator);
+            table.header_line = number;
+        } else {
+            table.rows.push_back({number, split(line, separator)});
+        }
+    }
+    if (table.columns.empty()) return input_error("{}: is empty; the first line names the columns: {}", file, example);
+    if (table.rows.empty()) return input_error("{}: has no rows below the names of the columns", file);
+    return table;
+}
+
+std::string_view csv_unit(std::string_view column) {
+    const std::size_t open = column.find_first_of("([");
+    const std::size_t close = column.find_last_of(")]");
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
+    return trimmed(column.substr(open + 1, close - open - 1));
+}
+
+}  // namespace pliant

@@ -1,0 +1,44 @@
+#include "base/core/csv.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace pliant;
+
+namespace {
+
+std::string error_of(const std::string& text) {
+    const auto table = parse_csv(text, "a.csv", "x,y");
+    if (!table) return table.error().message;
+    const auto value = table->number(table->rows.back(), 1, "y");
+    return value ? "" : value.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("separators, quotes, comments and the lines that messages name") {
+    const auto table = parse_csv("\xEF\xBB\xBF\"# made\"\n\n\"x, or so\"; y (mm)\r\n1;+2.5\r\n\n3;4\r\n", "a.csv", "");
+    REQUIRE(table);
+    CHECK(table->columns == std::vector<std::string>{"x, or so", "y (mm)"});
+    REQUIRE(table->rows.size() == 2);
+    CHECK(table->rows[1].line == 6);
+    CHECK(table->number(table->rows[0], 1, "y").value() == 2.5);
+    CHECK(csv_unit(table->columns[1]) == "mm");
+    CHECK(csv_unit("force [N]") == "N");
+    CHECK(csv_unit("force )N(").empty());
+    CHECK(csv_unit("force").empty());
+    const auto quoted = parse_csv("\"tip, or \"\"end\"\"_x_mm\",y\n1,\"2\"\n\"3,4\n", "a.csv", "");
+    CHECK(quoted->columns == std::vector<std::string>{"tip, or \"end\"_x_mm", "y"});
+    CHECK(quoted->number(quoted->rows[0], 1, "y").value() == 2);
+    CHECK(quoted->rows[1].cells.size() == 1);  // a quote that never closes
+    CHECK(parse_csv("a\tb,c\n1\t2", "a.csv", "")->columns.size() == 2);
+}
+
+TEST_CASE("what is wrong is said with the line") {
+    CHECK(error_of("") == "a.csv: is empty; the first line names the columns: x,y");
+    CHECK(error_of("x,y\n# none\n") == "a.csv: has no rows below the names of the columns");
+    CHECK(error_of("x,y\n1,2\n3\n") == "a.csv:3: 1 columns, the first line names more");
+    CHECK(error_of("x;y\n1;2,5\n") == "a.csv:2: y \"2,5\" has a comma; write numbers with a decimal point");
+    for (const char* bad : {"abc", "nan", "inf", "1e999", "", "1 2", "0x10"})
+        CHECK(error_of(std::string("x,y\n1,") + bad + "\n") ==
+              std::string("a.csv:2: y \"") + bad + "\" is not a number");
+}

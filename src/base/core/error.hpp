@@ -1,0 +1,75 @@
+// Errors for people: one line that says where, what is wrong and what would be right.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+#include <vector>
+
+namespace pliant {
+
+/// Why something could not be done; the command line turns it into an exit status.
+enum class Cause {
+    input,      ///< bad input or usage: exit status 2
+    failed,     ///< the work itself failed (did not converge, print stopped): exit status 1
+    cancelled,  ///< the caller asked to stop: exit status 1
+};
+
+/// One thing that is wrong, and where: what a page marks and a script looks up. Empty, or 0, where it is not known.
+struct Diagnostic {
+    std::string file;
+    int line = 0;      ///< from 1
+    std::string key;   ///< of a file of keys, or the kind and name of what is meant: body "tip"
+    std::string text;  ///< what is wrong and what would be right
+    bool operator==(const Diagnostic&) const = default;
+};
+/// "FILE:LINE: KEY: TEXT", without what is not known.
+[[nodiscard]] inline std::string shown(const Diagnostic& d) {
+    std::string place = d.file;
+    if (d.line > 0 && !d.file.empty()) place += ":" + std::to_string(d.line);
+    if (!place.empty()) place += ": ";
+    return d.key.empty() ? place + d.text : place + d.key + ": " + d.text;
+}
+
+struct Error {
+    Cause cause = Cause::input;
+    std::string message;                 ///< one line per problem, without a trailing newline
+    std::vector<Diagnostic> problems{};  ///< the same as data, where it is about places; else empty
+};
+
+/// Of problems, shown one a line.
+[[nodiscard]] inline Error error_of(Cause cause, std::vector<Diagnostic> problems) {
+    std::string lines;
+    for (const Diagnostic& problem : problems) lines += (lines.empty() ? "" : "\n") + shown(problem);
+    return {cause, std::move(lines), std::move(problems)};
+}
+
+template <class T>
+using Result = tl::expected<T, Error>;
+using Status = Result<void>;
+
+/// `return input_error("{}: ...", file);`
+template <class... Args>
+tl::unexpected<Error> input_error(fmt::format_string<Args...> text, Args&&... args) {
+    return tl::unexpected(Error{Cause::input, fmt::format(text, std::forward<Args>(args)...)});
+}
+
+/// `return input_error_at(file, line, "...", ...);` for a line of a file.
+template <class... Args>
+tl::unexpected<Error> input_error_at(std::string file, int line, fmt::format_string<Args...> text, Args&&... args) {
+    return tl::unexpected(
+        error_of(Cause::input, {{std::move(file), line, "", fmt::format(text, std::forward<Args>(args)...)}}));
+}
+
+template <class... Args>
+tl::unexpected<Error> failure(fmt::format_string<Args...> text, Args&&... args) {
+    return tl::unexpected(Error{Cause::failed, fmt::format(text, std::forward<Args>(args)...)});
+}
+
+inline tl::unexpected<Error> cancelled() {
+    return tl::unexpected(Error{Cause::cancelled, "cancelled"});
+}
+
+}  // namespace pliant

@@ -1,0 +1,26 @@
+// Files in and out: read whole with a limit, written aside and renamed so that nothing half-made is ever seen.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "base/core/error.hpp"
+
+namespace pliant {
+
+/// The bytes of a regular file of at most `limit_bytes`.
+[[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
+                                            std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
+
+/// Writes `PATH.partial`, then renames it to PATH.
+[[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Calls `fill` on a fresh folder `DIR.partial` and, if it succeeds, puts that folder in the place of DIR. An existing
+/// DIR is replaced only if it is empty or holds a file `marker` (so that no foreign folder is ever deleted).
+[[nodiscard]] Status write_folder(const std::filesystem::path& folder, std::string_view marker,
+                                  const std::function<Status(const std::filesystem::path&)>& fill);
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// Quantities with units, as robot and printer files write them: "12 MPa", "1040 kg/m^3", "50 um".
+#pragma once
+
+#include <string_view>
+
+#include "base/core/error.hpp"
+
+namespace pliant {
+
+enum class Dimension {
+    length,
+    time,
+    mass,
+    force,
+    pressure,
+    density,
+    speed,
+    acceleration,
+    volume,
+    angle,
+    irradiance,
+    angular_speed,
+    angular_acceleration,
+    dose,
+    stiffness
+};
+
+/// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.
+[[nodiscard]] std::string_view describe(Dimension dimension);
+
+/// Value in SI units (angles in radians). The text is a finite number and a unit of that dimension, with or without a
+/// space between them; the error names the units that would be right.
+[[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
+
+/// The factor from a unit's name to SI, as in `length_unit = "mm"`.
+[[nodiscard]] Result<double> unit_factor(std::string_view unit, Dimension dimension);
+
+}  // namespace pliant

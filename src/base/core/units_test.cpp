@@ -1,0 +1,24 @@
+#include "base/core/units.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+
+using namespace pliant;
+
+TEST_CASE("quantities convert to SI") {
+    CHECK(*parse_quantity("12 MPa", Dimension::pressure) == near(12e6, {.relative = 1e-12}));
+    CHECK(*parse_quantity("50um", Dimension::length) == near(50e-6, {.relative = 1e-12}));
+    CHECK(*parse_quantity(" 1040 kg/m^3 ", Dimension::density) == near(1040, {.relative = 1e-12}));
+    CHECK(*parse_quantity("-1.5e1 mm", Dimension::length) == near(-0.015, {.relative = 1e-12}));
+    CHECK(*parse_quantity("+24 in", Dimension::length) == near(0.6096, {.relative = 1e-12}));
+}
+
+TEST_CASE("a quantity without a unit, with a foreign unit or without a number is refused") {
+    CHECK(parse_quantity("12", Dimension::pressure).error().message.find("has no unit") != std::string::npos);
+    CHECK(parse_quantity("12 mm", Dimension::pressure).error().message.find("MPa") != std::string::npos);
+    for (const char* text : {"", "MPa", "nan MPa", "inf MPa", "1 2 MPa", "1e999 MPa", "0x10 MPa"}) {
+        CAPTURE(text);
+        CHECK_FALSE(parse_quantity(text, Dimension::pressure));
+    }
+}

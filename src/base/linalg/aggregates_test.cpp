@@ -1,0 +1,69 @@
+// Groups of the nodes of lattices.
+#include "base/linalg/aggregates.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace pliant::linalg;
+
+namespace {
+
+/// Cells of a box, each a clique of its eight corners.
+BlockRows box(int along, int across) {
+    const int side = across + 1;
+    const auto node = [&](int i, int j, int k) { return (i * side + j) * side + k; };
+    std::vector<std::vector<int>> cliques;
+    for (int i = 0; i < along; ++i) {
+        for (int j = 0; j < across; ++j) {
+            for (int k = 0; k < across; ++k) {
+                std::vector<int>& clique = cliques.emplace_back();
+                for (int corner = 0; corner < 8; ++corner)
+                    clique.push_back(node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)));
+            }
+        }
+    }
+    return BlockRows(make_pattern((along + 1) * side * side, 3, cliques));
+}
+
+/// Nodes of a group that can be reached from its first one without leaving it.
+std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std::vector<int>& nodes) {
+    std::vector<int> found{nodes.front()};
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        for (int e = matrix.start[found[k]]; e < matrix.start[found[k] + 1]; ++e) {
+            const int j = matrix.column[e];
+            if (groups.of_node[j] == groups.of_node[nodes.front()] &&
+                std::find(found.begin(), found.end(), j) == found.end())
+                found.push_back(j);
+        }
+    }
+    return found.size();
+}
+
+}  // namespace
+
+TEST_CASE("every node is in one group, every group hangs together, and there are never too many of them") {
+    for (const auto& [along, across] : {std::pair{1, 1}, {40, 2}, {30, 12}, {60, 30}}) {
+        CAPTURE(along);
+        const BlockRows matrix = box(along, across);
+        const Aggregates groups = aggregate(matrix);
+        CHECK(groups.count <= std::max(1.0, 8 * std::sqrt(matrix.rows())));
+        CHECK(groups.count * 400 >= matrix.rows());
+        const Lists members = members_of(groups.of_node, groups.count);
+        REQUIRE(members.item.size() == static_cast<std::size_t>(matrix.rows()));
+        for (int g = 0; g < groups.count; ++g) {
+            const std::vector<int> nodes(members.item.begin() + members.start[g],
+                                         members.item.begin() + members.start[g + 1]);
+            REQUIRE(!nodes.empty());
+            CHECK(std::is_sorted(nodes.begin(), nodes.end()));
+            CHECK(reached(matrix, groups, nodes) == nodes.size());
+        }
+    }
+}
+
+TEST_CASE("nodes that touch nothing stay alone, however many they are") {
+    const BlockRows matrix(make_pattern(1000, 3, {}));
+    CHECK(aggregate(matrix).count == 1000);
+}

@@ -1,0 +1,53 @@
+// A stiffness matrix row by row, both triangles, for products in double and, where few digits do, in single precision.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/core/aligned_array.hpp"
+#include "base/linalg/row_products.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// Blocks of 3 by 3. Row i has entries start[i] .. start[i + 1], in ascending order of `column`. Each number is kept as
+/// the sum of two in single precision, the second what rounding left: some 14 digits, of which products in single
+/// precision read the first half only.
+class BlockRows {
+public:
+    /// Precondition: blocks of 3.
+    explicit BlockRows(const SymmetricPattern& pattern);
+
+    /// Takes the values of the pattern.
+    void set(std::span<const double> values);
+
+    [[nodiscard]] int rows() const { return static_cast<int>(start.size()) - 1; }
+    [[nodiscard]] Eigen::Matrix3d block(int entry) const {
+        const std::size_t at = 9 * static_cast<std::size_t>(entry);
+        return Eigen::Map<const Eigen::Matrix3f>(rounded_.data() + at).cast<double>() +
+               Eigen::Map<const Eigen::Matrix3f>(rest_.data() + at).cast<double>();
+    }
+    [[nodiscard]] Eigen::Matrix3d diagonal(int row) const { return block(diagonal_[row]); }
+    /// y (3 rows) <- A x. On all cores; the same bits on any number.
+    void multiply(const double* x, double* y) const;
+    void multiply(const float* x, float* y) const;
+
+    std::vector<int> start;   ///< (rows + 1)
+    std::vector<int> column;  ///< (entries)
+
+private:
+    /// Of the pattern; the lower triangle of a block on the diagonal counts.
+    struct Source {
+        int pair;
+        enum Kind : char { as_it_is, transposed, diagonal } kind;
+    };
+    [[nodiscard]] RowBlocks blocks() const { return {start.data(), column.data(), rounded_.data(), rest_.data()}; }
+
+    std::vector<Source> source_;   ///< (entries) where the values come from
+    std::vector<int> diagonal_;    ///< (rows) entries
+    AlignedArray<float> rounded_;  ///< (entries, 9) each block by columns
+    AlignedArray<float> rest_;     ///< alike, what rounding left
+};
+
+}  // namespace pliant::linalg

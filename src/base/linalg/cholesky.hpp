@@ -1,0 +1,63 @@
+// Sparse Cholesky factorisation: analyse a pattern once, factorise often, solve for many right-hand sides.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "base/linalg/analysis.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// Of the factor. In single precision it takes half the memory and about half the time.
+enum class Precision { single_, double_ };
+
+/// Supernodal and multifrontal (Duff and Reid 1983), on all cores; the same bits on any number of them.
+class Cholesky {
+public:
+    /// Orders and analyses the pattern, which is copied.
+    explicit Cholesky(const SymmetricPattern& pattern, Precision precision = Precision::double_);
+    /// With an analysis that is at hand, for `block` unknowns a node, 1 or 3.
+    Cholesky(std::shared_ptr<const Analysis> analysis, int block, Precision precision = Precision::double_);
+    Cholesky(Cholesky&&) noexcept;
+    Cholesky& operator=(Cholesky&&) noexcept;
+    ~Cholesky();
+
+    /// Forgets the factor; the analysis is kept.
+    void use(Precision precision);
+    [[nodiscard]] Precision precision() const;
+
+    /// `values` (entries) belong to the pattern. False if the matrix is not positive definite in the precision of the
+    /// factor; solve() must not be called then.
+    [[nodiscard]] bool factorise(std::span<const double> values);
+
+    /// Gives back what only factorise() needs, about as much as the factor; the next call takes it again.
+    void release_work_space();
+
+    /// Solves in place for `columns` right-hand sides, stored one after the other, (columns, size).
+    void solve(std::span<double> right_hand_sides, int columns) const;
+
+    /// Solves in place for `count` fields of three components a node, (count, nodes, 3): each component is a right-hand
+    /// side. Quicker than solve() with all of them. Precondition: block 1.
+    void solve_fields(std::span<double> fields, int count) const;
+
+    /// As solve(), by conjugate gradients with the factor as preconditioner, until the error, in the norm of the
+    /// matrix, is about `tolerance` of the solution; `values` are those of the factor. Returns the error of the first
+    /// iteration, which is what solve() alone leaves at most, or nothing if `limit` more leave more than is wanted.
+    [[nodiscard]] std::optional<double> solve_and_refine(std::span<const double> values,
+                                                         std::span<double> right_hand_sides, int columns,
+                                                         double tolerance, int limit) const;
+
+    /// Entries of the factor, as analysed: a measure of memory.
+    [[nodiscard]] double factor_entries() const;
+    /// Multiply-adds of one factorisation, as analysed: a measure of time.
+    [[nodiscard]] double factor_work() const;
+    [[nodiscard]] const std::shared_ptr<const Analysis>& analysis() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant::linalg

@@ -1,0 +1,261 @@
+#include "base/linalg/coarse_space.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/core/parallel.hpp"
+#include "base/linalg/rigid_motions.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+constexpr int modes = RigidMotions::count;
+constexpr std::size_t grain = 512;
+constexpr std::size_t restricting_pieces = 8;
+
+using Block36 = Eigen::Matrix<float, 3, modes>;
+using Block33 = Eigen::Matrix3f;
+
+Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry) {
+    return Eigen::Map<Block36>(values.data() + 18 * entry);
+}
+
+/// A set of groups that forgets everything at once.
+class Seen {
+public:
+    explicit Seen(int groups) : mark_(static_cast<std::size_t>(groups), -1) {}
+    /// True the first time that `group` comes while `round` lasts.
+    bool is_new(int group, int round) { return std::exchange(mark_[group], round) != round; }
+
+private:
+    std::vector<int> mark_;
+};
+
+}  // namespace
+
+CoarseSpace::CoarseSpace(const BlockRows& matrix)
+    : groups_(aggregate(matrix)), members_(members_of(groups_.of_node, groups_.count)) {
+    find_groups(matrix);
+    find_pattern();
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    rigid_.resize(18 * nodes);
+    prolongation_.resize(18 * moving_.item.size());
+    product_.resize(18 * pulling_.item.size());
+    dropped_.resize(static_cast<std::size_t>(groups_.count) * modes);
+}
+
+void CoarseSpace::find_groups(const BlockRows& matrix) {
+    // Row i: what visit(j, add) adds of each node j that i is coupled to, no group twice.
+    const auto rows = [&](const auto& visit) {
+        return make_lists(matrix.rows(), [&] {
+            return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
+                const auto begin = static_cast<std::ptrdiff_t>(row.size());
+                const auto add = [&](int group) {
+                    if (seen.is_new(group, i)) row.push_back(group);
+                };
+                for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) visit(matrix.column[k], add);
+                std::sort(row.begin() + begin, row.end());
+            };
+        });
+    };
+    moving_ = rows([&](int j, const auto& add) { add(groups_.of_node[j]); });
+    pulling_ = rows([&](int j, const auto& add) {
+        for (const int group : moving_[static_cast<std::size_t>(j)]) add(group);
+    });
+    use_start_ = members_of(moving_.item, groups_.count).start;
+    use_.resize(moving_.item.size());
+    std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
+    for (int i = 0; i < matrix.rows(); ++i) {
+        for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) use_[next[moving_.item[e]]++] = {i, e};
+    }
+}
+
+void CoarseSpace::find_pattern() {
+    // Of each group, the later ones that pull at a node that it moves.
+    const Lists later = make_lists(groups_.count, [&] {
+        return [&, seen = Seen(groups_.count)](int g, std::vector<int>& row) mutable {
+            const auto begin = static_cast<std::ptrdiff_t>(row.size());
+            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
+                for (const int h : pulling_[static_cast<std::size_t>(use_[u].node)]) {
+                    if (h > g && seen.is_new(h, g)) row.push_back(h);
+                }
+            }
+            std::sort(row.begin() + begin, row.end());
+        };
+    });
+    pattern_.block = 3;
+    pattern_.nodes = 2 * groups_.count;
+    pattern_.node_start.assign(1, 0);
+    for (int g = 0; g < groups_.count; ++g) {
+        for (const int half : {0, 1}) {
+            if (half == 0) pattern_.node_row.push_back(2 * g);
+            pattern_.node_row.push_back(2 * g + 1);
+            for (const int h : later[static_cast<std::size_t>(g)])
+                pattern_.node_row.insert(pattern_.node_row.end(), {2 * h, 2 * h + 1});
+            pattern_.node_start.push_back(static_cast<int>(pattern_.node_row.size()));
+        }
+    }
+    coarse_.resize(pattern_.entries());
+}
+
+void CoarseSpace::set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal,
+                      float damping) {
+    positions_.assign(positions.begin(), positions.end());
+    turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
+    set_rigid_motions(positions);
+    smooth(matrix, inverse_diagonal, damping);
+    find_pulls(matrix);
+    multiply();
+}
+
+/// Translations, and rotations about the middle of each group, made orthonormal.
+void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
+    parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) {
+            const RigidMotions motions(members_[g], positions);
+            for (int c = 0; c < modes; ++c) dropped_[g * modes + c] = motions.dropped(c) ? 1 : 0;
+            for (const int i : members_[g])
+                block36(rigid_, static_cast<std::size_t>(i)) = motions.at(positions, i).cast<float>();
+        }
+    });
+}
+
+/// P = (1 - damping D^-1 A) rigid motions.
+void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping) {
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        for (std::size_t i = begin; i < end; ++i) {
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
+                slot[moving_.item[e]] = e;
+                block36(prolongation_, static_cast<std::size_t>(e)).setZero();
+            }
+            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+                const int j = matrix.column[k];
+                block36(prolongation_, static_cast<std::size_t>(slot[groups_.of_node[j]])).noalias() +=
+                    matrix.block(k).cast<float>() * block36(rigid_, static_cast<std::size_t>(j));
+            }
+            const Block33 step = -damping * Eigen::Map<const Block33>(inverse_diagonal + 9 * i);
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
+                auto block = block36(prolongation_, static_cast<std::size_t>(e));
+                block = (step * block).eval();
+                if (moving_.item[e] == groups_.of_node[i]) block += block36(rigid_, i);
+            }
+        }
+    });
+}
+
+Eigen::Map<CoarseSpace::Pull> CoarseSpace::pull(int entry) const {
+    return Eigen::Map<Pull>(product_.data() + 18 * static_cast<std::size_t>(entry));
+}
+
+/// A P.
+void CoarseSpace::find_pulls(const BlockRows& matrix) {
+    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        for (std::size_t i = begin; i < end; ++i) {
+            for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
+                slot[pulling_.item[e]] = e;
+                pull(e).setZero();
+            }
+            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+                const int j = matrix.column[k];
+                const Eigen::Matrix3d a = matrix.block(k);
+                for (int e = moving_.start[j]; e < moving_.start[j + 1]; ++e)
+                    pull(slot[moving_.item[e]]).noalias() +=
+                        a * block36(prolongation_, static_cast<std::size_t>(e)).cast<double>();
+            }
+        }
+    });
+}
+
+/// P^T A P.
+void CoarseSpace::multiply() {
+    constexpr std::size_t groups_at_once = 16;
+    parallel_for(static_cast<std::size_t>(groups_.count), groups_at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
+        std::vector<Matrix6> sums;  // of this group (columns) and every later one (rows)
+        for (std::size_t g = begin; g < end; ++g) {
+            const int first = pattern_.node_start[2 * g];
+            const int groups = (pattern_.node_start[2 * g + 1] - first) / 2;
+            sums.assign(static_cast<std::size_t>(groups), Matrix6::Zero());
+            for (int p = 0; p < groups; ++p) slot[pattern_.node_row[first + 2 * p] / 2] = p;
+            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
+                const Pull mine = block36(prolongation_, static_cast<std::size_t>(use_[u].entry)).cast<double>();
+                const int i = use_[u].node;
+                for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
+                    if (pulling_.item[e] < static_cast<int>(g)) continue;
+                    sums[static_cast<std::size_t>(slot[pulling_.item[e]])].noalias() += pull(e).transpose() * mine;
+                }
+            }
+            for (int m = 0; m < modes; ++m) {
+                if (dropped_[g * modes + m]) sums[0](m, m) = 1;
+            }
+            put(g, sums);
+        }
+    });
+}
+
+/// The columns of a group into the pattern, which has two nodes for each.
+void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+        for (const int half : {0, 1}) {
+            for (const int row : {0, 1}) {
+                if (p == 0 && row < half) continue;
+                // The second node of a group begins with its own diagonal, one pair later than the first.
+                const std::size_t pair =
+                    static_cast<std::size_t>(pattern_.node_start[2 * group + half]) + 2 * p + row - half;
+                Eigen::Map<Eigen::Matrix3d>(coarse_.data() + 9 * pair) = sums[p].block<3, 3>(3 * row, 3 * half);
+            }
+        }
+    }
+}
+
+void CoarseSpace::turn(std::span<const double> positions) {
+    parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g)
+            turns_[g] = rotation_between(members_[g], positions_, positions).cast<float>();
+    });
+}
+
+/// Node by node, as P lies in memory. Each piece of the nodes has sums of its own, which are added in order.
+void CoarseSpace::restrict(const float* fine, double* coarse) {
+    const std::size_t nodes = groups_.of_node.size(), size = modes * static_cast<std::size_t>(groups_.count);
+    const std::size_t piece = (nodes + restricting_pieces - 1) / restricting_pieces;
+    sums_.assign(restricting_pieces * size, 0.0F);
+    parallel_for(nodes, piece, [&](std::size_t begin, std::size_t end) {
+        float* sums = sums_.data() + begin / piece * size;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector3f turned_back = turns_[static_cast<std::size_t>(groups_.of_node[i])].transpose() *
+                                                Eigen::Map<const Eigen::Vector3f>(fine + 3 * i);
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e)
+                Eigen::Map<Eigen::Matrix<float, modes, 1>>(sums + modes * static_cast<std::size_t>(moving_.item[e]))
+                    .noalias() += block36(prolongation_, static_cast<std::size_t>(e)).transpose() * turned_back;
+        }
+    });
+    parallel_for(size, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            coarse[k] = 0;
+            for (std::size_t p = 0; p < restricting_pieces; ++p) coarse[k] += sums_[p * size + k];
+        }
+    });
+}
+
+void CoarseSpace::add_prolonged(const double* coarse, float* fine) const {
+    using Motions = Eigen::Map<const Eigen::Matrix<double, modes, 1>>;
+    parallel_for(groups_.of_node.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3f motion = Eigen::Vector3f::Zero();
+            for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e)
+                motion.noalias() += block36(prolongation_, static_cast<std::size_t>(e)) *
+                                    Motions(coarse + modes * static_cast<std::size_t>(moving_.item[e])).cast<float>();
+            Eigen::Map<Eigen::Vector3f>(fine + 3 * i).noalias() +=
+                turns_[static_cast<std::size_t>(groups_.of_node[i])] * motion;
+        }
+    });
+}
+
+}  // namespace pliant::linalg

@@ -1,0 +1,76 @@
+// What a body can do without much bending: its nodes in small groups, each of which moves as something rigid, smoothed
+// by one step with the matrix (smoothed aggregation: Vanek, Mandel and Brezina 1996).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/core/aligned_array.hpp"
+#include "base/linalg/aggregates.hpp"
+#include "base/linalg/block_rows.hpp"
+#include "base/linalg/lists.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// Six unknowns a group, as two nodes of three: its translations and its rotations.
+class CoarseSpace {
+public:
+    explicit CoarseSpace(const BlockRows& matrix);
+
+    /// Takes the matrix and where its nodes are, (nodes, 3); `damping` is of the smoothing step, about 4/3 of the
+    /// inverse of the largest eigenvalue of D^-1 A with D its diagonal blocks, whose inverses are `inverse_diagonal`
+    /// (nodes, 9).
+    void set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal, float damping);
+
+    /// Keeps all that, and turns it with the nodes, which are at `positions` now: what a turned body does is what it
+    /// did before, turned. Precondition: set() was called.
+    void turn(std::span<const double> positions);
+
+    /// Pattern and values of P^T A P, as of the last set().
+    [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
+    [[nodiscard]] const std::vector<double>& values() const { return coarse_; }
+
+    /// coarse (size of the pattern) <- P^T fine.
+    void restrict(const float* fine, double* coarse);
+    /// fine += P coarse.
+    void add_prolonged(const double* coarse, float* fine) const;
+
+private:
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    using Pull = Eigen::Matrix<double, 3, 6>;
+    void find_groups(const BlockRows& matrix);
+    void find_pattern();
+    void set_rigid_motions(std::span<const double> positions);
+    void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
+    void find_pulls(const BlockRows& matrix);
+    void multiply();
+    void put(std::size_t group, std::span<const Matrix6> sums);
+    /// What moving a group pulls at a node sums up to little where a body bends easily: single precision would see
+    /// nothing but noise.
+    [[nodiscard]] Eigen::Map<Pull> pull(int entry) const;
+
+    struct Use {
+        int node, entry;
+    };
+
+    Aggregates groups_;
+    Lists members_;  ///< nodes of each group
+    // P and A P by rows of nodes, in blocks of 3 by 6, column by column.
+    Lists moving_;                        ///< groups of each row of P: they move the node once motions are smoothed
+    Lists pulling_;                       ///< groups of each row of A P: they pull at the node
+    std::vector<int> use_start_;          ///< (groups + 1)
+    std::vector<Use> use_;                ///< where each group appears in P
+    AlignedArray<float> rigid_;           ///< (nodes, 18) motions of the node's own group
+    AlignedArray<float> prolongation_;    ///< (entries of P, 18)
+    AlignedArray<double> product_;        ///< (entries of A P, 18)
+    std::vector<double> positions_;       ///< (nodes, 3) at the last set()
+    std::vector<Eigen::Matrix3f> turns_;  ///< (groups) since then
+    std::vector<float> sums_;             ///< work space
+    std::vector<char> dropped_;           ///< (groups, 6) a motion that its nodes cannot do
+    SymmetricPattern pattern_;
+    std::vector<double> coarse_;
+};
+
+}  // namespace pliant::linalg

@@ -1,0 +1,50 @@
+#include "base/linalg/small.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+
+#include "base/core/near.hpp"
+
+using namespace pliant::linalg;
+using pliant::near;
+
+TEST_CASE("the signed SVD rebuilds F from two rotations, mirrored and flat matrices too") {
+    std::srand(3);
+    for (int trial = 0; trial < 200; ++trial) {
+        Matrix3 F = Matrix3::Random();
+        if (trial % 5 == 0) F.col(2) = F.col(1);
+        if (trial % 7 == 0) F.setZero();
+        const Svd3 svd = signed_svd(F);
+        CHECK((svd.U * svd.sigma.asDiagonal() * svd.V.transpose() - F).norm() < 1e-12);
+        CHECK(svd.U.determinant() == near(1, {.relative = 1e-12}));
+        CHECK(svd.V.determinant() == near(1, {.relative = 1e-12}));
+        CHECK(svd.sigma[0] >= svd.sigma[1]);
+        CHECK(svd.sigma[1] >= std::fabs(svd.sigma[2]) - 1e-15);
+        CHECK(nearest_rotation(F).determinant() == near(1, {.relative = 1e-12}));
+    }
+}
+
+TEST_CASE("the gradient of the nearest rotation agrees with differences") {
+    std::srand(5);
+    for (int trial = 0; trial < 20; ++trial) {
+        const Matrix3 F = Matrix3::Identity() + 0.5 * Matrix3::Random();
+        const Matrix3 dF = Matrix3::Random();
+        const double h = 1e-6;
+        const Matrix3 difference = (nearest_rotation(F + h * dF) - nearest_rotation(F - h * dF)) / (2 * h);
+        Eigen::Matrix<double, 9, 1> step = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dF.data());
+        const Eigen::Matrix<double, 9, 1> dR = nearest_rotation_gradient(signed_svd(F)) * step;
+        CHECK((Eigen::Map<const Matrix3>(dR.data()) - difference).norm() < 1e-6 * (1 + difference.norm()));
+    }
+}
+
+TEST_CASE("projection keeps positive matrices and lifts negative eigenvalues to zero") {
+    std::srand(9);
+    const Matrix9 A = Matrix9::Random();
+    const Matrix9 positive = A * A.transpose();
+    CHECK((project_to_positive(positive) - positive).norm() < 1e-12 * positive.norm());
+    const Matrix9 mixed = 0.5 * (A + A.transpose());
+    const Matrix9 projected = project_to_positive(mixed);
+    CHECK(Eigen::SelfAdjointEigenSolver<Matrix9>(projected).eigenvalues().minCoeff() > -1e-12);
+    CHECK(Eigen::SelfAdjointEigenSolver<Matrix9>(projected - mixed).eigenvalues().minCoeff() > -1e-12);
+}

@@ -1,0 +1,98 @@
+#include "base/linalg/sparse.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <utility>
+
+#include "base/linalg/graph.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+constexpr std::ptrdiff_t most_counted = 32;  // rows of a column: to count the smaller ones takes no branches
+
+/// Adds factor * B v_j to r_i and, off the diagonal, factor * B^T v_i to r_j.
+template <int block>
+void add_block_product(const double* B, double factor, bool diagonal, const double* vi, const double* vj, double* ri,
+                       double* rj) {
+    for (int c = 0; c < block; ++c) {
+        double transposed = 0;
+        for (int r = diagonal ? c : 0; r < block; ++r) {
+            ri[r] += factor * B[block * c + r] * vj[c];
+            if (!diagonal || r > c) transposed += B[block * c + r] * vi[r];
+        }
+        rj[c] += factor * transposed;
+    }
+}
+
+template <int block>
+void add_product_of(const SymmetricPattern& p, std::span<const double> values, std::span<const double> v, double factor,
+                    std::span<double> result) {
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
+            const std::size_t i = static_cast<std::size_t>(p.node_row[k]) * block;
+            const std::size_t column = static_cast<std::size_t>(j) * block;
+            add_block_product<block>(values.data() + static_cast<std::size_t>(k) * block * block, factor, i == column,
+                                     v.data() + i, v.data() + column, result.data() + i, result.data() + column);
+        }
+    }
+}
+
+}  // namespace
+
+int SymmetricPattern::find(int i, int j) const {
+    const int* begin = node_row.data() + node_start[j];
+    const int* end = node_row.data() + node_start[j + 1];
+    const int* found = begin;
+    if (end - begin > most_counted) {
+        found = std::lower_bound(begin, end, i);
+    } else {
+        for (const int* row = begin; row != end; ++row) found += *row < i ? 1 : 0;
+    }
+    assert(found != end && *found == i);
+    return static_cast<int>(found - node_row.data());
+}
+
+bool SymmetricPattern::holds(int i, int j) const {
+    return std::binary_search(node_row.begin() + node_start[j], node_row.begin() + node_start[j + 1], i);
+}
+
+SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques) {
+    const Graph member_of = graph_of(nodes, [&](const auto& use) {
+        for (int c = 0; c < cliques.count(); ++c) {
+            for (const int node : cliques[static_cast<std::size_t>(c)]) {
+                if (node >= 0) use(node, c);
+            }
+        }
+    });
+    Lists rows = make_lists(nodes, [&] {
+        return [&, seen = std::vector<int>(static_cast<std::size_t>(nodes), -1)](int j, std::vector<int>& row) mutable {
+            const auto begin = static_cast<std::ptrdiff_t>(row.size());
+            row.push_back(j);
+            for (int k = member_of.start[j]; k < member_of.start[j + 1]; ++k) {
+                for (const int i : cliques[static_cast<std::size_t>(member_of.other[k])]) {
+                    if (i > j && std::exchange(seen[i], j) != j) row.push_back(i);
+                }
+            }
+            std::sort(row.begin() + begin, row.end());
+        };
+    });
+    SymmetricPattern pattern;
+    pattern.block = block;
+    pattern.nodes = nodes;
+    pattern.node_start = std::move(rows.start);
+    pattern.node_row = std::move(rows.item);
+    return pattern;
+}
+
+void add_product(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> v,
+                 double factor, std::span<double> result) {
+    assert(pattern.block == 1 || pattern.block == 3);
+    if (pattern.block == 1)
+        add_product_of<1>(pattern, values, v, factor, result);
+    else
+        add_product_of<3>(pattern, values, v, factor, result);
+}
+
+}  // namespace pliant::linalg

@@ -1,0 +1,39 @@
+// Stiffness matrices too big to factorise: conjugate gradients on two levels.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+/// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (see CoarseSpace) is factorised. Time and
+/// memory grow with the number of nodes, where those of a factorisation grow with its square in bulky bodies. The same
+/// bits on any number of cores.
+class TwoLevel {
+public:
+    /// Analyses the pattern. Precondition: blocks of 3.
+    explicit TwoLevel(const SymmetricPattern& pattern);
+    TwoLevel(TwoLevel&&) noexcept;
+    TwoLevel& operator=(TwoLevel&&) noexcept;
+    ~TwoLevel();
+
+    /// `values` belong to the pattern; `positions` (nodes, 3) say where the nodes are now. False if the matrix is seen
+    /// not to be positive definite; solve() must not be called then.
+    [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
+
+    enum class Outcome { solved, indefinite, slow };
+    /// Solves in place for `columns` right-hand sides, stored one after the other, until the error, in the norm of the
+    /// matrix, is about `tolerance` of the solution. Not a digit beyond single precision. Slow: `limit` iterations left
+    /// more, and the right-hand sides hold what was reached.
+    [[nodiscard]] Outcome solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit);
+
+    [[nodiscard]] int iterations() const;  ///< of all columns of the last solve
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant::linalg

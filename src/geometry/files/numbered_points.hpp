@@ -1,0 +1,54 @@
+// The points of a file that numbers them as it likes: by number to their place in a list.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/core/vec3.hpp"
+
+namespace pliant::mesh {
+
+class NumberedPoints {
+public:
+    void reserve(std::size_t count) { points_.reserve(count); }
+
+    /// False if a point has that number already.
+    [[nodiscard]] bool add(std::int64_t number, const Vec3& point) {
+        const auto place = static_cast<std::int64_t>(points_.size());
+        if (points_.empty()) first_ = number;
+        const bool in_row = number - first_ == place && scattered_.empty();
+        if (!in_row && scattered_.empty()) scatter();
+        if (!in_row && !scattered_.try_emplace(number, place).second) return false;
+        points_.push_back(point);
+        return true;
+    }
+
+    /// Its place in the list, or -1.
+    [[nodiscard]] std::int64_t find(std::int64_t number) const {
+        if (scattered_.empty()) {
+            const bool held = number >= first_ && static_cast<std::uint64_t>(number - first_) < points_.size();
+            return held ? number - first_ : -1;
+        }
+        const auto found = scattered_.find(number);
+        return found == scattered_.end() ? -1 : found->second;
+    }
+
+    [[nodiscard]] std::size_t size() const { return points_.size(); }
+    /// The list, in the order of the file; this object is empty then.
+    [[nodiscard]] std::vector<Vec3> take() { return std::exchange(points_, {}); }
+
+private:
+    /// Numbers in a row need no table; the first that breaks the row makes one.
+    void scatter() {
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            scattered_[first_ + static_cast<std::int64_t>(i)] = static_cast<std::int64_t>(i);
+    }
+
+    std::vector<Vec3> points_;
+    std::int64_t first_ = 0;
+    std::unordered_map<std::int64_t, std::int64_t> scattered_;  ///< empty while the numbers run in a row
+};
+
+}  // namespace pliant::mesh

@@ -1,0 +1,103 @@
+#include "geometry/files/tet_collector.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant::mesh {
+namespace {
+
+/// The mid-edge nodes of a mesh, by the corners of their edges.
+class MidEdgeNodes {
+public:
+    void set(int a, int b, int node) { nodes_.try_emplace(std::minmax(a, b), node); }
+
+    /// The node between two corners; a new one in the middle where there is none.
+    int at(int a, int b, std::vector<Vec3>& points) {
+        const auto [entry, fresh] = nodes_.try_emplace(std::minmax(a, b), static_cast<int>(points.size()));
+        if (fresh) points.push_back(0.5 * (points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)]));
+        return entry->second;
+    }
+
+private:
+    std::map<std::pair<int, int>, int> nodes_;
+};
+
+/// Makes one quadratic mesh of tets of 4 nodes (`linear`) and of 10, whose nodes stand one tet after the other.
+void raise_linear_tets(TetMesh& mesh, const std::vector<bool>& linear) {
+    MidEdgeNodes between;
+    std::size_t next = 0;
+    for (const bool is_linear : linear) {
+        const int* n = mesh.nodes.data() + next;
+        for (std::size_t e = 0; e < 6 && !is_linear; ++e)
+            between.set(n[edge_corners[e][0]], n[edge_corners[e][1]], n[4 + e]);
+        next += is_linear ? 4 : 10;
+    }
+    std::vector<int> nodes;
+    nodes.reserve(10 * linear.size());
+    next = 0;
+    for (const bool is_linear : linear) {
+        const int* n = mesh.nodes.data() + next;
+        nodes.insert(nodes.end(), n, n + (is_linear ? 4 : 10));
+        for (std::size_t e = 0; e < 6 && is_linear; ++e)
+            nodes.push_back(between.at(n[edge_corners[e][0]], n[edge_corners[e][1]], mesh.points));
+        next += is_linear ? 4 : 10;
+    }
+    mesh.nodes = std::move(nodes);
+    mesh.notes.push_back(fmt::format("{} of {} tets have 4 nodes and the others 10: all were given 10",
+                                     std::count(linear.begin(), linear.end(), true), linear.size()));
+}
+
+void turn_inside_out_tets(TetMesh& mesh) {
+    std::size_t turned = 0;
+    const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        int* n = mesh.nodes.data() + t * width;
+        if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
+            continue;
+        ++turned;
+        reverse_tet({n, width});
+    }
+    if (turned > 0)
+        mesh.notes.push_back(fmt::format("{} of {} tets were inside out and were turned", turned, mesh.tet_count()));
+}
+
+}  // namespace
+
+Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t region) {
+    if (nodes.size() != 4 && nodes.size() != 10) return input_error("a tetrahedron has {} nodes", nodes.size());
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+        if (nodes[a] < 0 || static_cast<std::uint64_t>(nodes[a]) >= points_.size())
+            return input_error("a tetrahedron names point {}, there are {}", nodes[a], points_.size());
+        if (std::find(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(a), nodes[a]) !=
+            nodes.begin() + static_cast<std::ptrdiff_t>(a))
+            return input_error("a tetrahedron names point {} twice", nodes[a]);
+    }
+    for (const std::int64_t node : nodes) {
+        int& number = index_[static_cast<std::size_t>(node)];
+        if (number < 0) {
+            number = static_cast<int>(mesh_.points.size());
+            mesh_.points.push_back(points_[static_cast<std::size_t>(node)]);
+        }
+        mesh_.nodes.push_back(number);
+    }
+    linear_.push_back(nodes.size() == 4);
+    if (nodes.size() == 10) mesh_.order = 2;
+    mesh_.region.push_back(region_of_.try_emplace(region, static_cast<int>(region_of_.size())).first->second);
+    return {};
+}
+
+Result<TetMesh> TetCollector::finish(const std::map<std::int64_t, std::string>& names) {
+    if (mesh_.region.empty()) return input_error("holds no tetrahedra");
+    mesh_.region_names.resize(region_of_.size());
+    for (const auto& [number, region] : region_of_) {
+        const auto name = names.find(number);
+        mesh_.region_names[static_cast<std::size_t>(region)] =
+            name != names.end() && !name->second.empty() ? name->second : fmt::format("{}", number);
+    }
+    if (mesh_.order == 2 && std::find(linear_.begin(), linear_.end(), true) != linear_.end())
+        raise_linear_tets(mesh_, linear_);
+    turn_inside_out_tets(mesh_);
+    return std::move(mesh_);
+}
+
+}  // namespace pliant::mesh

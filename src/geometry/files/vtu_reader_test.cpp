@@ -1,0 +1,175 @@
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cstdint>
+
+#include "base/core/base64.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "geometry/files/vtu_writer.hpp"
+#include "geometry/mesh/test_tets.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+using pliant::test::replaced;
+
+namespace {
+
+TetMesh two_tets() {
+    return mesh::test::two_tets("soft foam", "grip & <tip>");
+}
+
+std::string problem(std::string_view text) {
+    const Result<TetMesh> mesh = parse_vtu(text, "a.vtu");
+    return mesh ? "" : mesh.error().message;
+}
+
+template <class Number>
+std::string bytes_of(const std::vector<Number>& values, bool big_endian) {
+    std::string bytes;
+    for (const Number value : values) {
+        const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+        if (big_endian)
+            bytes.append(raw.rbegin(), raw.rend());
+        else
+            bytes.append(raw.begin(), raw.end());
+    }
+    return bytes;
+}
+
+/// A count of bytes of 32 bits, then the bytes.
+template <class Number>
+std::string block(const std::vector<Number>& values, bool big_endian) {
+    const std::string bytes = bytes_of(values, big_endian);
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(bytes.size())}, big_endian) + bytes;
+}
+
+const std::vector<float> points = {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+const std::vector<std::int64_t> connectivity = {1, 2, 3, 1, 3, 2, 4};  // a triangle, an inside-out tet
+const std::vector<std::int64_t> offsets = {3, 7};
+const std::vector<std::uint8_t> types = {5, 10};
+
+/// A file whose arrays are what `array` says for each of them.
+template <class Array>
+std::string file(bool big_endian, const Array& array, const std::string& appended = "") {
+    return std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"") +
+           (big_endian ? "BigEndian" : "LittleEndian") +
+           "\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\">\n<Points>\n" +
+           array("Float32", "Points", block(points, big_endian)) + "</Points>\n<Cells>\n" +
+           array("Int64", "connectivity", block(connectivity, big_endian)) +
+           array("Int64", "offsets", block(offsets, big_endian)) + array("UInt8", "types", block(types, big_endian)) +
+           "</Cells>\n</Piece>\n</UnstructuredGrid>\n" + appended + "</VTKFile>\n";
+}
+
+std::string inline_base64(const std::string& type, const std::string& name, const std::string& bytes) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"binary\">\n  " + base64(bytes) +
+           "\n</DataArray>\n";
+}
+
+const std::string text_file =
+    "<VTKFile type=\"UnstructuredGrid\">\n<UnstructuredGrid>\n<Piece>\n<Points><DataArray type=\"Float64\" "
+    "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n<Cells><DataArray type=\"Int32\" "
+    "Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "
+    "format=\"ascii\">4</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" "
+    "format=\"ascii\">10</DataArray></Cells>\n<CellData><DataArray type=\"Int32\" Name=\"material\" "
+    "format=\"ascii\">-3</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>";
+
+}  // namespace
+
+TEST_CASE("compressed files come back as they were written, with the names of their regions") {
+    for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
+        VtuData data;
+        data.cells.push_back({"region", 1, std::vector<std::int32_t>(mesh.region.begin(), mesh.region.end())});
+        data.region_names = mesh.region_names;
+        const Result<TetMesh> back = parse_tet_mesh(*vtu_text(mesh, mesh.points, data), "a.vtu");
+        REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
+        CHECK(back->order == mesh.order);
+        CHECK(back->region == mesh.region);
+        CHECK(back->region_names == mesh.region_names);
+        for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+            for (std::size_t a = 0; a < mesh.tet(t).size(); ++a)
+                CHECK(back->points[back->tet(t)[a]] == mesh.points[mesh.tet(t)[a]]);
+        }
+    }
+}
+
+TEST_CASE("arrays in the file and appended, base64 and raw, of both byte orders") {
+    for (const bool big_endian : {false, true}) {
+        std::string raw;
+        std::string encoded;
+        const auto to_raw = [&](const std::string& type, const std::string& name, const std::string& bytes) {
+            const std::string tag = "<DataArray type=\"" + type + "\" Name=\"" + name +
+                                    "\" format=\"appended\" offset=\"" + std::to_string(raw.size()) + "\"/>\n";
+            raw += bytes;
+            return tag;
+        };
+        const auto to_encoded = [&](const std::string& type, const std::string& name, const std::string& bytes) {
+            const std::string tag = "<DataArray type=\"" + type + "\" Name=\"" + name +
+                                    "\" format=\"appended\" offset=\"" + std::to_string(encoded.size()) + "\"/>\n";
+            encoded += base64(bytes);
+            return tag;
+        };
+        file(big_endian, to_raw);  // once for the data, once more for the file that ends with them
+        file(big_endian, to_encoded);
+        const std::string raw_part =
+            "<AppendedData encoding=\"raw\">\n_" + std::exchange(raw, "") + "\n</AppendedData>\n";
+        const std::string encoded_part =
+            "<AppendedData encoding=\"base64\">\n _" + std::exchange(encoded, "") + "\n</AppendedData>\n";
+        for (const std::string& text : {file(big_endian, inline_base64), file(big_endian, to_raw, raw_part),
+                                        file(big_endian, to_encoded, encoded_part)}) {
+            const Result<TetMesh> mesh = parse_vtu(text, "a.vtu");
+            REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+            CHECK(mesh->points.size() == 4);
+            CHECK(mesh->tet_count() == 1);
+            CHECK(volume(*mesh) == near(1.0 / 6, {.relative = 1e-12}));
+            CHECK(mesh->region_names == std::vector<std::string>{"0"});
+        }
+    }
+}
+
+TEST_CASE("text arrays, and pieces that follow each other") {
+    const Result<TetMesh> one = parse_vtu(text_file, "a.vtu");
+    REQUIRE_MESSAGE(one, (one ? "" : one.error().message));
+    CHECK(one->region_names == std::vector<std::string>{"-3"});
+    const std::size_t begin = text_file.find("<Piece>");
+    const std::string piece = text_file.substr(begin, text_file.find("</UnstructuredGrid>") - begin);
+    const Result<TetMesh> two = parse_vtu(replaced(text_file, piece, piece + replaced(piece, "-3<", "5<")), "a.vtu");
+    REQUIRE_MESSAGE(two, (two ? "" : two.error().message));
+    CHECK(two->points.size() == 8);
+    CHECK(volume(*two) == near(2.0 / 6, {.relative = 1e-12}));
+    CHECK(two->region == std::vector<int>{0, 1});
+}
+
+TEST_CASE("broken files give a reason, and claims are not believed") {
+    CHECK(problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") == 0);
+    CHECK(problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>").find("only VTKFile type=\"UnstructuredGrid\"") !=
+          std::string::npos);
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 9<")).find("names point 9, there are 4") != std::string::npos);
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 2<")).find("point 2 twice") != std::string::npos);
+    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 x<")).find("a.vtu:5: \"x\" is not a number") == 0);
+    CHECK(problem(replaced(text_file, "0 0 0 1 0", "nan 0 0 1 0")).find("point 0 is not finite") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">4<", ">400<")).find("offsets of the cells do not fit") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">4<", ">3<")).find("has 3 nodes") != std::string::npos);
+    CHECK(problem(replaced(text_file, ">10<", ">12<")).find("holds no tetrahedra") != std::string::npos);
+    CHECK(problem(replaced(text_file, "connectivity", "connections")).find("Cells connectivity is missing") !=
+          std::string::npos);
+    CHECK(problem(replaced(text_file, "Int32", "Int24")).find("unknown type \"Int24\"") != std::string::npos);
+    CHECK(problem("<VTKFile compressor=\"vtkLZ4DataCompressor\"><UnstructuredGrid/></VTKFile>").find("LZ4") !=
+          std::string::npos);
+    const std::string claims = bytes_of<std::uint32_t>({0xffffffffu, 0xffffffffu, 0, 8}, false);
+    const std::string packed =
+        replaced(file(false, inline_base64), "byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order");
+    CHECK(problem(packed).find("damaged") != std::string::npos);
+    for (const std::string& header : {claims, bytes_of<std::uint32_t>({1, 0xffffffffu, 0, 4, 0}, false)}) {
+        const std::string good = base64(block(points, false));
+        CHECK(problem(replaced(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
+    }
+}
+
+TEST_CASE("no beginning of a file makes the reader fall over") {
+    const TetMesh mesh = two_tets();
+    const std::string whole = *vtu_text(mesh, mesh.points, {});
+    for (std::size_t length = 0; length < whole.size() - 12; ++length)
+        CHECK_FALSE(parse_vtu(whole.substr(0, length), "a"));
+}

@@ -1,0 +1,48 @@
+// What a person wants to know about a tet mesh.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh/tet_mesh.hpp"
+
+namespace pliant::mesh {
+
+struct RegionReport {
+    std::string name;
+    std::size_t tets = 0;
+    double volume = 0;  ///< in the mesh's unit, cubed
+};
+
+struct MeshReport {
+    static constexpr std::size_t quality_bins = 20;   ///< of 0.05 each
+    static constexpr std::size_t dihedral_bins = 36;  ///< of 5 degrees each
+
+    int order = 1;
+    std::size_t points = 0;
+    std::size_t tets = 0;
+    Box3 box;
+    std::vector<RegionReport> regions;
+    double worst_quality = 0;  ///< 6 sqrt(2) V / Lmax^3: 1 for a regular tet, 0 for a flat one
+    double median_quality = 0;
+    Vec3 worst_at;                ///< centroid of the tet with the worst quality
+    double min_dihedral_deg = 0;  ///< smallest angle between two faces of a tet: 70.5 for a regular tet
+    double max_dihedral_deg = 0;
+    double worst_jacobian = 1;                                 ///< least worst_scaled_jacobian(); 1 for linear tets
+    std::array<std::size_t, quality_bins> quality_counts{};    ///< tets
+    std::array<std::size_t, dihedral_bins> dihedral_counts{};  ///< angles, six to a tet
+    std::vector<std::string> notes;                            ///< the mesh's own
+};
+
+[[nodiscard]] MeshReport report_on(const TetMesh& mesh);
+/// The smallest angle between two faces of a tet, of all tets; 180 where there are none.
+[[nodiscard]] double smallest_dihedral_deg(const TetMesh& mesh);
+
+/// Tets with a dihedral angle below so many degrees.
+[[nodiscard]] std::size_t sliver_count(const TetMesh& mesh, double below_deg);
+[[nodiscard]] std::string report_text(const MeshReport& report);
+/// The same as a JSON object; docs/reference/geometry.md names its keys.
+[[nodiscard]] std::string report_json(const MeshReport& report);
+
+}  // namespace pliant::mesh

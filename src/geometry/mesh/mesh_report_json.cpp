@@ -1,0 +1,36 @@
+#include <nlohmann/json.hpp>
+
+#include "geometry/mesh/mesh_report.hpp"
+
+namespace pliant::mesh {
+namespace {
+
+nlohmann::json numbers(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+std::string report_json(const MeshReport& report) {
+    nlohmann::ordered_json out;
+    out["order"] = report.order;
+    out["nodes"] = report.points;
+    out["tets"] = report.tets;
+    out["low"] = numbers(report.box.low);
+    out["high"] = numbers(report.box.high);
+    out["quality"] = {{"worst", report.worst_quality},
+                      {"worst_at", numbers(report.worst_at)},
+                      {"median", report.median_quality},
+                      {"counts", report.quality_counts}};
+    out["dihedral_deg"] = {{"smallest", report.min_dihedral_deg},
+                           {"largest", report.max_dihedral_deg},
+                           {"counts", report.dihedral_counts}};
+    out["smallest_J"] = report.worst_jacobian;
+    out["regions"] = nlohmann::json::array();
+    for (const RegionReport& region : report.regions)
+        out["regions"].push_back({{"name", region.name}, {"tets", region.tets}, {"volume", region.volume}});
+    out["notes"] = report.notes;
+    return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace pliant::mesh

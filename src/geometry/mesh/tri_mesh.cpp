@@ -1,0 +1,26 @@
+#include "geometry/mesh/tri_mesh.hpp"
+
+namespace pliant::mesh {
+
+double signed_volume(const TriMesh& mesh) {
+    const Vec3 origin =
+        mesh.points.empty() ? Vec3{} : mesh.points.front();  // near the surface: no cancellation far out
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        sum += dot(mesh.points[a] - origin, cross(mesh.points[b] - origin, mesh.points[c] - origin));
+    }
+    return sum / 6;
+}
+
+Box3 bounds(const TriMesh& mesh) {
+    Box3 box;
+    for (const Vec3& p : mesh.points) box.add(p);
+    return box;
+}
+
+TriMesh scaled(TriMesh mesh, double factor) {
+    for (Vec3& p : mesh.points) p *= factor;
+    return mesh;
+}
+
+}  // namespace pliant::mesh

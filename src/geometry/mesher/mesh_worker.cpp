@@ -1,0 +1,249 @@
+#include "geometry/mesher/mesh_worker.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesher/packing.hpp"
+
+namespace pliant::mesh {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int look_every_ms = 50;  // whether somebody has cancelled
+constexpr double start_s = 60;     // loading Open CASCADE from a slow disk
+
+double environment_number(const char* name, double otherwise) {
+    const char* const text = std::getenv(name);
+    if (text == nullptr) return otherwise;
+    double value = 0;
+    const auto read = std::from_chars(text, text + std::strlen(text), value);
+    return read.ec == std::errc{} && *read.ptr == '\0' && value > 0 ? value : otherwise;
+}
+
+/// A process of pliant-mesh, between two requests or at work on one.
+class Worker {
+public:
+    Worker(pid_t process, MessagePipe pipe) : process_(process), pipe_(std::move(pipe)) {}
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+    ~Worker() { (void)end(); }
+
+    [[nodiscard]] MessagePipe& pipe() { return pipe_; }
+    /// Ends the process, if it has not ended; its status as of waitpid().
+    int end() {
+        if (process_ < 0) return status_;
+        ::kill(process_, SIGKILL);
+        while (::waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
+        }
+        process_ = -1;
+        return status_;
+    }
+    /// The status of a process that has closed its end: waits for it instead of killing it.
+    int ended() {
+        for (int k = 0; process_ >= 0 && k < 100; ++k) {
+            if (::waitpid(process_, &status_, WNOHANG) == process_) {
+                process_ = -1;
+                return status_;
+            }
+            ::usleep(10000);
+        }
+        return end();
+    }
+
+private:
+    pid_t process_;
+    int status_ = 0;
+    MessagePipe pipe_;
+};
+
+/// Why a process ended, in words.
+std::string reason_of(int status) {
+    if (WIFSIGNALED(status)) {
+        const int number = WTERMSIG(status);
+        const char* const words = ::strsignal(number);
+        return fmt::format("signal {}: {}", number, words != nullptr ? words : "unknown");
+    }
+    return fmt::format("exit status {}", WIFEXITED(status) ? WEXITSTATUS(status) : status);
+}
+
+/// In a session of its own: Ctrl-C is for this program, which then ends the mesher.
+Result<pid_t> spawn(const std::filesystem::path& program, double gigabytes, int socket) {
+    std::string name = program.string();
+    std::string limit = fmt::format("{}", gigabytes);
+    std::vector<char*> arguments{name.data(), limit.data(), nullptr};
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, socket, STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
+    pid_t process = -1;
+    const int error = ::posix_spawn(&process, name.c_str(), &files, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    if (error != 0) return failure("{}: cannot be started: {}", name, std::strerror(error));
+    return process;
+}
+
+Result<std::unique_ptr<Worker>> start_worker(const MesherLimits& limits) {
+    const Result<std::filesystem::path> program = mesher_program();
+    if (!program) return tl::unexpected(program.error());
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+        return failure("no pipe to the mesher can be made: {}", std::strerror(errno));
+    MessagePipe ours(ends[0]);
+    const MessagePipe theirs(ends[1]);
+    const Result<pid_t> process = spawn(*program, limits.gigabytes, theirs.file());
+    if (!process) return tl::unexpected(process.error());
+    return std::make_unique<Worker>(*process, std::move(ours));
+}
+
+/// Processes that wait for a request. They end with the program.
+class IdleWorkers {
+public:
+    std::unique_ptr<Worker> take() {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) return nullptr;
+        std::unique_ptr<Worker> worker = std::move(idle_.back());
+        idle_.pop_back();
+        return worker;
+    }
+    void give_back(std::unique_ptr<Worker> worker) {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(worker));
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Worker>> idle_;
+};
+
+/// Of the whole program, because starting one takes as long as a small mesh.
+IdleWorkers& idle_workers() {
+    static IdleWorkers workers;
+    return workers;
+}
+
+/// Waits for the next message, and looks after cancellation and the limit meanwhile.
+Result<Message> next_message(Worker& worker, Clock::time_point until, const MesherLimits& limits,
+                             const std::string& crash, const Progress& progress) {
+    Message message;
+    for (;;) {
+        if (progress.cancelled()) return cancelled();
+        const Received received = worker.pipe().receive(message, look_every_ms);
+        if (received == Received::message) return message;
+        if (received == Received::closed) return failure("{} ({})", crash, reason_of(worker.ended()));
+        if (Clock::now() > until)
+            return failure(
+                "meshing took longer than {:g} s and was ended; take a larger mesh size, or more time "
+                "(PLIANT_MESH_SECONDS)",
+                limits.seconds);
+    }
+}
+
+/// A new process says who it is before anything else.
+Status greet(Worker& worker) {
+    Progress silent;
+    const MesherLimits limits{start_s, 0};
+    const auto until =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(start_s));
+    const Result<Message> hello = next_message(
+        worker, until, limits, "pliant-mesh does not start; run it by hand with --version to see why", silent);
+    if (!hello) return tl::unexpected(hello.error());
+    if (hello->kind != MessageKind::greeting || hello->bytes != mesher_greeting)
+        return failure("pliant-mesh is of another version than this program; install both together");
+    return {};
+}
+
+Error unpack_error(const std::string& bytes) {
+    Unpacker in(bytes);
+    Error error;
+    unpack(in, error);
+    return in.finished() ? error : Error{Cause::failed, "pliant-mesh answered with an error that cannot be read"};
+}
+
+void pass_on(const std::string& bytes, Progress& progress) {
+    Unpacker in(bytes);
+    const std::string stage = in.text();
+    const double fraction = in.number<double>();
+    if (in.finished()) progress.advance(stage, fraction);
+}
+
+}  // namespace
+
+MesherLimits mesher_limits() {
+    MesherLimits limits;
+    limits.seconds = environment_number("PLIANT_MESH_SECONDS", limits.seconds);
+    const double all = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    limits.gigabytes = environment_number("PLIANT_MESH_GIGABYTES", all / 1e9);
+    return limits;
+}
+
+Result<std::filesystem::path> mesher_program() {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (const char* const named = std::getenv("PLIANT_MESH"); named != nullptr) {
+        if (fs::is_regular_file(named, error)) return fs::path(named);
+        return input_error("PLIANT_MESH names \"{}\", which is no file; it must be the program pliant-mesh", named);
+    }
+    const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const fs::path& path :
+         {here / "pliant-mesh", here / "../libexec/pliant/pliant-mesh", fs::path(PLIANT_MESH_BUILT)}) {
+        if (fs::is_regular_file(path, error)) return path;
+    }
+    return failure(
+        "shapes and surfaces are meshed by the program pliant-mesh, which is not beside {}; install it there, or set "
+        "PLIANT_MESH to where it is",
+        here.string());
+}
+
+Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
+                               Progress& progress) {
+    const MesherLimits limits = mesher_limits();
+    std::unique_ptr<Worker> worker = idle_workers().take();
+    if (worker == nullptr || !worker->pipe().send(kind, request)) {  // an idle one may have been killed
+        Result<std::unique_ptr<Worker>> fresh = start_worker(limits);
+        if (!fresh) return tl::unexpected(fresh.error());
+        worker = std::move(*fresh);
+        if (Status status = greet(*worker); !status) return tl::unexpected(status.error());
+        (void)worker->pipe().send(kind, request);  // where it dies now, the next message tells
+    }
+    const auto until =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
+    for (;;) {
+        Result<Message> message = next_message(*worker, until, limits, crash, progress);
+        if (!message) return tl::unexpected(message.error());
+        if (message->kind == MessageKind::progress) {
+            pass_on(message->bytes, progress);
+            continue;
+        }
+        if (message->kind != MessageKind::answer && message->kind != MessageKind::error)
+            return failure("pliant-mesh answered with something that cannot be read");
+        idle_workers().give_back(std::move(worker));
+        if (message->kind == MessageKind::error) return tl::unexpected(unpack_error(message->bytes));
+        return std::move(message->bytes);
+    }
+}
+
+}  // namespace pliant::mesh

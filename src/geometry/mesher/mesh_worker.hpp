@@ -1,0 +1,31 @@
+// The program pliant-mesh, which meshes for others: Gmsh, Open CASCADE and CGAL run in a process of their own. What
+// crashes there, or never ends, is one error here; what is cancelled ends at once; and their licence (GPL) is that of
+// pliant-mesh alone.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/core/error.hpp"
+#include "base/core/progress.hpp"
+#include "geometry/mesher/message_pipe.hpp"
+
+namespace pliant::mesh {
+
+/// Of one request. From the environment: PLIANT_MESH_SECONDS and PLIANT_MESH_GIGABYTES.
+struct MesherLimits {
+    double seconds = 3600;
+    double gigabytes = 0;  ///< of memory; 0: what the computer has
+};
+[[nodiscard]] MesherLimits mesher_limits();
+
+/// Where pliant-mesh is: what PLIANT_MESH names, else beside the running program, else where it was built or installed.
+[[nodiscard]] Result<std::filesystem::path> mesher_program();
+
+/// Has a request answered by a process that is kept for the next one. Any thread may ask; requests at one time run in
+/// processes of their own. Errors: those of the mesher; `crash`, with the reason, where its process dies; that it took
+/// longer than the limit; cancellation, which ends the process.
+[[nodiscard]] Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
+                                             Progress& progress);
+
+}  // namespace pliant::mesh

@@ -1,0 +1,179 @@
+#include "geometry/mesher/mesh_worker.hpp"
+
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "base/core/test_folder.hpp"
+#include "geometry/mesh/test_shapes.hpp"
+#include "geometry/mesher/mesher.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+using namespace pliant::mesh::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An environment variable for as long as the test takes.
+class Variable {
+public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+        if (const char* const before = std::getenv(name); before != nullptr) before_ = before;
+        ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() { before_.empty() ? ::unsetenv(name_) : ::setenv(name_, before_.c_str(), 1); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+private:
+    const char* name_;
+    std::string before_;
+};
+
+/// Processes of pliant-mesh that this program has started.
+std::vector<pid_t> meshers() {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        const std::string number = entry.path().filename();
+        if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+        std::ifstream file(entry.path() / "stat");
+        std::string stat{std::istreambuf_iterator<char>(file), {}};
+        const std::size_t name_end = stat.rfind(')');
+        if (stat.find("(pliant-mesh)") == std::string::npos || name_end == std::string::npos) continue;
+        std::istringstream rest(stat.substr(name_end + 1));
+        char state = 0;
+        pid_t parent = 0;
+        rest >> state >> parent;
+        if (parent == ::getpid() && state != 'Z') found.push_back(static_cast<pid_t>(std::stol(number)));
+    }
+    return found;
+}
+
+void kill_all() {
+    for (const pid_t process : meshers()) ::kill(process, SIGKILL);
+    while (!meshers().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+const std::vector<BodyGeometry> cube{{"cube", box({0, 0, 0}, {10, 10, 10})}};
+
+Result<TetMesh> mesh_cube(double size, Progress& progress) {
+    return mesh_bodies(cube, {.size = size, .order = 1}, progress);
+}
+
+/// Wants the work to stop after a while.
+class Impatient : public Progress {
+public:
+    [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
+
+private:
+    std::chrono::steady_clock::time_point until_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+};
+
+}  // namespace
+
+TEST_CASE("one process serves request after request, and a killed one is replaced") {
+    kill_all();
+    Progress silent;
+    const Result<TetMesh> first = mesh_cube(5, silent);
+    REQUIRE_MESSAGE(first, (first ? "" : first.error().message));
+    const std::vector<pid_t> before = meshers();
+    REQUIRE(before.size() == 1);
+    const Result<TetMesh> second = mesh_cube(5, silent);
+    REQUIRE(second);
+    CHECK(meshers() == before);
+    CHECK(second->points == first->points);
+    CHECK(second->nodes == first->nodes);
+
+    kill_all();
+    const Result<TetMesh> third = mesh_cube(5, silent);
+    REQUIRE_MESSAGE(third, (third ? "" : third.error().message));
+    CHECK(third->points == first->points);
+    CHECK(meshers() != before);
+}
+
+TEST_CASE("requests at one time have processes of their own and the same answers") {
+    Progress silent;
+    const Result<TetMesh> expected = mesh_cube(2, silent);
+    REQUIRE(expected);
+    std::vector<std::optional<Result<TetMesh>>> found(3);
+    std::vector<std::thread> threads;
+    for (auto& result : found) {
+        threads.emplace_back([&result] {
+            Progress own;
+            result = mesh_cube(2, own);
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& result : found) {
+        REQUIRE(result->has_value());
+        CHECK((*result)->points == expected->points);
+    }
+}
+
+TEST_CASE("a mesher that dies at work is one error, and the next request is served") {
+    std::thread killer([] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        kill_all();
+    });
+    Progress silent;
+    const Result<TetMesh> mesh = mesh_cube(0.1, silent);  // a million tets: longer than half a second
+    killer.join();
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::failed);
+    CHECK(mesh.error().message.find("the mesher crashed") == 0);
+    CHECK(mesh.error().message.find("signal 9") != std::string::npos);
+    CHECK(mesh_cube(5, silent));
+}
+
+TEST_CASE("cancelling ends the mesher at once") {
+    Impatient impatient;
+    const auto begin = std::chrono::steady_clock::now();
+    const Result<TetMesh> mesh = mesh_cube(0.1, impatient);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(5));
+}
+
+TEST_CASE("time and memory have limits that are told") {
+    Progress silent;
+    {
+        kill_all();
+        const Variable seconds("PLIANT_MESH_SECONDS", "0.5");
+        const Result<TetMesh> mesh = mesh_cube(0.1, silent);
+        REQUIRE_FALSE(mesh);
+        CHECK(mesh.error().message ==
+              "meshing took longer than 0.5 s and was ended; take a larger mesh size, or more time "
+              "(PLIANT_MESH_SECONDS)");
+    }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    const Variable memory("PLIANT_MESH_GIGABYTES", "0.9");
+    const Result<TetMesh> mesh = mesh_cube(0.08, silent);
+    REQUIRE_FALSE(mesh);
+    INFO(mesh.error().message);
+    const bool told = mesh.error().message.find("memory") != std::string::npos ||
+                      mesh.error().message.find("the mesher crashed") == 0;
+    CHECK(told);
+    kill_all();
+#endif
+}
+
+TEST_CASE("a program that is no mesher, or none, is told by name") {
+    kill_all();
+    Progress silent;
+    {
+        const Variable nowhere("PLIANT_MESH", "/nowhere/pliant-mesh");
+        CHECK(mesh_cube(5, silent).error().message ==
+              "PLIANT_MESH names \"/nowhere/pliant-mesh\", which is no file; it must be the program pliant-mesh");
+    }
+    const Variable other("PLIANT_MESH", "/bin/true");
+    const Result<TetMesh> mesh = mesh_cube(5, silent);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().message.find("pliant-mesh does not start") == 0);
+}

@@ -1,0 +1,51 @@
+#include "geometry/mesher/mesher.hpp"
+
+#include "geometry/mesher/mesh_worker.hpp"
+#include "geometry/mesher/notches.hpp"
+#include "geometry/mesher/packing.hpp"
+
+namespace pliant::mesh {
+namespace {
+
+constexpr const char* crash =
+    "the mesher crashed inside Gmsh, Open CASCADE or CGAL; another mesh size or a simpler drawing may pass";
+
+}  // namespace
+
+Box3 bounds(const BodyGeometry& body) {
+    const auto* solid = std::get_if<Solid>(&body.shape);
+    return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
+}
+
+Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
+    Packer request;
+    pack(request, std::vector<BodyGeometry>(bodies.begin(), bodies.end()));
+    pack(request, settings);
+    return unpacked<TetMesh>(ask_mesher(MessageKind::mesh_bodies, request.take(), crash, progress));
+}
+
+Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
+    if (!(tolerance > 0)) return input_error("the tolerance of a surface must be above zero");
+    Packer request;
+    pack(request, solid);
+    request.number(tolerance);
+    Progress silent;
+    return unpacked<TriMesh>(ask_mesher(MessageKind::tessellate, request.take(), crash, silent));
+}
+
+Result<double> solid_volume(const Solid& solid) {
+    Packer request;
+    pack(request, solid);
+    Progress silent;
+    return unpacked<double>(ask_mesher(MessageKind::volume, request.take(), crash, silent));
+}
+
+Result<std::vector<Notch>> crossed_notches(const TriMesh& surface, const std::vector<Vec3>& path) {
+    Packer request;
+    pack(request, surface);
+    request.list(path);
+    Progress silent;
+    return unpacked<std::vector<Notch>>(ask_mesher(MessageKind::notches, request.take(), crash, silent));
+}
+
+}  // namespace pliant::mesh

@@ -1,0 +1,316 @@
+#include "geometry/mesher/mesher.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+#include "base/core/near.hpp"
+#include "geometry/mesh/mesh_report.hpp"
+#include "geometry/mesh/test_shapes.hpp"
+#include "geometry/repair/surface_check.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+using namespace pliant::mesh::test;
+
+namespace {
+
+/// A bar of 100 x 20 x 15 with `gaps` V notches of 1 to 10 mm width and 10 mm depth.
+Solid notched_bar(int gaps) {
+    const Solid notch = solid(PrismSolid{{{13.5, 5}, {14.5, 5}, {19, 15}, {9, 15}}, {0, 2, 1}, 0, 20});
+    return without(box({0, 0, 0}, {100, 20, 15}), solid(RepeatedSolid{notch, gaps, {14, 0, 0}}));
+}
+
+TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size, int order = 1) {
+    Progress silent;
+    Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = order}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    return *mesh;
+}
+
+std::string problem(const std::vector<BodyGeometry>& bodies, double size) {
+    Progress silent;
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = 1}, silent);
+    return mesh ? "" : mesh.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a notched bar keeps its volume and its sharp edges, for any number of notches") {
+    for (const int gaps : {1, 3, 6}) {
+        const TetMesh mesh = mesh_of({{"bar", notched_bar(gaps)}}, 5);
+        CHECK(volume(mesh) == near(100 * 20 * 15 - gaps * 20 * 10 * 5.5, {.relative = 1e-9}));
+        const MeshReport report = report_on(mesh);
+        CHECK(report.worst_quality > 0.05);
+        CHECK(report.median_quality > 0.25);
+        CHECK(report.box.size().x == near(100, {.relative = 1e-12}));
+    }
+}
+
+TEST_CASE("bodies that touch share the nodes of their common face") {
+    const TetMesh mesh =
+        mesh_of({{"left", box({0, 0, 0}, {10, 10, 10})}, {"right", box({10, 0, 0}, {20, 10, 10})}}, 4, 2);
+    CHECK(mesh.region_names == std::vector<std::string>{"left", "right"});
+    CHECK(volume(mesh, 0) == near(1000, {.relative = 1e-9}));
+    CHECK(volume(mesh, 1) == near(1000, {.relative = 1e-9}));
+    TriMesh outer{mesh.points, {}};
+    double area = 0;
+    for (const Face& face : boundary_faces(mesh)) {
+        outer.triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+        const auto& p = mesh.points;
+        area += 0.5 * norm(cross(p[face.nodes[1]] - p[face.nodes[0]], p[face.nodes[2]] - p[face.nodes[0]]));
+    }
+    CHECK(check_closed(outer));
+    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // nothing of the common face is left outside
+}
+
+TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
+    const Solid ball = solid(SphereSolid{{1, 2, 3}, 5});
+    const double exact = 4.0 / 3 * std::numbers::pi * 125;
+    CHECK(*solid_volume(ball) == near(exact, {.relative = 1e-12}));
+    const double coarse = exact - volume(mesh_of({{"ball", ball}}, 3));
+    const double fine = exact - volume(mesh_of({{"ball", ball}}, 1));
+    CHECK(coarse > 0);
+    CHECK(fine < coarse / 3);
+    const TetMesh curved = mesh_of({{"ball", ball}}, 3, 2);
+    double farthest = 0;
+    for (const Face& face : boundary_faces(curved)) {
+        for (const int node : face.nodes)
+            farthest = std::max(farthest, std::fabs(norm(curved.points[node] - Vec3{1, 2, 3}) - 5));
+    }
+    CHECK(farthest < 1e-6);  // mid-edge nodes lie on the sphere too
+}
+
+TEST_CASE("rotation, translation and union by the kernel agree with membership") {
+    const Solid arm = solid(RotatedSolid{box({0, -1, -1}, {10, 1, 1}), {0, 0, 0}, {0, 0, 1}, std::numbers::pi / 2});
+    const Solid cross = solid(CombinedSolid{CombinedSolid::Operation::unite, {box({0, -1, -1}, {10, 1, 1}), arm}});
+    CHECK(*solid_volume(cross) == near(40 + 40 - 2, {.relative = 1e-12}));
+    const TetMesh mesh = mesh_of({{"cross", cross}}, 2);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        Vec3 centroid;
+        for (const int node : mesh.tet(t)) centroid += 0.25 * mesh.points[node];
+        CHECK(contains(cross, centroid));
+    }
+}
+
+TEST_CASE("repeated copies are united whether they overlap, touch or stand apart") {
+    for (const auto& [step, exact] : {std::pair(0.5, 3.5), std::pair(1.0, 6.0), std::pair(1.5, 6.0)}) {
+        const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 6, {step, 0, 0}});
+        CHECK(*solid_volume(row) == near(exact, {.relative = 1e-12}));
+        const Solid rest = without(box({-1, -1, -1}, {11, 2, 2}), row);
+        CHECK(*solid_volume(rest) == near(108 - exact, {.relative = 1e-12}));
+    }
+    const Solid row = solid(RepeatedSolid{box({0, 0, 0}, {1, 1, 1}), 3, {1, 0, 0}});
+    CHECK(volume(mesh_of({{"row", row}}, 1)) == near(3, {.relative = 1e-12}));
+}
+
+TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
+    const Result<TriMesh> bar = tessellate(notched_bar(6), 0.01);
+    REQUIRE_MESSAGE(bar, (bar ? "" : bar.error().message));
+    CHECK(check_closed(*bar));
+    CHECK(signed_volume(*bar) == near(30000 - 6 * 1100, {.relative = 1e-9}));
+    const Result<TriMesh> ball = tessellate(solid(SphereSolid{{0, 0, 0}, 5}), 0.01);
+    REQUIRE(ball);
+    CHECK(check_closed(*ball));
+    CHECK(signed_volume(*ball) == near(4.0 / 3 * std::numbers::pi * 125, {.relative = 5e-3}));
+}
+
+TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance") {
+    const double pi = std::numbers::pi;
+    const Solid ball = solid(SphereSolid{{0, 0, 0}, 5});
+    const Solid rod = solid(CylinderSolid{{0, 0, -9}, {0, 0, 9}, 2});
+    const Solid cube = box({-10, -10, -10}, {10, 10, 10});
+    for (const auto& [cavity, gone] : {std::pair(ball, 4.0 / 3 * pi * 125), std::pair(rod, pi * 4 * 18)}) {
+        const Result<TriMesh> hollow = tessellate(without(cube, cavity), 0.01);
+        REQUIRE_MESSAGE(hollow, (hollow ? "" : hollow.error().message));
+        CHECK(check_closed(*hollow));
+        CHECK(signed_volume(*hollow) == near(8000 - gone, {.relative = 1e-3}));
+        CHECK(signed_volume(*tessellate(cavity, 0.01)) == near(gone, {.relative = 1e-2}));
+    }
+    double farthest = 0;
+    const TriMesh surface = *tessellate(ball, 0.01);
+    for (const auto& [a, b, c] : surface.triangles)
+        farthest = std::max(farthest, 5 - norm(surface.points[a] + surface.points[b] + surface.points[c]) / 3);
+    CHECK(farthest > 0);
+    CHECK(farthest < 0.01);
+}
+
+TEST_CASE("a wall thinner than the chords of its curve is followed more closely") {
+    const Solid tube =
+        without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));
+    const double exact = std::numbers::pi * (25 - 4.8 * 4.8) * 10;
+    CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == near(exact, {.relative = 0.05}));
+}
+
+TEST_CASE("a surface body is meshed anew to the wanted size") {
+    const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
+    REQUIRE(surface);
+    const TetMesh mesh = mesh_of({{"bar", *surface}}, 4);
+    CHECK(volume(mesh) == near(30000 - 3 * 1100, {.relative = 1e-12}));
+    CHECK(mesh.tet_count() > 1000);
+    CHECK(report_on(mesh).worst_quality > 0.02);
+}
+
+TEST_CASE("the mesh size is judged by the material, not by the box around it") {
+    const Solid rod = box({0, 0, 0}, {500, 2, 2});
+    const Solid turned = solid(RotatedSolid{rod, {0, 0, 0}, {0, 0, 1}, 0.7});
+    const Solid tilted = solid(RotatedSolid{turned, {0, 0, 0}, {0, 1, 0}, 0.7});
+    CHECK(volume(mesh_of({{"rod", tilted}}, 2)) == near(2000, {.relative = 1e-9}));
+    // A thin sheet has little volume and many triangles.
+    CHECK(problem({{"sheet", box({0, 0, 0}, {500, 500, 1e-4})}}, 0.1).find("tetrahedra, more than") !=
+          std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("a caller that cancels gets no mesh") {
+    struct Cancelled : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const std::vector<BodyGeometry> bodies = {{"a", *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1)}};
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 1}, stop);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
+}
+
+TEST_CASE("a surface body may have several shells and cavities") {
+    const Solid hollow = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
+    const Solid both = solid(CombinedSolid{CombinedSolid::Operation::unite, {hollow, box({20, 0, 0}, {30, 10, 10})}});
+    const Result<TriMesh> surface = tessellate(both, 0.1);
+    REQUIRE(surface);
+    const TetMesh mesh = mesh_of({{"a", *surface}}, 3, 2);
+    CHECK(mesh.order == 2);
+    CHECK(volume(mesh) == near(1000 - 64 + 1000, {.relative = 1e-12}));
+}
+
+TEST_CASE("a small hole keeps its round quadratic faces") {
+    const Solid hole = solid(CylinderSolid{{20, 10, -1}, {20, 10, 11}, 1.5});
+    const TetMesh mesh = mesh_of({{"plate", without(box({0, 0, 0}, {40, 20, 10}), hole)}}, 5, 2);
+    std::size_t on_wall = 0;
+    double farthest = 0;
+    for (const Face& face : boundary_faces(mesh)) {
+        const auto radius = [&](int node) { return std::hypot(mesh.points[node].x - 20, mesh.points[node].y - 10); };
+        if (radius(face.nodes[0]) > 1.6 || radius(face.nodes[1]) > 1.6 || radius(face.nodes[2]) > 1.6) continue;
+        ++on_wall;
+        for (const int node : face.nodes) farthest = std::max(farthest, std::fabs(radius(node) - 1.5));
+    }
+    CHECK(on_wall >= 8);
+    CHECK(farthest < 1e-6);
+}
+
+TEST_CASE("the same bodies give the same mesh, byte for byte") {
+    const std::vector<BodyGeometry> bodies = {{"a", notched_bar(2)}, {"b", box({100, 0, 0}, {110, 20, 15})}};
+    const TetMesh first = mesh_of(bodies, 5, 2);
+    const TetMesh second = mesh_of(bodies, 5, 2);
+    REQUIRE(first.points.size() == second.points.size());
+    CHECK(std::memcmp(first.points.data(), second.points.data(), first.points.size() * sizeof(Vec3)) == 0);
+    CHECK(first.nodes == second.nodes);
+}
+
+TEST_CASE("where bodies overlap the later one wins, and a note tells the volume") {
+    const Solid left = box({0, 0, 0}, {10, 10, 10});
+    const Solid right = box({8, 0, 0}, {20, 10, 10});
+    const TetMesh mesh = mesh_of({{"left", left}, {"right", right}}, 4, 1);
+    CHECK(volume(mesh, 0) == near(800, {.relative = 1e-12}));
+    CHECK(volume(mesh, 1) == near(1200, {.relative = 1e-12}));
+    REQUIRE(mesh.notes.size() == 1);
+    CHECK(mesh.notes[0].find("\"left\" and \"right\" overlap in a volume of 200 ") == 0);
+    CHECK(mesh.notes[0].find("belongs to \"right\"") != std::string::npos);
+    const TetMesh other = mesh_of({{"right", right}, {"left", left}}, 4, 1);
+    CHECK(volume(other, 0) == near(1000, {.relative = 1e-12}));
+}
+
+TEST_CASE("enclosed space is a region of its own, with a cap where it has a mouth") {
+    const auto enclosed = [](const Vec3& at, std::vector<Solid> walls) {
+        return std::make_shared<const SolidNode>(SolidNode{EnclosedSolid{at, std::move(walls)}});
+    };
+    const Solid shell = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 7}));
+    const TetMesh closed = mesh_of({{"shell", shell}, {"air", enclosed({5, 5, 5}, {shell})}}, 4, 1);
+    CHECK(volume(closed, 1) == near(64, {.relative = 1e-12}));
+    CHECK(boundary_faces(closed).size() < region_faces(closed, 0).size());  // the air fills the cavity
+    const Solid pot = without(box({0, 0, 0}, {10, 10, 10}), box({3, 3, 3}, {7, 7, 11}));
+    const std::string open = problem({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot})}}, 4);
+    CHECK(open.find("chamber \"air\": the point (5, 5, 5) lies in no closed cavity") != std::string::npos);
+    const Solid lid = box({2, 2, 10}, {8, 8, 11});
+    const TetMesh capped = mesh_of({{"pot", pot}, {"air", enclosed({5, 5, 5}, {pot, lid})}}, 4, 1);
+    CHECK(volume(capped, 0) == near(1000 - 7 * 16, {.relative = 1e-12}));
+    CHECK(volume(capped, 1) == near(7 * 16, {.relative = 1e-12}));
+}
+
+TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
+    const std::vector<BodyGeometry> bars = {{"left", box({0, 0, 0}, {10, 10, 10})},
+                                            {"right", box({10.004, 2, 2}, {20, 8, 8})}};
+    const Solid hole = solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 2});
+    const std::vector<BodyGeometry> pin = {{"block", without(box({0, 0, 0}, {10, 10, 4}), hole)},
+                                           {"pin", solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 1.996})}};
+    const auto mesh_with = [](const std::vector<BodyGeometry>& bodies, double close_gaps) {
+        Progress silent;
+        Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 2, .order = 1, .close_gaps = close_gaps}, silent);
+        REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        return *mesh;
+    };
+    struct Row {
+        const std::vector<BodyGeometry>* bodies;
+        double whole, between;  ///< areas of the surface: of both bodies, of the face between them
+    };
+    const double pi = std::numbers::pi;
+    for (const Row& row :
+         {Row{&bars, 6 * 100 + 2 * 36 + 4 * 60, 36}, Row{&pin, 2 * 100 + 4 * 40 + 2 * 16 * pi, 16 * pi}}) {
+        const auto area = [](const TetMesh& mesh) {
+            double sum = 0;
+            for (const Face& f : boundary_faces(mesh)) {
+                const Vec3& p = mesh.points[f.nodes[0]];
+                sum += norm(cross(mesh.points[f.nodes[1]] - p, mesh.points[f.nodes[2]] - p)) / 2;
+            }
+            return sum;
+        };
+        const TetMesh open = mesh_with(*row.bodies, 0.003);
+        CHECK(open.notes.empty());
+        CHECK(area(open) == near(row.whole, {.relative = 0.02}));
+        const TetMesh closed = mesh_with(*row.bodies, 0.01);
+        CHECK(area(closed) == near(row.whole - 2 * row.between, {.relative = 0.02}));
+        CHECK(volume(closed) == near(volume(open), {.relative = 0.01}));
+        REQUIRE(closed.notes.size() == 1);
+        CAPTURE(closed.notes.front());
+        CHECK(closed.notes.front().find("between \"" + row.bodies->front().name) != std::string::npos);
+        if (row.bodies == &bars) CHECK(closed.notes.front().starts_with("a gap of 0.004 between"));
+        CHECK(closed.notes.front().find("was closed") != std::string::npos);
+    }
+}
+
+TEST_CASE("what cannot be meshed is refused with a reason") {
+    CHECK(problem({{"a", box({1, 1, 1}, {2, 2, 2})}, {"b", box({0, 0, 0}, {5, 5, 5})}}, 3)
+              .find("body \"a\" is empty: all of it belongs to later ones") != std::string::npos);
+    CHECK(problem({{"a", without(box({0, 0, 0}, {1, 1, 1}), box({-1, -1, -1}, {2, 2, 2}))}}, 1).find("is empty") !=
+          std::string::npos);
+    CHECK(problem({{"a", box({0, 0, 0}, {100, 100, 100})}}, 0.1).find("tetrahedra, more than") != std::string::npos);
+    TriMesh open = *tessellate(box({0, 0, 0}, {1, 1, 1}), 0.1);
+    open.triangles.resize(2);
+    const std::string sheet = problem({{"a", open}}, 1);
+    CHECK(sheet.find("body \"a\": the surface encloses nothing: it is an open sheet") == 0);
+    CHECK(sheet.find("not closed: ") != std::string::npos);
+    Progress silent;
+    CHECK_FALSE(mesh_bodies({}, {.size = 1}, silent));
+    CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
+}
+
+TEST_CASE("drawn solids get no sliver") {
+    // As Gmsh gives them these have angles of 0.3 to 3 degrees.
+    struct Box {
+        Vec3 sides;
+        double size;
+    };
+    for (const auto& [sides, size] :
+         {Box{{20, 5, 2}, 3}, Box{{20, 10, 4}, 3}, Box{{20, 20, 2}, 2.3}, Box{{37, 5, 2}, 1.7}, Box{{37, 5, 2}, 3},
+          Box{{37, 5, 4}, 3}, Box{{37, 5, 7}, 4}, Box{{37, 5, 12}, 4}}) {
+        const TetMesh mesh = mesh_of({{"box", box({0, 0, 0}, sides)}}, size, 2);
+        CHECK(volume(mesh) == near(sides.x * sides.y * sides.z, {.relative = 1e-9}));
+        const double angle = smallest_dihedral_deg(mesh);
+        CHECK_MESSAGE(angle >= 5, angle << " degrees: " << sides.x << " x " << sides.y << " x " << sides.z);
+    }
+}

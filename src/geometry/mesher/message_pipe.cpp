@@ -1,0 +1,77 @@
+#include "geometry/mesher/message_pipe.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace pliant::mesh {
+namespace {
+
+constexpr std::size_t head_size = 1 + sizeof(std::uint64_t);
+
+bool send_all(int file, const char* bytes, std::size_t size) {
+    while (size > 0) {
+        const ssize_t sent = ::send(file, bytes, size, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) return false;
+        bytes += sent;
+        size -= static_cast<std::size_t>(sent);
+    }
+    return true;
+}
+
+}  // namespace
+
+MessagePipe::MessagePipe(MessagePipe&& other) noexcept
+    : file_(std::exchange(other.file_, -1)), come_(std::move(other.come_)) {}
+
+MessagePipe& MessagePipe::operator=(MessagePipe&& other) noexcept {
+    std::swap(file_, other.file_);
+    std::swap(come_, other.come_);
+    return *this;
+}
+
+MessagePipe::~MessagePipe() {
+    if (file_ >= 0) ::close(file_);
+}
+
+bool MessagePipe::send(MessageKind kind, std::string_view bytes) const {
+    std::array<char, head_size> head{};
+    head[0] = static_cast<char>(kind);
+    const std::uint64_t size = bytes.size();
+    std::memcpy(head.data() + 1, &size, sizeof(size));
+    return send_all(file_, head.data(), head.size()) && send_all(file_, bytes.data(), bytes.size());
+}
+
+bool MessagePipe::take_message(Message& message) {
+    if (come_.size() < head_size) return false;
+    std::uint64_t size = 0;
+    std::memcpy(&size, come_.data() + 1, sizeof(size));
+    if (come_.size() - head_size < size) return false;
+    message.kind = static_cast<MessageKind>(come_[0]);
+    message.bytes.assign(come_, head_size, static_cast<std::size_t>(size));
+    come_.erase(0, head_size + static_cast<std::size_t>(size));
+    return true;
+}
+
+Received MessagePipe::receive(Message& message, int wait_ms) {
+    std::array<char, 65536> chunk{};
+    while (!take_message(message)) {
+        pollfd ready{file_, POLLIN, 0};
+        const int count = ::poll(&ready, 1, wait_ms);
+        if (count < 0 && errno == EINTR) continue;
+        if (count == 0) return Received::waiting;
+        const ssize_t got = ::recv(file_, chunk.data(), chunk.size(), 0);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return Received::closed;
+        come_.append(chunk.data(), static_cast<std::size_t>(got));
+    }
+    return Received::message;
+}
+
+}  // namespace pliant::mesh

@@ -1,0 +1,21 @@
+// Solids of STEP files (ISO 10303-21), with their exact curved faces.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/core/error.hpp"
+#include "geometry/shapes/solid.hpp"
+
+namespace pliant::mesh {
+
+/// True if the bytes begin like a STEP file.
+[[nodiscard]] bool looks_like_step(std::string_view bytes);
+
+/// The solids of a file that `part` names, by the name that the drawing program gave them; all of them if it is empty.
+/// `scale`: lengths of the caller per millimetre (the file says its own unit). Errors name the file, and for a part
+/// that is not there those that are.
+[[nodiscard]] Result<Solid> read_step(const std::filesystem::path& path, const std::string& part, double scale);
+
+}  // namespace pliant::mesh

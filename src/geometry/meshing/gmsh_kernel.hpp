@@ -1,0 +1,54 @@
+// What this folder asks of Gmsh and Open CASCADE; use mesher.hpp from outside. Gmsh keeps one global state: all calls
+// wait for each other, and each begins with an empty model.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
+#include "geometry/mesher/step_content.hpp"
+#include "geometry/shapes/solid.hpp"
+
+namespace pliant::mesh::kernel {
+
+struct NamedSolid {
+    std::string name;
+    Solid solid;
+};
+
+/// An error that is about one body: its only problem has the body's name as key.
+[[nodiscard]] inline tl::unexpected<Error> about(const std::string& body, Error error) {
+    error.problems = {{"", 0, body, error.message}};
+    return tl::unexpected(std::move(error));
+}
+
+/// Wanted edge length in solid i at a point; empty: the size of the mesh everywhere.
+using SizeAt = std::function<double(std::size_t, const Vec3&)>;
+
+/// One conforming mesh; region i is solid i, without region names. Where solids overlap the later one has what they
+/// share, and a note tells the volume; where they stand at most `join_within` apart they are joined. An empty solid and
+/// a size that gives too many tets are errors.
+[[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order,
+                                          const SizeAt& size_at = {}, double join_within = 0);
+
+/// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
+/// than `angle_deg` stay. Where a dihedral angle is under 5 degrees edges get up to a fifth shorter. A surface that
+/// cannot be parametrised keeps its own triangles, and a note says so.
+[[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg,
+                                           const SizeAt& size_at = {});
+
+/// See mesher.hpp; the tolerance is above zero.
+[[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
+[[nodiscard]] Result<double> solid_volume(const Solid& solid);
+
+/// All solids of a STEP file, millimetres times `scale`.
+[[nodiscard]] Result<StepContent> read_step(const std::string& file, double scale);
+
+/// Refuses a mesh of more than 20 million tets, by a body's volume and its surface's area.
+[[nodiscard]] Status check_tet_count(double volume, double area, double size);
+
+}  // namespace pliant::mesh::kernel

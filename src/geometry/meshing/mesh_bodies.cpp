@@ -1,0 +1,503 @@
+#include "geometry/meshing/mesh_bodies.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "geometry/mesh/mesh_report.hpp"
+#include "geometry/mesh/tet_locator.hpp"
+#include "geometry/meshing/gmsh_kernel.hpp"
+#include "geometry/meshing/size_field.hpp"
+#include "geometry/meshing/touching_bodies.hpp"
+#include "geometry/meshing/walls.hpp"
+#include "geometry/meshing/winding_mesher.hpp"
+#include "geometry/repair/narrow_gaps.hpp"
+#include "geometry/repair/surface_check.hpp"
+#include "geometry/repair/surface_crossings.hpp"
+#include "geometry/repair/surface_seams.hpp"
+#include "geometry/repair/surface_shells.hpp"
+#include "geometry/repair/surface_slivers.hpp"
+#include "geometry/shapes/flat_faces.hpp"
+
+namespace pliant::mesh::kernel {
+namespace {
+
+/// What is meshed in one go: all solids together, bodies that touch surfaces, or one piece of a surface.
+struct Part {
+    TetMesh mesh;  ///< regions are bodies
+};
+
+/// True if a node of `one` lies in `other` or within `margin` of it; then `body` is the region there.
+bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& body) {
+    const TetLocator locator(other);
+    Box3 box;
+    for (const Vec3& p : other.points) box.add(p);
+    for (const Vec3& p : one.points) {
+        if (!box.contains(p, margin)) continue;
+        const auto found = locator.locate(p);
+        if (found.distance > margin) continue;
+        body = other.region[static_cast<std::size_t>(found.tet)];
+        return true;
+    }
+    return false;
+}
+
+/// What was not seen to touch must not: a mesh there would fall apart unnoticed.
+Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGeometry> bodies, double margin) {
+    const int own = fresh.mesh.region.front();
+    int other = own;
+    if (!reaches_into(fresh.mesh, before.mesh, margin, other)) {
+        if (!reaches_into(before.mesh, fresh.mesh, margin, other)) return {};
+        other = before.mesh.region.front();
+    }
+    const std::string& name = bodies[static_cast<std::size_t>(own)].name;
+    if (other == own)
+        return about(name,
+                     {Cause::input, fmt::format("body \"{}\": two shells of its surface touch or overlap", name)});
+    const std::string& neighbour = bodies[static_cast<std::size_t>(other)].name;
+    return about(neighbour, {Cause::input, fmt::format("body \"{}\" comes within a hundredth of the mesh size of body "
+                                                       "\"{}\" or overlaps it, less than a mesh of that size can tell; "
+                                                       "take a smaller size, or draw them to touch",
+                                                       name, neighbour)});
+}
+
+/// Sizes for the kernel, whose solids are some of the bodies; empty where one size holds everywhere.
+SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of_solid) {
+    if (field.uniform()) return {};
+    return [&field, bodies = std::move(body_of_solid)](std::size_t solid, const Vec3& p) {
+        return field.at(bodies[solid], p);
+    };
+}
+
+/// True if coordinates of 32 bits say where the solid is.
+bool is_rounded(const Solid& solid) {
+    if (std::holds_alternative<PolyhedronSolid>(solid->shape)) return true;
+    const auto* combined = std::get_if<CombinedSolid>(&solid->shape);
+    return combined != nullptr && std::any_of(combined->parts.begin(), combined->parts.end(), is_rounded);
+}
+
+/// Faces of surfaces that were drawn to touch are this far apart at most.
+double rounding(std::span<const BodyGeometry> bodies) {
+    constexpr double share = 2e-6;  // of the size of all: 32 bits hold 6e-8 of a coordinate, some of them add up
+    Box3 box;
+    bool rounded = false;
+    for (const BodyGeometry& body : bodies) {
+        box.add(bounds(body).low);
+        box.add(bounds(body).high);
+        const auto* solid = std::get_if<Solid>(&body.shape);
+        rounded = rounded || (solid != nullptr && is_rounded(*solid));
+    }
+    return rounded ? share * box.diagonal() : 0;
+}
+
+Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,
+                               const SizeField& field, double join_within, const std::vector<bool>& left_out) {
+    std::vector<NamedSolid> solids;
+    std::vector<int> body_of_solid;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const auto* solid = std::get_if<Solid>(&bodies[b].shape);
+        if (solid == nullptr || left_out[b]) continue;
+        solids.push_back({bodies[b].name, *solid});
+        body_of_solid.push_back(static_cast<int>(b));
+    }
+    if (solids.empty()) return Part{};
+    const SizeAt size_at = sizes_of(field, {body_of_solid.begin(), body_of_solid.end()});
+    Result<TetMesh> mesh =
+        mesh_solids(solids, settings.size, settings.order, size_at, std::max(join_within, rounding(bodies)));
+    if (!mesh) return tl::unexpected(mesh.error());
+    for (int& region : mesh->region) region = body_of_solid[static_cast<std::size_t>(region)];
+    return Part{std::move(*mesh)};
+}
+
+double surface_area(const TriMesh& surface) {
+    double sum = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const Vec3& p = surface.points[static_cast<std::size_t>(a)];
+        sum += norm(cross(surface.points[static_cast<std::size_t>(b)] - p,
+                          surface.points[static_cast<std::size_t>(c)] - p)) /
+               2;
+    }
+    return sum;
+}
+
+/// A body whose surface is closed and simple: one mesh per solid piece.
+Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings, const SizeAt& size_at) {
+    if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
+    // Gmsh's recovery of the boundary may crash on what follows, rather than fail.
+    constexpr double finest = 5e-6;
+    if (cuts_itself(surface)) return input_error("the surface cuts through itself or touches itself");
+    if (finest_detail(surface) < finest)
+        return input_error("the surface has triangles lower than {:.0e} of its size", finest);
+    const Result<std::vector<TriMesh>> pieces = solid_pieces(surface);
+    if (!pieces) return tl::unexpected(pieces.error());
+    std::vector<TetMesh> meshes;
+    for (const TriMesh& piece : *pieces) {
+        Result<TetMesh> mesh = mesh_surface(piece, settings.size, settings.angle_deg, size_at);
+        if (!mesh) return tl::unexpected(mesh.error());
+        int region = 0;
+        for (const TetMesh& before : meshes) {
+            if (reaches_into(*mesh, before, 0.01 * settings.size, region) ||
+                reaches_into(before, *mesh, 0.01 * settings.size, region))
+                return input_error("two shells of its surface touch or overlap");
+        }
+        meshes.push_back(std::move(*mesh));
+    }
+    return meshes;
+}
+
+/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+constexpr double sliver_deg = 5;
+
+/// Where Gmsh had to keep the triangles that were drawn, and they are too slender: a mesh from the winding number, if
+/// that is better.
+void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const MeshSettings& settings,
+                     Progress& progress) {
+    double angle = sliver_deg;
+    bool as_drawn = false;
+    for (const TetMesh& mesh : meshes) {
+        as_drawn = as_drawn || !mesh.notes.empty();
+        angle = std::min(angle, smallest_dihedral_deg(mesh));
+    }
+    if (!as_drawn || angle >= sliver_deg) return;
+    Result<TetMesh> mesh = mesh_by_winding(surface, settings.size, settings.angle_deg, progress);
+    if (!mesh || smallest_dihedral_deg(*mesh) <= angle) return;
+    mesh->notes.front() = fmt::format(
+        "the surface could not be divided anew by Gmsh and was meshed from its winding number; check its volume: "
+        "{:.6g}",
+        volume(*mesh));
+    meshes = {std::move(*mesh)};
+}
+
+/// The walls of a body in a mesh.
+std::vector<WallSample> walls_of(const TetMesh& mesh, std::size_t body) {
+    return wall_samples(region_surface(mesh, static_cast<int>(body)));
+}
+
+/// Tets between faces that are much closer than edges are long are flat: with shorter edges there, they are better.
+void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std::size_t b,
+                       const MeshSettings& settings, SizeField field) {
+    constexpr double elements = 0.2;  // through the thinnest wall
+    double angle = sliver_deg;
+    std::size_t thin = 0;
+    for (const TetMesh& mesh : meshes) {
+        std::vector<WallSample> walls = walls_of(mesh, 0);
+        std::erase_if(walls, [](const WallSample& w) { return w.thickness > elements * w.edge; });
+        field.add_walls(walls, elements);
+        thin += walls.size();
+        angle = std::min(angle, smallest_dihedral_deg(mesh));
+    }
+    if (angle >= sliver_deg || thin == 0) return;
+    Result<std::vector<TetMesh>> finer = mesh_pieces(surface, settings, sizes_of(field, {b}));
+    if (!finer) return;
+    double its = sliver_deg;
+    for (const TetMesh& mesh : *finer) its = std::min(its, smallest_dihedral_deg(mesh));
+    if (its <= angle) return;
+    meshes = std::move(*finer);
+    meshes.front().notes.emplace_back(
+        "edges are shorter than the mesh size beside walls that are much thinner than it");
+}
+
+/// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
+Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
+                                            const MeshSettings& settings, const SizeField& field, Progress& progress) {
+    const auto& drawn = std::get<TriMesh>(bodies[b].shape);
+    TriMesh surface = drawn;
+    const SliverCount slivers = remove_slivers(surface);
+    const auto blame = [&](const Error& error) {
+        return about(bodies[b].name, {error.cause, fmt::format("body \"{}\": {}", bodies[b].name, error.message)});
+    };
+    Status few = check_tet_count(std::fabs(signed_volume(surface)), surface_area(surface), settings.size);
+    if (!few) return blame(few.error());
+    Result<std::vector<TetMesh>> meshes = mesh_pieces(surface, settings, sizes_of(field, {b}));
+    const bool damaged = !meshes;
+    if (damaged) {
+        if (progress.cancelled()) return cancelled();
+        // Without its slivers it may still be closed, and then its winding numbers are known at once.
+        const TriMesh& known = border_edges(surface).empty() ? surface : drawn;
+        Result<TetMesh> mesh = mesh_by_winding(known, settings.size, settings.angle_deg, progress);
+        if (!mesh && mesh.error().cause == Cause::cancelled) return tl::unexpected(mesh.error());
+        if (!mesh) return blame({mesh.error().cause, mesh.error().message + "; " + meshes.error().message});
+        if (std::string& note = mesh->notes.front(); note.find("is damaged") == std::string::npos)
+            note = meshes.error().message + ": " + note;
+        meshes = std::vector<TetMesh>{std::move(*mesh)};
+    } else {
+        replace_slivers(*meshes, surface, settings, progress);
+        follow_thin_walls(*meshes, surface, b, settings, field);
+    }
+    if (progress.cancelled()) return cancelled();
+    if (slivers.removed > 0 && !damaged) {
+        meshes->front().notes.insert(meshes->front().notes.begin(),
+                                     fmt::format("{} flat triangle(s) of the surface were removed", slivers.removed));
+    }
+    std::vector<Part> parts;
+    for (TetMesh& mesh : *meshes) {
+        mesh.region.assign(mesh.region.size(), static_cast<int>(b));
+        for (std::string& note : mesh.notes) note = fmt::format("body \"{}\": {}", bodies[b].name, note);
+        parts.push_back({settings.order == 2 ? to_quadratic(mesh) : std::move(mesh)});
+    }
+    return parts;
+}
+
+/// Bodies that touch, some of them surfaces, in one mesh.
+Result<Part> mesh_group(std::span<const BodyGeometry> bodies, const TouchingGroup& group, const MeshSettings& settings,
+                        const SizeField& field, Progress& progress) {
+    std::vector<std::string> names;
+    for (const std::size_t b : group.bodies) names.push_back(fmt::format("body \"{}\"", bodies[b].name));
+    const SizeOfSurface size_at = [&](std::size_t s, const Vec3& p) { return field.at(group.bodies[s], p); };
+    Result<JointMesh> joint =
+        mesh_together(group.surfaces, names, settings.size, size_at, settings.angle_deg, progress);
+    if (!joint) {
+        for (std::size_t s = 0; s < names.size(); ++s) {
+            const std::vector<Diagnostic>& problems = joint.error().problems;
+            if (!problems.empty() && problems.front().key == names[s])
+                return about(bodies[group.bodies[s]].name, joint.error());
+        }
+        return tl::unexpected(joint.error());
+    }
+    TetMesh& mesh = joint->mesh;
+    std::string list;
+    for (std::size_t s = 0; s < names.size(); ++s) {
+        const std::string damage = describe(joint->damage[s]);
+        list += fmt::format("{}{} {:.6g}{}", s == 0 ? "" : ", ", names[s], volume(mesh, static_cast<int>(s)),
+                            damage.empty() ? "" : fmt::format(" (damaged: {})", damage));
+    }
+    mesh.notes.insert(
+        mesh.notes.begin(),
+        "bodies that touch were meshed together from their winding numbers; check their volumes: " + list);
+    for (const JointMesh::Overlap& overlap : joint->overlaps) {
+        if (bodies[group.bodies[overlap.keeper]].air) continue;
+        mesh.notes.push_back(fmt::format("{} and {} overlap by about {:.2g}; {} has it", names[overlap.loser],
+                                         names[overlap.keeper], overlap.volume, names[overlap.keeper]));
+    }
+    for (int& region : mesh.region) region = static_cast<int>(group.bodies[static_cast<std::size_t>(region)]);
+    return Part{settings.order == 2 ? to_quadratic(mesh) : std::move(mesh)};
+}
+
+TetMesh joined(const std::vector<Part>& parts, int order) {
+    TetMesh mesh;
+    mesh.order = order;
+    for (const Part& part : parts) {
+        const int offset = static_cast<int>(mesh.points.size());
+        mesh.points.insert(mesh.points.end(), part.mesh.points.begin(), part.mesh.points.end());
+        for (const int node : part.mesh.nodes) mesh.nodes.push_back(node + offset);
+        mesh.region.insert(mesh.region.end(), part.mesh.region.begin(), part.mesh.region.end());
+        mesh.notes.insert(mesh.notes.end(), part.mesh.notes.begin(), part.mesh.notes.end());
+    }
+    return mesh;
+}
+
+Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& settings) {
+    if (bodies.empty()) return input_error("there is no body to mesh");
+    if (!(settings.size > 0 && std::isfinite(settings.size))) return input_error("the mesh size must be above zero");
+    if (settings.order != 1 && settings.order != 2) return input_error("the order of a mesh is 1 or 2");
+    return {};
+}
+
+/// Bodies as they are meshed: those of a group in one go, surfaces one by one, all other solids together.
+struct Drawing {
+    std::span<const BodyGeometry> bodies;
+    std::vector<TouchingGroup> groups;
+    std::vector<bool> grouped;  ///< (bodies)
+};
+
+Result<Drawing> group_bodies(std::span<const BodyGeometry> bodies, double size) {
+    Result<std::vector<TouchingGroup>> groups = touching_groups(bodies, size);
+    if (!groups) return tl::unexpected(groups.error());
+    Drawing drawing{bodies, std::move(*groups), std::vector<bool>(bodies.size(), false)};
+    for (const TouchingGroup& group : drawing.groups) {
+        for (const std::size_t b : group.bodies) drawing.grouped[b] = true;
+    }
+    return drawing;
+}
+
+/// Solids that stand at most `join_within` apart are joined.
+Result<TetMesh> mesh_once(const Drawing& drawing, const MeshSettings& settings, const SizeField& field,
+                          Progress& progress, double join_within = 0) {
+    const std::span<const BodyGeometry> bodies = drawing.bodies;
+    progress.advance("mesh", 0);
+    Result<Part> solids = mesh_drawn_solids(bodies, settings, field, join_within, drawing.grouped);
+    if (!solids) return tl::unexpected(solids.error());
+    std::vector<Part> parts;
+    if (solids->mesh.tet_count() > 0) parts.push_back(std::move(*solids));
+    const auto take = [&](Part part) -> Status {
+        for (const Part& before : parts) {
+            if (Status apart = check_apart(part, before, bodies, 0.01 * settings.size); !apart) return apart;
+        }
+        parts.push_back(std::move(part));
+        return {};
+    };
+    for (const TouchingGroup& group : drawing.groups) {
+        Result<Part> part = mesh_group(bodies, group, settings, field, progress);
+        if (!part) return tl::unexpected(part.error());
+        if (Status taken = take(std::move(*part)); !taken) return tl::unexpected(taken.error());
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (!std::holds_alternative<TriMesh>(bodies[b].shape) || drawing.grouped[b]) continue;
+        if (progress.cancelled()) return cancelled();
+        progress.advance("mesh", static_cast<double>(b) / static_cast<double>(bodies.size()));
+        Result<std::vector<Part>> fresh = mesh_surface_body(bodies, b, settings, field, progress);
+        if (!fresh) return tl::unexpected(fresh.error());
+        for (Part& part : *fresh) {
+            if (Status taken = take(std::move(part)); !taken) return tl::unexpected(taken.error());
+        }
+    }
+    TetMesh mesh = joined(parts, settings.order);
+    for (const BodyGeometry& body : bodies) mesh.region_names.push_back(body.name);
+    progress.advance("mesh", 1);
+    return mesh;
+}
+
+std::string told(const NarrowGap& gap, std::span<const BodyGeometry> bodies) {
+    return fmt::format("a gap of {:.3g} between \"{}\" and \"{}\" at ({:.4g}, {:.4g}, {:.4g})", gap.width,
+                       bodies[static_cast<std::size_t>(gap.first)].name,
+                       bodies[static_cast<std::size_t>(gap.second)].name, gap.at.x, gap.at.y, gap.at.z);
+}
+
+/// A line for each gap that was there: closed, or else still open.
+std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const std::vector<NarrowGap>& before,
+                                   const std::vector<NarrowGap>& after) {
+    std::vector<std::string> notes;
+    for (const NarrowGap& gap : before) {
+        const bool open = std::any_of(after.begin(), after.end(), [&](const NarrowGap& other) {
+            return other.first == gap.first && other.second == gap.second;
+        });
+        notes.push_back(told(gap, bodies) +
+                        (open ? " could not be closed: they are not joined there; draw them so that they touch or "
+                                "overlap"
+                              : " was closed; close_gaps says up to which width"));
+    }
+    return notes;
+}
+
+/// The mesh, made anew with bodies joined where a narrow gap keeps them apart.
+Result<TetMesh> close_gaps(const Drawing& drawing, const MeshSettings& settings, const SizeField& field, TetMesh mesh,
+                           Progress& progress) {
+    if (!(settings.close_gaps > 0)) return mesh;
+    const std::vector<NarrowGap> gaps = narrow_gaps(mesh, settings.close_gaps);
+    if (gaps.empty()) return mesh;
+    constexpr double room = 1.05;  // for rounding
+    double widest = 0;
+    for (const NarrowGap& gap : gaps) widest = std::max(widest, gap.width);
+    Result<TetMesh> closed = mesh_once(drawing, settings, field, progress, room * widest);
+    if (!closed && closed.error().cause != Cause::failed) return closed;
+    const std::vector<NarrowGap> left = closed ? narrow_gaps(*closed, settings.close_gaps) : gaps;
+    if (closed) mesh = std::move(*closed);
+    const std::vector<std::string> notes = gap_notes(drawing.bodies, gaps, left);
+    mesh.notes.insert(mesh.notes.end(), notes.begin(), notes.end());
+    return mesh;
+}
+
+/// About as many tets as the sizes will give, by a first mesh.
+double expected_tets(const TetMesh& mesh, const SizeField& field) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto n = mesh.tet(t);
+        const auto at = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(n[k])]; };
+        const double size = field.at(static_cast<std::size_t>(mesh.region[t]), 0.25 * (at(0) + at(1) + at(2) + at(3)));
+        sum += 8.5 * signed_tet_volume(at(0), at(1), at(2), at(3)) / (size * size * size);
+    }
+    return sum;
+}
+
+/// Meshes once to see how thick the walls are, and lets the sizes follow.
+Status follow_walls(const Drawing& drawing, const MeshSettings& settings, SizeField& field, Progress& progress) {
+    if (settings.through_wall < 1) return {};
+    MeshSettings coarse = settings;
+    coarse.order = 1;
+    const Result<TetMesh> first = mesh_once(drawing, coarse, field, progress);
+    if (!first) return tl::unexpected(first.error());
+    for (std::size_t b = 0; b < drawing.bodies.size(); ++b) {
+        if (!drawing.bodies[b].air) field.add_walls(walls_of(*first, b), settings.through_wall);
+    }
+    constexpr double most = 20e6;
+    const double tets = expected_tets(*first, field);
+    if (tets <= most) return {};
+    return input_error(
+        "{} elements through every wall are about {:.2g} tetrahedra, more than the {:.2g} allowed; ask for "
+        "fewer or take a larger size",
+        settings.through_wall, tets, most);
+}
+
+/// A note for each body with a wall of fewer than three elements: the thinnest, by the edges of the mesh there.
+void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
+    constexpr double enough = 2.5;  // about three
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (bodies[b].air) continue;
+        const WallSample* thinnest = nullptr;
+        const std::vector<WallSample> walls = walls_of(mesh, b);
+        for (const WallSample& wall : walls) {
+            if (thinnest == nullptr || wall.thickness / wall.edge < thinnest->thickness / thinnest->edge)
+                thinnest = &wall;
+        }
+        if (thinnest == nullptr || thinnest->thickness > enough * thinnest->edge) continue;
+        mesh.notes.push_back(fmt::format(
+            "body \"{}\": the wall at ({:.4g}, {:.4g}, {:.4g}), {:.3g} thick, has about {:.1f} elements through it; "
+            "elements_through_wall asks for more",
+            bodies[b].name, thinnest->at.x, thinnest->at.y, thinnest->at.z, thinnest->thickness,
+            thinnest->thickness / thinnest->edge));
+    }
+}
+
+/// Surfaces that may touch another body, as solids where they have few flat faces.
+std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, double margin) {
+    std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
+    const auto near = [&](const BodyGeometry& a, const BodyGeometry& b) {
+        const Box3 one = bounds(a);
+        const Box3 other = bounds(b);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (one.low[k] > other.high[k] + margin || other.low[k] > one.high[k] + margin) return false;
+        }
+        return true;
+    };
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto* surface = std::get_if<TriMesh>(&bodies[i].shape);
+        if (surface == nullptr) continue;
+        bool alone = true;
+        for (std::size_t j = 0; j < bodies.size(); ++j) alone = alone && (i == j || !near(bodies[i], bodies[j]));
+        if (alone) continue;
+        if (Result<Solid> solid = polyhedron(*surface)) result[i].shape = std::move(*solid);
+    }
+    return result;
+}
+
+/// Surfaces without the seams that rounding has left open, and a note for each that had some.
+std::vector<BodyGeometry> without_seams(std::span<const BodyGeometry> bodies, std::vector<std::string>& notes) {
+    std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
+    for (BodyGeometry& body : result) {
+        auto* surface = std::get_if<TriMesh>(&body.shape);
+        const std::size_t closed = surface == nullptr ? 0 : close_seams(*surface).edges;
+        if (closed > 0)
+            notes.push_back(
+                fmt::format("body \"{}\": {} open edges of its surface were closed: their ends differ by less "
+                            "than a millionth of its size",
+                            body.name, closed));
+    }
+    return result;
+}
+
+}  // namespace
+
+Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings, Progress& progress) {
+    if (Status status = check_settings(drawn, settings); !status) return tl::unexpected(status.error());
+    std::vector<std::string> notes;
+    const std::vector<BodyGeometry> bodies =
+        with_solids(without_seams(drawn, notes), std::max(settings.close_gaps, 0.01 * settings.size));
+    SizeField field(bodies, settings);
+    const Result<Drawing> drawing = group_bodies(bodies, settings.size);
+    if (!drawing) return tl::unexpected(drawing.error());
+    if (Status status = follow_walls(*drawing, settings, field, progress); !status)
+        return tl::unexpected(status.error());
+    Result<TetMesh> mesh = mesh_once(*drawing, settings, field, progress);
+    if (mesh) mesh = close_gaps(*drawing, settings, field, std::move(*mesh), progress);
+    if (!mesh) return mesh;
+    mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
+    if (field.too_thin())
+        mesh->notes.push_back(
+            fmt::format("a wall is too thin for {} elements through it: edges go down to an eighth of the mesh size; "
+                        "take a smaller one",
+                        settings.through_wall));
+    else if (settings.judge_walls && settings.through_wall == 0)
+        judge_walls(bodies, *mesh);
+    return mesh;
+}
+
+}  // namespace pliant::mesh::kernel

@@ -1,0 +1,17 @@
+// What mesh_bodies() of mesher.hpp does, in the process that does it.
+#pragma once
+
+#include <span>
+
+#include "base/core/error.hpp"
+#include "base/core/progress.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "geometry/mesher/mesher.hpp"
+
+namespace pliant::mesh::kernel {
+
+/// See mesher.hpp.
+[[nodiscard]] Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> drawn, const MeshSettings& settings,
+                                          Progress& progress);
+
+}  // namespace pliant::mesh::kernel

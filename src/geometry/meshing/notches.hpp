@@ -1,0 +1,13 @@
+// What crossed_notches() of mesher/notches.hpp does, in the process that does it: its convex hulls are CGAL's.
+#pragma once
+
+#include <vector>
+
+#include "geometry/mesher/notches.hpp"
+
+namespace pliant::mesh::kernel {
+
+/// See mesher/notches.hpp.
+[[nodiscard]] std::vector<Notch> crossed_notches(const TriMesh& surface, const std::vector<Vec3>& path);
+
+}  // namespace pliant::mesh::kernel

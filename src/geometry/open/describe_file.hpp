@@ -1,0 +1,19 @@
+// What a person wants to know about a file that holds a mesh.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/mesh_report.hpp"
+
+namespace pliant::mesh {
+
+/// A tet mesh, a surface or a 3MF file, whichever it is; a line for each oddity. Errors: those of the reader, and a
+/// content that no reader knows.
+[[nodiscard]] Result<std::string> describe_mesh_file(const std::filesystem::path& path);
+
+/// The report on a file that must hold a tet mesh.
+[[nodiscard]] Result<MeshReport> report_on_file(const std::filesystem::path& path);
+
+}  // namespace pliant::mesh

@@ -1,0 +1,81 @@
+#include "geometry/mesh/mesh_report.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "geometry/files/tet_writer.hpp"
+#include "geometry/open/describe_file.hpp"
+
+using namespace pliant;
+using namespace pliant::mesh;
+
+namespace {
+
+TetMesh one_tet(const std::vector<Vec3>& points) {
+    TetMesh mesh;
+    mesh.points = points;
+    mesh.nodes = {0, 1, 2, 3};
+    mesh.region = {0};
+    mesh.region_names = {"a"};
+    return mesh;
+}
+
+/// What is said of a file with this content.
+std::string described(std::string_view bytes) {
+    const pliant::test::Folder folder("mesh_report");
+    REQUIRE(write_file(folder / "nameless", bytes));
+    const Result<std::string> text = describe_mesh_file(folder / "nameless");
+    return text ? *text : text.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a regular tet has quality 1 and dihedral angles of acos(1/3)") {
+    const MeshReport report = report_on(one_tet({{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}));
+    CHECK(report.worst_quality == near(1, {.relative = 1e-12}));
+    CHECK(report.min_dihedral_deg == near(std::acos(1.0 / 3) * 180 / std::numbers::pi, {.relative = 1e-12}));
+    CHECK(report.regions.front().volume == near(8.0 / 3, {.relative = 1e-12}));
+}
+
+TEST_CASE("a corner of a cube has angles of 90 and acos(1/sqrt 3), and longest edge sqrt 2") {
+    const MeshReport report = report_on(one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+    CHECK(report.worst_quality == near(0.5, {.relative = 1e-12}));  // 6 sqrt 2 (1/6) / (2 sqrt 2)
+    CHECK(report.min_dihedral_deg == near(54.7356, {.relative = 1e-5}));
+}
+
+TEST_CASE("the text names size, regions and quality; an empty mesh has a report too") {
+    const std::string text = report_text(report_on(one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})));
+    CHECK(text.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
+    CHECK(text.find("region \"a\": 1 tets, volume 0.166667") != std::string::npos);
+    CHECK(report_on({}).tets == 0);
+}
+
+TEST_CASE("a file is described by what it holds, with what was odd about it") {
+    const TetMesh inside_out = one_tet({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}});
+    const std::string tets = described(vtk_bytes(inside_out, Encoding::text));
+    CHECK(tets.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
+    CHECK(tets.find("\n  note: 1 of 1 tets were inside out and were turned") != std::string::npos);
+    CHECK(described("v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n").find("surface, 3 points, 1 triangles") == 0);
+    const std::string open =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    CHECK(described(open).find("note: ") != std::string::npos);
+}
+
+TEST_CASE("a file that no reader knows is told so with all formats; a known one that is broken by its reader") {
+    for (const std::string& junk : {std::string("hello"), std::string(200, 'x')}) {
+        const std::string text = described(junk);
+        CHECK(text.find("is no geometry that Pliant reads") != std::string::npos);
+        for (const char* format : {".vtk", ".vtu", ".msh", ".stl", ".obj", ".ply"})
+            CHECK_MESSAGE(text.find(format) != std::string::npos, format);
+    }
+    CHECK(described("").find("is empty") != std::string::npos);
+    CHECK(described("# vtk DataFile Version 3.0\n").find("is no mesh") == std::string::npos);
+    CHECK(described("solid a\nfacet\nnonsense\n").find("outer loop") != std::string::npos);
+}

@@ -1,0 +1,16 @@
+// Closed cavities of a mesh: the air inside, found by a point.
+#pragma once
+
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+
+namespace pliant::mesh {
+
+/// The faces of the outer surface that enclose the empty space around a point, normals into that space, in the order of
+/// boundary_faces(). Errors: the point lies in the material, or the space around it is open to the outside.
+/// Cost: all faces.
+[[nodiscard]] Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point);
+
+}  // namespace pliant::mesh

@@ -1,0 +1,32 @@
+// The flat faces of a surface, as a drawing program knew them before it cut them into triangles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
+#include "geometry/shapes/solid.hpp"
+
+namespace pliant::mesh {
+
+/// A closed surface as flat polygons. Neighbours share the points of their common edges.
+struct FacetedSurface {
+    using Loop = std::vector<int>;     ///< points, in order
+    using Face = std::vector<Loop>;    ///< its outline, then its holes
+    using Shell = std::vector<Face>;   ///< closed
+    using Piece = std::vector<Shell>;  ///< its outer shell, then its cavities
+    std::vector<Vec3> points;
+    std::vector<Piece> pieces;
+};
+
+/// Joins triangles that lie in one plane, within what coordinates of 32 bits can say, and moves corners by as little as
+/// that to where their planes meet. Errors: a surface that is not closed (check_closed()), or has more than `most`
+/// faces.
+[[nodiscard]] Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most);
+
+/// A solid that other solids may touch, from a closed surface of at most 400 flat faces, of which 40 at most meet
+/// another one at less than 30 degrees: more are a round surface.
+[[nodiscard]] Result<Solid> polyhedron(const TriMesh& surface);
+
+}  // namespace pliant::mesh

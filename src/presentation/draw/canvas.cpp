@@ -1,0 +1,165 @@
+#include "presentation/draw/canvas.hpp"
+
+#include <cairo.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pliant::report {
+
+struct Canvas::State {
+    std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface{nullptr, &cairo_surface_destroy};
+    std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo{nullptr, &cairo_destroy};
+};
+
+namespace {
+
+void select(cairo_t* cairo, const Font& font) {
+    cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, font.size);
+}
+
+double advance_width(cairo_t* cairo, const std::string& text, const Font& font) {
+    select(cairo, font);
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo, text.c_str(), &extents);
+    return extents.x_advance;
+}
+
+cairo_status_t append(void* out, const unsigned char* data, unsigned int length) {
+    static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/// Length of the UTF-8 sequence at the start of `text`, or 0 if it is malformed (RFC 3629, table in section 4).
+std::size_t sequence_length(std::string_view text) {
+    const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const unsigned lead = at(0);
+    const std::size_t length = lead < 0x80                    ? 1
+                               : lead >= 0xc2 && lead < 0xe0  ? 2
+                               : (lead & 0xf0U) == 0xe0       ? 3
+                               : lead >= 0xf0 && lead <= 0xf4 ? 4
+                                                              : 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((at(i) & 0xc0U) != 0x80) return 0;
+    }
+    const bool overlong = (lead == 0xe0 && at(1) < 0xa0) || (lead == 0xf0 && at(1) < 0x90);
+    const bool surrogate_or_beyond = (lead == 0xed && at(1) > 0x9f) || (lead == 0xf4 && at(1) > 0x8f);
+    return overlong || surrogate_or_beyond ? 0 : length;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t length = sequence_length(text);
+        if (length == 0)
+            out += "\xef\xbf\xbd";
+        else if (length == 1 && (static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7f))
+            out += ' ';
+        else
+            out += text.substr(0, length);
+        text.remove_prefix(length == 0 ? 1 : length);
+    }
+    return out;
+}
+
+Canvas::Canvas(int width_px, int height_px, const Colour& background) : state_(std::make_unique<State>()) {
+    state_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
+    state_->cairo.reset(cairo_create(state_->surface.get()));
+    cairo_set_source_rgb(state_->cairo.get(), background.r, background.g, background.b);
+    cairo_paint(state_->cairo.get());
+    const double scale = height_px / height();
+    cairo_scale(state_->cairo.get(), scale, scale);
+    width_ = width_px / scale;
+}
+Canvas::Canvas(Canvas&&) noexcept = default;
+Canvas& Canvas::operator=(Canvas&&) noexcept = default;
+Canvas::~Canvas() = default;
+
+void Canvas::image(const Image& image, int x_px, int y_px) {
+    cairo_surface_t* surface = state_->surface.get();
+    cairo_surface_flush(surface);
+    unsigned char* pixels = cairo_image_surface_get_data(surface);
+    if (pixels == nullptr) return;
+    const int stride = cairo_image_surface_get_stride(surface);
+    const int rows = std::min(image.height_px, cairo_image_surface_get_height(surface) - y_px);
+    const int columns = std::min(image.width_px, cairo_image_surface_get_width(surface) - x_px);
+    for (int j = 0; j < rows; ++j) {
+        const std::uint8_t* in =
+            image.rgb.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width_px) * 3;
+        auto* out = reinterpret_cast<std::uint32_t*>(pixels + static_cast<std::ptrdiff_t>(y_px + j) * stride) + x_px;
+        for (int i = 0; i < columns; ++i, in += 3) {
+            *out++ = static_cast<std::uint32_t>(in[0]) << 16 | static_cast<std::uint32_t>(in[1]) << 8 | in[2];
+        }
+    }
+    cairo_surface_mark_dirty(surface);
+}
+
+void Canvas::text(const Point2& at, std::string_view text, const Font& font) {
+    cairo_t* cairo = state_->cairo.get();
+    const std::string shown = printable(text);
+    const double width = advance_width(cairo, shown, font);
+    const double shift = font.align == Align::left ? 0 : font.align == Align::centre ? width / 2 : width;
+    cairo_set_source_rgb(cairo, font.colour.r, font.colour.g, font.colour.b);
+    cairo_move_to(cairo, at.x - shift, at.y);
+    cairo_show_text(cairo, shown.c_str());
+}
+
+double Canvas::text_width(std::string_view text, const Font& font) const {
+    return advance_width(state_->cairo.get(), printable(text), font);
+}
+
+void Canvas::line(std::span<const Point2> points, double width, const Colour& colour, double opacity) {
+    cairo_t* cairo = state_->cairo.get();
+    cairo_new_path(cairo);
+    for (const Point2& p : points) cairo_line_to(cairo, p.x, p.y);
+    cairo_set_line_width(cairo, width);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+    cairo_stroke(cairo);
+}
+
+void Canvas::area(std::span<const Point2> border, const Colour& colour, double opacity) {
+    cairo_t* cairo = state_->cairo.get();
+    cairo_new_path(cairo);
+    for (const Point2& p : border) cairo_line_to(cairo, p.x, p.y);
+    cairo_close_path(cairo);
+    cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+    cairo_fill(cairo);
+}
+
+void Canvas::box(const Point2& corner, double width, double height, const Colour& colour, double radius,
+                 double opacity) {
+    cairo_t* cairo = state_->cairo.get();
+    const double quarter = std::numbers::pi / 2, left = corner.x + radius, right = corner.x + width - radius;
+    const double top = corner.y + radius, bottom = corner.y + height - radius;
+    cairo_new_path(cairo);
+    cairo_arc(cairo, right, top, radius, -quarter, 0);
+    cairo_arc(cairo, right, bottom, radius, 0, quarter);
+    cairo_arc(cairo, left, bottom, radius, quarter, 2 * quarter);
+    cairo_arc(cairo, left, top, radius, 2 * quarter, 3 * quarter);
+    cairo_close_path(cairo);
+    cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+    cairo_fill(cairo);
+}
+
+void Canvas::disc(const Point2& centre, double radius, const Colour& colour) {
+    cairo_t* cairo = state_->cairo.get();
+    cairo_new_path(cairo);
+    cairo_arc(cairo, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
+    cairo_set_source_rgb(cairo, colour.r, colour.g, colour.b);
+    cairo_fill(cairo);
+}
+
+Result<std::string> Canvas::png() const {
+    std::string bytes;
+    const cairo_status_t code = cairo_surface_write_to_png_stream(state_->surface.get(), &append, &bytes);
+    if (code != CAIRO_STATUS_SUCCESS) return failure("picture: {}", cairo_status_to_string(code));
+    return bytes;
+}
+
+}  // namespace pliant::report

@@ -1,0 +1,54 @@
+// Embree's device and scenes with owners, and the few questions that the pictures ask of them.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "base/core/vec3.hpp"
+
+namespace pliant::report {
+
+struct Hit {
+    bool found = false;
+    double distance = 0;    ///< along the ray's direction, in its lengths
+    unsigned geometry = 0;  ///< counted in the order of add_*
+    unsigned primitive = 0;
+    double u = 0, v = 0;  ///< barycentric coordinates of corners 1 and 2
+    Vec3 normal;          ///< of the geometry, not normalised
+};
+
+class EmbreeDevice {
+public:
+    EmbreeDevice();
+    [[nodiscard]] RTCDevice get() const { return device_.get(); }
+    [[nodiscard]] Status status() const;
+
+private:
+    std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
+};
+
+class EmbreeScene {
+public:
+    explicit EmbreeScene(const EmbreeDevice& device);
+    void add_triangles(std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles);
+    /// Round tubes along polylines, with a bead of 1.7 times the radius at each point.
+    void add_tube(std::span<const Vec3> points, double radius);
+    void commit();
+
+    [[nodiscard]] Hit closest(const Vec3& origin, const Vec3& direction) const;
+    /// Which of eight directions meet something within `reach` (in lengths of the direction): 1 blocked, 0 free.
+    [[nodiscard]] std::array<bool, 8> blocked(const Vec3& origin, std::span<const Vec3, 8> directions,
+                                              double reach) const;
+
+private:
+    void attach(RTCGeometry geometry);
+    RTCDevice device_;
+    std::unique_ptr<RTCSceneTy, void (*)(RTCScene)> scene_;
+};
+
+}  // namespace pliant::report

@@ -1,0 +1,136 @@
+#include "presentation/draw/plot.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pliant::report {
+namespace {
+
+constexpr Colour white = {1, 1, 1};
+constexpr Colour grid = {0.87, 0.88, 0.90};
+constexpr Colour frame = {0.35, 0.38, 0.42};
+// Where the axes stand; the canvas is 1500 by 1000.
+constexpr double left = 140, right = 1460, top = 90, bottom = 880;
+
+/// One axis: values and where they are on the canvas.
+struct Axis {
+    std::vector<double> marks;
+    double from, to;
+    bool log;
+    [[nodiscard]] double scale(double value) const { return log ? std::log10(value) : value; }
+    [[nodiscard]] double at(double value) const {
+        const double first = scale(marks.front());
+        return from + (scale(value) - first) / (scale(marks.back()) - first) * (to - from);
+    }
+};
+
+bool is_shown(const Plot& plot, const Point2& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && (p.x > 0 || !plot.log_x) && (p.y > 0 || !plot.log_y);
+}
+
+Axis axis_for(const Plot& plot, bool log, double Point2::*member, double from, double to) {
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (const Series& series : plot.series) {
+        for (const Point2& p : series.points) {
+            if (!is_shown(plot, p)) continue;
+            low = std::min(low, p.*member);
+            high = std::max(high, p.*member);
+        }
+    }
+    return {log ? log_ticks(low, high) : ticks(low, high), from, to, log};
+}
+
+/// "0.01", "1e-5": powers of ten stay short.
+std::string label(const Axis& axis, double value) {
+    if (axis.log && (value > 2e3 || value < 5e-4)) return fmt::format("1e{:.0f}", std::log10(value));
+    return fmt::format("{:.6g}", value);
+}
+
+void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
+    for (const double value : x.marks) {
+        canvas.line(std::array{Point2{x.at(value), top}, Point2{x.at(value), bottom}}, 1.5, grid);
+        canvas.text({x.at(value), bottom + 34}, label(x, value), {.size = 24, .align = Align::centre});
+    }
+    for (const double value : y.marks) {
+        canvas.line(std::array{Point2{left, y.at(value)}, Point2{right, y.at(value)}}, 1.5, grid);
+        canvas.text({left - 14, y.at(value) + 8}, label(y, value), {.size = 24, .align = Align::right});
+    }
+    const std::array corner = {Point2{left, top}, Point2{left, bottom}, Point2{right, bottom}};
+    canvas.line(corner, 2.5, frame);
+}
+
+void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {
+    const Series& series = plot.series[index];
+    const Colour colour = palette(static_cast<int>(index));
+    std::vector<Point2> line;
+    for (const Point2& p : series.points) {
+        if (!is_shown(plot, p)) continue;
+        line.push_back({x.at(p.x), y.at(p.y)});
+        if (series.dots) canvas.disc(line.back(), 7, colour);
+    }
+    if (!series.dots && line.size() > 1) canvas.line(line, 4, colour);
+}
+
+/// At the upper left; what falls by powers of ten passes there, and ends before the lower right.
+void draw_legend(Canvas& canvas, const Plot& plot) {
+    const double side = plot.log_y ? right - 420 : left;
+    double height = plot.log_y ? bottom - 38 * static_cast<double>(plot.series.size()) : top + 40;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        const Colour colour = palette(static_cast<int>(i));
+        if (plot.series[i].dots)
+            canvas.disc({side + 50, height - 8}, 7, colour);
+        else
+            canvas.line(std::array{Point2{side + 30, height - 8}, Point2{side + 70, height - 8}}, 4, colour);
+        canvas.text({side + 84, height}, plot.series[i].name, {.size = 26});
+        height += 38;
+    }
+}
+
+}  // namespace
+
+std::vector<double> log_ticks(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high) || !(low > 0)) return {0.1, 1};
+    const auto first = static_cast<int>(std::floor(std::log10(low) + 1e-9));
+    const int last = std::max(first + 1, static_cast<int>(std::ceil(std::log10(high) - 1e-9)));
+    const int stride = (last - first + 9) / 10;
+    std::vector<double> marks;
+    for (int k = first; k < last + stride; k += stride) marks.push_back(std::pow(10, k));
+    return marks;
+}
+
+std::vector<double> ticks(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high)) return {0, 1};
+    if (!(high - low > 1e-12 * std::max(std::fabs(low), std::fabs(high)))) {
+        const double room = low == 0 ? 1 : 0.5 * std::fabs(low);
+        low -= room;
+        high += room;
+    }
+    const double rough = (high - low) / 6;
+    const double power = std::pow(10, std::floor(std::log10(rough)));
+    const double digit = rough / power;
+    const double step = power * (digit < 1.5 ? 1 : (digit < 3.5 ? 2 : (digit < 7.5 ? 5 : 10)));
+    std::vector<double> marks;
+    const auto first = std::floor(low / step + 1e-9);
+    const auto last = std::ceil(high / step - 1e-9);
+    for (double k = first; k <= last; ++k) marks.push_back(k * step);
+    return marks;
+}
+
+Result<std::string> plot_png(const Plot& plot) {
+    Canvas canvas(1200, 800, white);
+    const Axis x = axis_for(plot, plot.log_x, &Point2::x, left, right);
+    const Axis y = axis_for(plot, plot.log_y, &Point2::y, bottom, top);
+    draw_grid(canvas, x, y);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, plot, i, x, y);
+    draw_legend(canvas, plot);
+    canvas.text({left, 50}, plot.title, {.size = 32, .bold = true});
+    canvas.text({(left + right) / 2, 965}, plot.x_label, {.size = 28, .align = Align::centre});
+    canvas.text({left, 82}, plot.y_label, {.size = 24});
+    return canvas.png();
+}
+
+}  // namespace pliant::report

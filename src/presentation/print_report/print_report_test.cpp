@@ -1,0 +1,135 @@
+#include "presentation/print_report/print_report.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "presentation/print_report/layer_plot.hpp"
+#include "presentation/print_report/print_story.hpp"
+#include "printing/host/control_types.hpp"
+#include "printing/plan/test_jobs.hpp"
+
+using namespace pliant;
+using namespace pliant::report;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Records = std::vector<host::JournalRecord>;
+
+void add(Records& records, const std::string& kind, host::JournalValues values) {
+    records.push_back({static_cast<long>(records.size()) + 1, kind, std::move(values)});
+}
+
+long light(Records& records, int layer, int material, double at_s) {
+    add(records, "light",
+        {{"step", std::to_string(10 * layer + material)},
+         {"layer", std::to_string(layer)},
+         {"material", std::to_string(material)},
+         {"planned", "2.5"},
+         {"at", std::to_string(at_s)}});
+    return records.back().number;
+}
+
+void dark(Records& records, long number, double on_s, bool done, const std::string& by) {
+    add(records, "dark",
+        {{"light", std::to_string(number)}, {"on", std::to_string(on_s)}, {"done", done ? "1" : "0"}, {"by", by}});
+}
+
+/// Layer 0 as planned; in the light of layer 1 the host dies after 1 s; another gives the rest after a restart of the
+/// computer, whose clock begins anew.
+Records survived() {
+    Records records;
+    add(records, "begin", {{"job", "<b>two</b>"}, {"digest", "d"}, {"printer", "tower"}, {"format", "1"}});
+    add(records, "session", {{"base", "1"}, {"before", "-1"}, {"boot", "a"}, {"state", "s"}});
+    dark(records, light(records, 0, 0, 1000), 2.5, true, "host");
+    const long broken = light(records, 1, 0, 1060);
+    dark(records, broken, 1, false, "guard");
+    add(records, "session", {{"base", "2"}, {"before", "-1"}, {"boot", "b"}, {"state", "s"}});
+    dark(records, light(records, 1, 0, 20), 1.5, true, "host");
+    dark(records, light(records, 1, 1, 50), 2.5, true, "host");
+    add(records, "end", {});
+    return records;
+}
+
+}  // namespace
+
+TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faults are survived") {
+    const PrintStory story = story_of(survived()).value();
+    CHECK(story.end == PrintEnd::complete);
+    CHECK(story.sessions == 2);
+    REQUIRE(story.lights.size() == 3);
+    const GivenLight& pieces = story.lights.at({1, 0});
+    CHECK(pieces.pieces == 2);
+    CHECK(pieces.complete);
+    CHECK(pieces.lit_s == near(2.5, {.relative = 1e-12}));
+    CHECK(pieces.at_s == near(60, {.relative = 1e-12}));
+    // The second run of the computer counts on from the last light that is known.
+    CHECK(story.lights.at({1, 1}).at_s == near(60 + 30, {.relative = 1e-12}));
+    REQUIRE(story.faults == 2);
+    CHECK(story.happenings[0].text == "the host died in the light of layer 1; its guard made dark after 1.00 s");
+    CHECK(story.happenings[0].then == "survived: the light went on in layer 1");
+    CHECK(story.happenings[1].text == "the computer has been started anew, and the controller has lost its position");
+}
+
+TEST_CASE("a print that was broken off and left says so; one that is damaged names the record") {
+    Records records = survived();
+    records.resize(5);  // the light of layer 1 is on
+    const PrintStory story = story_of(records).value();
+    CHECK(story.end == PrintEnd::interrupted);
+    REQUIRE(story.happenings.size() == 1);
+    CHECK(story.happenings[0].text == "the host ended in the light of layer 1");
+    CHECK(story.happenings[0].then == "the print waits to be gone on with");
+    dark(records, 99, 1, true, "host");
+    CHECK(story_of(records).error().message == "record 6: no light 99 is on");
+    CHECK(story_of({}).value().end == PrintEnd::not_begun);
+}
+
+TEST_CASE("a plot over the layers has a line for every series, and rounds its scale") {
+    const std::string svg = layer_plot("Light", "s", {{"soft <i>", "red", {{0, 0}, {9, 3}}, false}}, 10);
+    CHECK(svg.find("points=\"54.0,222.0 590.0,8.0 \"") != std::string::npos);
+    CHECK(svg.find(">2.5</text>") == std::string::npos);
+    CHECK(svg.find(">3</text>") != std::string::npos);
+    CHECK(svg.find("soft &lt;i&gt;") != std::string::npos);
+}
+
+TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; another job's journal is refused") {
+    const pliant::test::Folder folder("report");
+    const fs::path file = folder / "job.zip", journal = folder / "job.zip.journal";
+    machine::Printer printer = plan::test::tower();
+    job::Manifest m = plan::test::make_job({{0}, {0, 1}}, {"semi-flex", "rigid-flex"});
+    m.name = "<b>two</b>";
+    auto writer = job::Writer::create(file);
+    int number = 0;
+    for (job::Layer& layer : m.layers) {
+        for (job::LayerImage& image : layer.images) {
+            slice::RunImage pixels(m.width_px, m.height_px);
+            for (int row = 20; row < 30; ++row) pixels.append(row, 20, 40, 255);
+            image.file = "layers/" + std::to_string(number++) + ".png";
+            image.area_mm2 = 1000;
+            REQUIRE(writer->add_image(image.file, job::encode(pixels)));
+        }
+    }
+    REQUIRE(writer->add_file("printer.toml", read_file("examples/printers/tower.toml").value()));
+    REQUIRE(writer->finish(m));
+    const auto archive = job::Archive::open(file);
+    REQUIRE(archive);
+    const auto page = print_report(*archive, printer, survived(), {"virtual printer", "Marlin", 1234, 5, nullptr});
+    REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
+    for (const std::string text :
+         {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 again", "survived: the light went on in layer 1",
+          "data:image/png;base64", "<svg", "12 records"})
+        CHECK_MESSAGE(page->find(text) != std::string::npos, text);
+    CHECK(page->find("<b>two") == std::string::npos);
+    CHECK(page->find("http://") == std::string::npos);
+    CHECK(page->find("<script") == std::string::npos);
+
+    REQUIRE(write_file(journal, host::write_record(1, "begin", {{"job", "x"}, {"digest", "other"}, {"printer", "t"}})));
+    const auto refused = print_report(file, journal, {});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message ==
+          journal.string() + ": this journal is of another job, or job.zip has changed since");
+}

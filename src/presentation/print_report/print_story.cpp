@@ -1,0 +1,178 @@
+#include "presentation/print_report/print_story.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace pliant::report {
+namespace {
+
+/// Text of a value, "" where there is none.
+std::string text_of(const host::JournalRecord& record, std::string_view key) {
+    const std::string* value = record.find(key);
+    return value == nullptr ? "" : *value;
+}
+
+class Teller {
+public:
+    [[nodiscard]] Status take(const host::JournalRecord& record);
+    [[nodiscard]] PrintStory finish() {
+        for (const auto& [record, key] : open_) {
+            story_.happenings.push_back({record,
+                                         last_at_s_,
+                                         key.first,
+                                         true,
+                                         fmt::format("the host ended in the light of layer {}", key.first),
+                                         {}});
+            ++story_.faults;
+        }
+        for (std::size_t h = 0; h < story_.happenings.size(); ++h) say_how_it_went_on(h);
+        return std::move(story_);
+    }
+
+private:
+    [[nodiscard]] Status session(const host::JournalRecord& record);
+    [[nodiscard]] Status light(const host::JournalRecord& record);
+    [[nodiscard]] Status dark(const host::JournalRecord& record);
+    [[nodiscard]] Status change(const host::JournalRecord& record);
+    void tell(const host::JournalRecord& record, bool fault, std::string text) {
+        story_.happenings.push_back({record.number, last_at_s_, last_layer_, fault, std::move(text), {}});
+        if (fault) ++story_.faults;
+    }
+    void say_how_it_went_on(std::size_t index);
+
+    PrintStory story_;
+    std::string boot_;
+    std::optional<double> zero_s_;  ///< on the devices' clock: when the first light of the print would have been
+    double last_at_s_ = -1;
+    int last_layer_ = -1;
+    std::map<long, std::pair<int, int>> open_;      ///< light by record
+    std::map<long, std::pair<double, int>> begun_;  ///< when, and of which layer, each light began, by record
+};
+
+Status Teller::session(const host::JournalRecord& record) {
+    ++story_.sessions;
+    const std::string boot = text_of(record, "boot");
+    const bool restarted = story_.sessions > 1 && boot != boot_;
+    boot_ = boot;
+    if (restarted) zero_s_.reset();
+    if (story_.sessions == 1) return {};
+    const bool reset = text_of(record, "before") == "-1";
+    tell(record, true,
+         fmt::format("{}, and {}", restarted ? "the computer has been started anew" : "another host takes over",
+                     reset ? "the controller has lost its position" : "the controller has kept its position"));
+    return {};
+}
+
+Status Teller::light(const host::JournalRecord& record) {
+    const auto layer = record.whole("layer"), material = record.whole("material");
+    const auto planned = record.number_of("planned"), at = record.number_of("at");
+    if (!layer) return tl::unexpected(layer.error());
+    if (!material) return tl::unexpected(material.error());
+    if (!planned) return tl::unexpected(planned.error());
+    if (!at) return tl::unexpected(at.error());
+    if (!zero_s_) zero_s_ = *at - std::max(last_at_s_, 0.0);
+    last_at_s_ = *at - *zero_s_;
+    last_layer_ = static_cast<int>(*layer);
+    const std::pair<int, int> key{last_layer_, static_cast<int>(*material)};
+    const auto [found, is_new] = story_.lights.try_emplace(key);
+    if (is_new) {
+        story_.order[key] = static_cast<int>(story_.order.size());
+        found->second.at_s = last_at_s_;
+    }
+    found->second.planned_s = *planned;
+    ++found->second.pieces;
+    open_[record.number] = key;
+    begun_[record.number] = {last_at_s_, last_layer_};
+    return {};
+}
+
+Status Teller::dark(const host::JournalRecord& record) {
+    const auto number = record.whole("light");
+    const auto on = record.number_of("on");
+    if (!number) return tl::unexpected(number.error());
+    if (!on) return tl::unexpected(on.error());
+    const auto known = open_.find(*number);
+    if (known == open_.end()) return input_error("record {}: no light {} is on", record.number, *number);
+    GivenLight& light = story_.lights[known->second];
+    light.lit_s += *on;
+    light.complete = text_of(record, "done") == "1";
+    const std::string by = text_of(record, "by");
+    const int layer = known->second.first;
+    open_.erase(known);
+    if (by == "guard")
+        tell(record, true,
+             fmt::format("the host died in the light of layer {}; its guard made dark after {:.2f} s", layer, *on));
+    if (by == "assumed")
+        tell(record, true,
+             fmt::format("nobody saw the end of the light of layer {}; {:.2f} s were assumed", layer, *on));
+    if (by == "host" && !light.complete)
+        tell(record, false,
+             fmt::format("the light of layer {} broke off after {:.2f} of {:.2f} s", layer, light.lit_s,
+                         light.planned_s));
+    return {};
+}
+
+Status Teller::change(const host::JournalRecord& record) {
+    const auto seconds = record.number_of("seconds");
+    if (!seconds) return tl::unexpected(seconds.error());
+    tell(record, false,
+         fmt::format("material {} is lit for {:g} s from layer {} on", text_of(record, "material"), *seconds,
+                     text_of(record, "from")));
+    return {};
+}
+
+Status Teller::take(const host::JournalRecord& record) {
+    const std::string& kind = record.kind;
+    if (kind == "session") return session(record);
+    if (kind == "light") return light(record);
+    if (kind == "dark") return dark(record);
+    if (kind == "exposure") return change(record);
+    if (kind == "begin") {
+        story_.job = text_of(record, "job");
+        story_.digest = text_of(record, "digest");
+        story_.printer = text_of(record, "printer");
+        story_.end = PrintEnd::interrupted;
+    } else if (kind == "stop") {
+        tell(record, true, "stopped: " + text_of(record, "why"));
+    } else if (kind == "skip") {
+        tell(record, false, "layer " + text_of(record, "layer") + " gets no light");
+    } else if (kind == "pause") {
+        tell(record, false, "paused");
+    } else if (kind == "resume") {
+        tell(record, false, "gone on");
+    } else if (kind == "suspend") {
+        tell(record, false, "suspended and parked");
+    } else if (kind == "cancel") {
+        story_.end = PrintEnd::cancelled;
+        tell(record, false, "cancelled and parked");
+    } else if (kind == "end") {
+        story_.end = PrintEnd::complete;
+    }
+    return {};
+}
+
+/// A fault has been survived where light was given after it.
+void Teller::say_how_it_went_on(std::size_t index) {
+    Happening& h = story_.happenings[index];
+    if (!h.fault) return;
+    const auto next = begun_.upper_bound(h.record);
+    if (next != begun_.end())
+        h.then = fmt::format("survived: the light went on in layer {}", next->second.second);
+    else if (story_.end == PrintEnd::complete)
+        h.then = "survived: all light had been given";
+    else
+        h.then = story_.end == PrintEnd::cancelled ? "the print was put away" : "the print waits to be gone on with";
+}
+
+}  // namespace
+
+Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records) {
+    Teller teller;
+    for (const host::JournalRecord& record : records) {
+        if (Status status = teller.take(record); !status) return tl::unexpected(status.error());
+    }
+    return teller.finish();
+}
+
+}  // namespace pliant::report

@@ -1,0 +1,42 @@
+// Trajectories of markers that were measured, or come from elsewhere, beside the simulated ones.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "base/core/vec3.hpp"
+#include "presentation/draw/plot.hpp"
+#include "simulation/run/trajectory.hpp"
+
+namespace pliant::report {
+
+struct MeasuredPath {
+    std::string marker;        ///< of the simulation
+    std::vector<Vec3> points;  ///< m, in order; at least one
+};
+
+/// The columns of markers.csv: NAME_x_mm, NAME_y_mm, NAME_z_mm of any markers of the simulation, in any order, other
+/// columns (index, time) passed over. A video shows two coordinates: one that has no column, or an empty cell, is that
+/// of the marker at rest. Rows in which all three cells of a marker are empty are left out of its path. Errors: file,
+/// line and what is wrong; no column of a marker of `rest`; a marker that the simulation does not have.
+[[nodiscard]] Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const std::string& file,
+                                                               const sim::Step& rest);
+
+/// How far measured points lie from the simulated way, the polyline through all steps.
+struct Deviation {
+    std::string marker;
+    std::size_t points = 0;
+    double mean_m = 0, largest_m = 0;
+    double way_m = 0;  ///< length of the simulated way
+};
+[[nodiscard]] std::vector<Deviation> deviations(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result);
+
+/// "marker tip: 12 measured points, 0.8 mm from the simulated way on average, 1.9 mm at most (1.6 % of the way)".
+[[nodiscard]] std::string deviation_line(const Deviation& deviation);
+
+/// Simulated ways as lines and measured points as dots, in mm, seen along the axis in which the markers move least.
+[[nodiscard]] Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result);
+
+}  // namespace pliant::report

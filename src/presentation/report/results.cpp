@@ -1,0 +1,64 @@
+#include "presentation/report/results.hpp"
+
+#include <system_error>
+
+#include "base/core/files.hpp"
+#include "base/core/stopwatch.hpp"
+#include "presentation/report/frames.hpp"
+#include "presentation/report/gltf.hpp"
+#include "presentation/report/html.hpp"
+#include "presentation/report/pictures.hpp"
+#include "presentation/report/summary.hpp"
+#include "presentation/report/tables.hpp"
+
+namespace pliant::report {
+namespace fs = std::filesystem;
+
+namespace {
+
+Status write_data(const fs::path& folder, const Simulation& s, const Surface& surface, Progress& progress) {
+    if (Status status = write_file(folder / "steps.csv", steps_csv(s.result)); !status) return status;
+    if (Status status = write_file(folder / "markers.csv", markers_csv(s.result)); !status) return status;
+    if (Status status = write_file(folder / "iterations.csv", iterations_csv(s.result)); !status) return status;
+    if (Status status = write_frames(folder, s, progress); !status) return status;
+    return write_file(folder / "robot.glb", robot_glb(s, surface));
+}
+
+Status write_pictures(const fs::path& folder, const std::vector<Picture>& pictures) {
+    if (pictures.empty()) return {};
+    std::error_code code;
+    fs::create_directories(folder / "pictures", code);
+    if (code) return failure("{}: cannot be made: {}", (folder / "pictures").string(), code.message());
+    for (const Picture& picture : pictures) {
+        if (Status status = write_file(folder / "pictures" / picture.file, picture.png); !status) return status;
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<Written> write_results(const fs::path& folder, const Simulation& simulation, const PictureChoice& choice,
+                              Progress& writing, Progress& drawing) {
+    if (Status status = check(simulation); !status) return tl::unexpected(status.error());
+    Simulation s = simulation;  // the mesh and the result are not copied
+    Stopwatch watch;
+    const Surface surface = outer_surface(s.mesh, s.region_material);
+    if (Status status = write_data(folder, s, surface, writing); !status) return tl::unexpected(status.error());
+    s.timing.files_s = watch.read_s();
+
+    auto pictures = draw_pictures(s, surface, choice, drawing);
+    const bool stopped = !pictures && pictures.error().cause == Cause::cancelled;
+    if (stopped) pictures = std::vector<Picture>();
+    if (!pictures) return tl::unexpected(pictures.error());
+    if (Status status = write_pictures(folder, *pictures); !status) return tl::unexpected(status.error());
+    if (!pictures->empty()) s.timing.pictures_s = watch.read_s();
+
+    // Last, because both tell how long the rest took.
+    Status status = write_file(folder / "report.html", report_html(s, *pictures));
+    if (status) status = write_file(folder / "summary.json", summary_json(s));
+    if (status && writing.cancelled()) status = cancelled();
+    if (!status) return tl::unexpected(status.error());
+    return Written{s.timing, stopped};
+}
+
+}  // namespace pliant::report

@@ -1,0 +1,24 @@
+// The result folder of `pliant simulate -o DIR`. docs/reference/results.md describes every file.
+#pragma once
+
+#include <filesystem>
+
+#include "base/core/progress.hpp"
+#include "presentation/report/pictures.hpp"
+#include "presentation/report/simulation.hpp"
+
+namespace pliant::report {
+
+struct Written {
+    Timing timing;                 ///< the simulation's, with that of files and pictures
+    bool drawing_stopped = false;  ///< no pictures, because drawing them was cancelled
+};
+
+/// Writes summary.json, steps.csv, markers.csv, iterations.csv, frames.pvd with frames/*.vtu, robot.glb, pictures/*.png
+/// and report.html into `folder`, which exists and is written aside by the caller (base/core/files.hpp, write_folder).
+/// Ray casting the pictures takes seconds; the rest is quick. Cancelling `drawing` leaves only the pictures out,
+/// cancelling `writing` is an error.
+[[nodiscard]] Result<Written> write_results(const std::filesystem::path& folder, const Simulation& simulation,
+                                            const PictureChoice& pictures, Progress& writing, Progress& drawing);
+
+}  // namespace pliant::report

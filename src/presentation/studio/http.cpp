@@ -1,0 +1,20 @@
+#include "presentation/studio/http.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace pliant::studio {
+
+Response json_response(std::string json) {
+    return {200, "application/json", std::move(json)};
+}
+
+Response error_response(const Error& error) {
+    return error_response(error.cause == Cause::input ? 422 : 409, error.message);
+}
+
+Response error_response(int status, std::string_view text) {
+    const nlohmann::json json = {{"error", text}};
+    return {status, "application/json", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+}  // namespace pliant::studio

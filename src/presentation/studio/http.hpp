@@ -1,0 +1,38 @@
+// Requests and responses as the routes see them, whatever carries them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "base/core/error.hpp"
+
+namespace pliant::studio {
+
+struct Request {
+    std::string method;  ///< "GET", "POST", "PUT"
+    std::string path;    ///< decoded, without the query
+    std::map<std::string, std::string> query{};
+    std::map<std::string, std::string> parts{};  ///< of the path, as the route names them
+    std::string page{};                          ///< header X-Pliant-Page: who asks
+    std::string body{};
+};
+
+struct Response {
+    int status = 200;
+    std::string type = "application/json";
+    std::string body{};
+    std::string file_name{};  ///< not empty: the browser saves it under this name
+    bool packed = false;      ///< body is gzip
+    bool keep = false;        ///< may be kept for good: its address changes with its content
+};
+
+[[nodiscard]] Response json_response(std::string json);
+/// {"error": "..."} with 422 for bad input, 409 for failed work.
+[[nodiscard]] Response error_response(const Error& error);
+[[nodiscard]] Response error_response(int status, std::string_view text);
+
+/// Uploads beyond this are refused before they are read.
+inline constexpr long long largest_body = 4 << 20;
+
+}  // namespace pliant::studio

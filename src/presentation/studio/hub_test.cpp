@@ -1,0 +1,106 @@
+// Who steers, and what a slow page gets to see.
+#include "presentation/studio/hub.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace pliant::studio;
+
+namespace {
+
+Bytes bytes(const char* text) {
+    return std::make_shared<const std::string>(text);
+}
+
+/// The last text that waits for a page.
+std::string last_text(const std::shared_ptr<Connection>& connection) {
+    std::string last;
+    connection->send_text(bytes("end"));
+    for (auto out = connection->next(); out && *out->bytes != "end"; out = connection->next()) last = *out->bytes;
+    return last;
+}
+
+bool says(const std::string& json, const char* part) {
+    return json.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the first page steers, others ask, the helm is handed over") {
+    Hub hub;
+    const auto a = hub.join(), b = hub.join();
+    hub.hello(a, "page_aaaa");
+    hub.hello(b, "page_bbbb");
+    CHECK(hub.may_steer("page_aaaa"));
+    CHECK_FALSE(hub.may_steer("page_bbbb"));
+    CHECK_FALSE(hub.may_steer(""));
+    hub.give(b);  // has nothing to give
+    hub.ask(b);
+    CHECK_FALSE(hub.may_steer("page_bbbb"));
+    CHECK(says(last_text(a), R"("asked":true)"));
+    CHECK(says(last_text(b), R"("waiting":true)"));
+    hub.give(a);
+    CHECK(hub.may_steer("page_bbbb"));
+    CHECK_FALSE(hub.may_steer("page_aaaa"));
+    CHECK(says(last_text(b), R"("you":true)"));
+    hub.let_go(b);
+    CHECK(hub.may_steer("page_aaaa"));
+}
+
+TEST_CASE("a lost page keeps the helm for ten seconds") {
+    Hub::Clock::time_point now{};
+    Hub hub([&] { return now; });
+    const auto a = hub.join(), b = hub.join();
+    hub.hello(a, "page_aaaa");
+    hub.hello(b, "page_bbbb");
+    hub.leave(a);
+    now += std::chrono::seconds(9);
+    CHECK_FALSE(hub.may_steer("page_bbbb"));
+    const auto again = hub.join();
+    hub.hello(again, "page_aaaa");
+    now += std::chrono::seconds(60);
+    CHECK(hub.may_steer("page_aaaa"));
+    CHECK_FALSE(hub.may_steer("page_bbbb"));
+    hub.leave(again);
+    now += std::chrono::seconds(11);
+    CHECK(hub.may_steer("page_bbbb"));
+
+    hub.hello(hub.join(), "page_aaaa");  // comes back too late, when nobody has taken it
+    CHECK(hub.may_steer("page_aaaa"));
+    hub.ask(b);
+    CHECK_FALSE(hub.may_steer("page_bbbb"));
+}
+
+TEST_CASE("a slow page sees the latest frame, and every text in order") {
+    Hub hub;
+    const auto page = hub.join();
+    hub.send_text("one");
+    hub.send_frame(bytes("frame 1"));
+    hub.send_frame(bytes("frame 2"));
+    hub.send_text("two");
+    CHECK(*page->next()->bytes == "one");
+    CHECK(*page->next()->bytes == "two");
+    const auto frame = page->next();
+    CHECK(frame->binary);
+    CHECK(*frame->bytes == "frame 2");
+    page->close();
+    CHECK_FALSE(page->next());
+}
+
+TEST_CASE("a page that takes nothing any more is cut off") {
+    Hub hub;
+    const auto page = hub.join();
+    for (int i = 0; i < 2000; ++i) hub.send_text("text");
+    CHECK_FALSE(page->next());
+}
+
+TEST_CASE("fields are those that somebody wants") {
+    Hub hub;
+    const auto a = hub.join(), b = hub.join();
+    hub.want_fields(a, {"J"});
+    hub.want_fields(b, {"J", "energy"});
+    CHECK(hub.fields() == std::set<std::string>{"J", "energy"});
+    hub.leave(b);
+    CHECK(hub.fields() == std::set<std::string>{"J"});
+}

@@ -1,0 +1,126 @@
+#include "presentation/studio/make_session.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "base/core/files.hpp"
+#include "presentation/draw/colour.hpp"
+#include "presentation/studio/access.hpp"
+#include "presentation/studio/slice_robot.hpp"
+#include "printing/operate/job_file.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string event(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+class MakeSession::Watch final : public Progress {
+public:
+    explicit Watch(MakeSession& session) : session_(session) {}
+    void advance(std::string_view stage, double fraction) override {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - last_ < std::chrono::milliseconds(100)) return;
+        last_ = now;
+        session_.tell_(event({{"type", "slicing"}, {"stage", stage}, {"fraction", fraction}}));
+    }
+    [[nodiscard]] bool cancelled() const override { return session_.cancelled_; }
+
+private:
+    MakeSession& session_;
+    std::chrono::steady_clock::time_point last_{};
+};
+
+MakeSession::MakeSession(std::function<void(const std::string&)> tell, std::string version)
+    : tell_(std::move(tell)),
+      version_(std::move(version)),
+      scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
+
+MakeSession::~MakeSession() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+    std::error_code ignored;
+    std::filesystem::remove_all(scratch_, ignored);
+}
+
+Status MakeSession::open(const std::filesystem::path& file) {
+    return adopt(file, {});
+}
+
+Status MakeSession::save(const std::filesystem::path& file) {
+    const auto job = this->job();
+    if (!job) return failure("there is no job yet: slice the robot, or open a job file");
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored))
+        return input_error("{} exists; choose another name", file.filename().string());
+    const Result<std::string> bytes = read_file(job->file);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (Status written = write_file(file, *bytes); !written) return written;
+    return adopt(file, job->colours);
+}
+
+Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
+    Result<operate::OpenJob> open = operate::open_job(file);
+    if (!open) return tl::unexpected(open.error());
+    const std::size_t materials = open->archive.manifest().materials.size();
+    for (std::size_t m = colours.size(); m < materials; ++m)
+        colours.push_back(report::hex(report::palette(static_cast<int>(m))));
+    std::string news;
+    {
+        const std::lock_guard lock(mutex_);
+        job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
+        job_->colours = std::move(colours);
+        news = event({{"type", "job"}, {"revision", revision_}});
+    }
+    tell_(news);
+    return {};
+}
+
+Status MakeSession::slice(SliceOrder order) {
+    if (slicing_.exchange(true)) return failure("a job is being sliced already; cancel it first");
+    if (thread_.joinable()) thread_.join();
+    cancelled_ = false;
+    order.order.version = version_;
+    thread_ = std::thread([this, order = std::move(order)] { work(order); });
+    return {};
+}
+
+void MakeSession::work(const SliceOrder& order) {
+    Watch watch(*this);
+    tell_(event({{"type", "slicing"}, {"stage", "read"}, {"fraction", 0}}));
+    std::error_code error;
+    std::filesystem::create_directories(scratch_, error);
+    std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
+    const std::filesystem::path file = scratch_ / ("job_" + random_key() + ".zip");
+    Result<std::vector<std::string>> colours = slice_robot(order, file, watch);
+    Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
+    slicing_ = false;  // before it is told: whoever hears of the end may begin the next
+    tell_(event({{"type", "slicing"},
+                 {"stage", ""},
+                 {"fraction", 1},
+                 {"error", status || status.error().cause == Cause::cancelled ? "" : status.error().message}}));
+}
+
+void MakeSession::cancel() {
+    cancelled_ = true;
+}
+
+std::shared_ptr<OpenJob> MakeSession::job() const {
+    const std::lock_guard lock(mutex_);
+    return job_;
+}
+
+std::vector<std::string> MakeSession::news() const {
+    const std::lock_guard lock(mutex_);
+    // That there is none is news too: to a page that knew a job before the studio was started again.
+    return {event({{"type", "job"}, {"revision", job_ ? revision_ : 0}})};
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,70 @@
+// The job at hand: opened from a file, or sliced from the robot in the editor, on a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/core/progress.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/prepare/slice_job.hpp"
+
+namespace pliant::studio {
+
+struct SliceOrder {
+    std::string robot_text;
+    std::filesystem::path robot_file;
+    prepare::PrinterFile printer;
+    prepare::Order order;  ///< its inputs are the robot's
+};
+
+/// A job with the machine that it was made for.
+struct OpenJob {
+    OpenJob(job::Archive archive_, machine::Printer printer_, std::filesystem::path file_, int revision_)
+        : archive(std::move(archive_)), printer(std::move(printer_)), file(std::move(file_)), revision(revision_) {}
+    job::Archive archive;
+    machine::Printer printer;
+    std::filesystem::path file;
+    int revision;
+    std::vector<std::string> colours{};  ///< (materials)
+    std::mutex mutex{};                  ///< an archive is for one thread at a time
+};
+
+class MakeSession {
+public:
+    MakeSession(std::function<void(const std::string& json)> tell, std::string version);
+    ~MakeSession();
+    MakeSession(const MakeSession&) = delete;
+    MakeSession& operator=(const MakeSession&) = delete;
+
+    [[nodiscard]] Status open(const std::filesystem::path& file);
+    /// The job at hand as a file of its own, which takes its place. Errors: there is none, the file exists, the disk.
+    [[nodiscard]] Status save(const std::filesystem::path& file);
+    /// Begins; the pages hear of its progress and of its end. Errors: it is slicing already.
+    [[nodiscard]] Status slice(SliceOrder order);
+    void cancel();
+    [[nodiscard]] std::shared_ptr<OpenJob> job() const;
+    [[nodiscard]] std::vector<std::string> news() const;
+
+private:
+    class Watch;
+    [[nodiscard]] Status adopt(const std::filesystem::path& file, std::vector<std::string> colours);
+    void work(const SliceOrder& order);
+
+    std::function<void(const std::string& json)> tell_;
+    std::string version_;
+    std::filesystem::path scratch_;  ///< folder for sliced jobs; gone with the session
+    mutable std::mutex mutex_;
+    std::shared_ptr<OpenJob> job_;
+    int revision_ = 0;
+    std::atomic<bool> slicing_ = false, cancelled_ = false;
+    std::thread thread_;
+};
+
+}  // namespace pliant::studio

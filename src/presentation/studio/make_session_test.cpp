@@ -1,0 +1,106 @@
+#include "presentation/studio/make_session.hpp"
+
+#include <doctest/doctest.h>
+
+#include <future>
+
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "presentation/studio/test_sessions.hpp"
+
+using namespace pliant;
+using namespace pliant::studio;
+using pliant::test::holds;
+using studio::test::end_of_slicing;
+using studio::test::Events;
+using studio::test::Json;
+using studio::test::slice_order;
+namespace fs = std::filesystem;
+
+TEST_CASE("a robot becomes a job with the colours of its materials, in a file that goes with the session") {
+    Events events;
+    fs::path scratch;
+    {
+        MakeSession session([&](const std::string& json) { events.add(json); }, "1.2.3");
+        CHECK(session.job() == nullptr);
+        REQUIRE(session.slice(slice_order()).has_value());
+        CHECK(end_of_slicing(events) == "");
+        const auto job = session.job();
+        REQUIRE(job != nullptr);
+        CHECK(job->revision == 1);
+        CHECK(job->archive.manifest().layers.size() == 40);
+        CHECK(job->colours.size() == 1);
+        CHECK(job->printer.projector.width_px == 96);
+        CHECK(session.news() == std::vector<std::string>{R"({"revision":1,"type":"job"})"});
+        scratch = job->file.parent_path();
+        CHECK((fs::status(scratch).permissions() & fs::perms::mask) == fs::perms::owner_all);  // nobody else's
+    }
+    CHECK_FALSE(fs::exists(scratch));
+}
+
+TEST_CASE("a job is saved under a new name only, and goes on as that file") {
+    const pliant::test::Folder folder;
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    CHECK(holds(session.save(folder / "a.zip").error().message, "there is no job yet"));
+    REQUIRE(session.slice(slice_order()).has_value());
+    REQUIRE(end_of_slicing(events) == "");
+    const auto sliced = session.job();
+    REQUIRE(session.save(folder / "a.zip").has_value());
+    CHECK(session.job()->file == folder / "a.zip");
+    CHECK(session.job()->revision == 2);
+    CHECK(session.job()->colours == sliced->colours);
+    CHECK(read_file(folder / "a.zip").value() == read_file(sliced->file).value());
+    CHECK(session.save(folder / "a.zip").error().message == "a.zip exists; choose another name");
+    CHECK_FALSE(session.save(folder / "none/b.zip").has_value());
+    CHECK(session.job()->file == folder / "a.zip");
+
+    MakeSession other([](const std::string&) {}, "test");
+    REQUIRE(other.open(folder / "a.zip").has_value());
+    CHECK(other.job()->archive.manifest().layers.size() == 40);
+}
+
+TEST_CASE("what is no job is refused and the one at hand stays") {
+    const pliant::test::Folder folder;
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    REQUIRE(session.slice(slice_order()).has_value());
+    REQUIRE(end_of_slicing(events) == "");
+    REQUIRE(write_file(folder / "no.zip", "no zip file").has_value());
+    CHECK(holds(session.open(folder / "no.zip").error().message, "no.zip: "));
+    CHECK(holds(session.open(folder / "none.zip").error().message, "none.zip: no such file"));
+    CHECK(session.job()->revision == 1);
+
+    events.clear();
+    std::string wrong = studio::test::bar;
+    wrong.replace(wrong.find("youngs_modulus"), 14, "young_modulus");
+    REQUIRE(session.slice(slice_order(wrong)).has_value());
+    CHECK(holds(end_of_slicing(events), "bar.toml:3: "));
+    CHECK(session.job()->revision == 1);
+    CHECK(events.count("job") == 0);
+}
+
+TEST_CASE("one job is sliced at a time; one that is cancelled ends without an error and without a job") {
+    Events events;
+    std::promise<void> go;
+    std::shared_future<void> may_go(go.get_future());
+    // The session's thread waits at its first word, so that it is at work for as long as the test wants.
+    MakeSession session(
+        [&](const std::string& json) {
+            events.add(json);
+            if (Json::parse(json)["stage"] == "read") may_go.wait();
+        },
+        "test");
+    REQUIRE(session.slice(slice_order()).has_value());
+    CHECK(session.slice(slice_order()).error().message == "a job is being sliced already; cancel it first");
+    session.cancel();
+    go.set_value();
+    CHECK(end_of_slicing(events) == "");
+    CHECK(session.job() == nullptr);
+    CHECK(session.news() == std::vector<std::string>{R"({"revision":0,"type":"job"})"});
+
+    events.clear();
+    REQUIRE(session.slice(slice_order()).has_value());
+    CHECK(end_of_slicing(events) == "");
+    CHECK(session.job() != nullptr);
+}

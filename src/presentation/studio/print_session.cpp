@@ -1,0 +1,435 @@
+#include "presentation/studio/print_session.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "presentation/studio/access.hpp"
+#include "presentation/studio/growing_part.hpp"
+#include "printing/machine/switches.hpp"
+#include "printing/operate/job_file.hpp"
+#include "printing/operate/programs.hpp"
+#include "printing/screen/projector.hpp"
+#include "printing/wire/serial.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::chrono::milliseconds between_messages{200};
+constexpr double slowest = 0.1, fastest = 10000;
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+double mm(int um) {
+    return um / 1e3;
+}
+
+/// `{"current": ...}` as an event of the page.
+std::string event_of(const std::string& message) {
+    return R"({"type":"print",)" + message.substr(1);
+}
+
+bool under_way(host::State state) {
+    using host::State;
+    return state == State::printing || state == State::pausing || state == State::paused ||
+           state == State::cancelling || state == State::working;
+}
+
+/// A page may name no file but a terminal's: what is opened is written to.
+Status check_device(const std::string& device) {
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(device, error);
+    if (error)
+        return input_error(
+            "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
+            device);
+    if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
+        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
+    return {};
+}
+
+/// What watches over the machine, as far as its file says: switches with their names on the wire, door, emergency line.
+void add_safety(Json& json, const machine::Printer& p) {
+    Json switches = Json::array();
+    for (const machine::LimitSwitch& s : p.limit_switches)
+        switches.push_back({{"axis", machine::axis_name(s.axis)},
+                            {"end", s.at_max ? "max" : "min"},
+                            {"name", machine::switch_names(p, s).front()}});
+    json["switches"] = std::move(switches);
+    json["door"] = p.door.present() ? Json(p.door.input) : Json(nullptr);
+    const machine::EmergencyLine& line = p.emergency_line;
+    json["emergency"] = {{"signal", machine::signal_name(line.signal)}, {"device", line.device}, {"pin", line.pin}};
+}
+
+/// How images lie on the platform.
+Json projector_json(const machine::Projector& p) {
+    return {{"width", p.width_px},
+            {"height", p.height_px},
+            {"pixel", p.pixel_um / 1e3},
+            {"mirror_x", p.mirror_x},
+            {"mirror_y", p.mirror_y},
+            {"rotation", p.rotation_deg},
+            {"offset_x", p.offset_x_um / 1e3},
+            {"offset_y", p.offset_y_um / 1e3}};
+}
+
+/// What the page draws the machine from.
+Json printer_json(const machine::Printer& p) {
+    Json axes = Json::object(), vats = Json::array();
+    for (const machine::Axis axis : machine::all_axes) {
+        const machine::AxisSpec& spec = p.axis(axis);
+        if (!spec.present()) continue;
+        axes[std::string(machine::axis_name(axis))] = {
+            {"min", mm(spec.min_um)}, {"max", mm(spec.max_um)}, {"speed", spec.speed_mm_s}, {"rotary", spec.rotary}};
+    }
+    for (const machine::Vat& vat : p.vats)
+        vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}, {"fill_ml", vat.fill_ml}});
+    const char* store = p.store() == machine::Store::tower   ? "tower"
+                        : p.store() == machine::Store::wall  ? "wall"
+                        : p.store() == machine::Store::table ? "table"
+                                                             : "none";
+    Json json = {
+        {"name", p.name},
+        {"store", store},
+        {"axes", axes},
+        {"vats", vats},
+        {"carriage", {{"print", mm(p.carriage.print_um)}, {"tower", mm(p.carriage.tower_um)}}},
+        {"platform",
+         {{"width", mm(p.platform.width_um)},
+          {"depth", mm(p.platform.depth_um)},
+          {"height", mm(p.platform.build_height_um)}}},
+        {"tower", {{"slots", p.tower.slots}, {"first", mm(p.tower.first_slot_um)}, {"pitch", mm(p.tower.pitch_um)}}},
+        {"wall", mm(p.vat_shape.wall_um)},
+        {"projector", projector_json(p.projector)}};
+    add_safety(json, p);
+    return json;
+}
+
+/// The command of a request to the host's control, "" if it has none.
+std::string command_of(std::string_view body) {
+    const Json json = Json::parse(body, nullptr, false);
+    return json.is_object() && json.contains("command") && json["command"].is_string()
+               ? json["command"].get<std::string>()
+               : "";
+}
+
+}  // namespace
+
+/// Either a twin or a port.
+struct PrintSession::Machine {
+    Machine(const Order& order, operate::ReadyJob ready_, twin::Options options, double speed)
+        : file(order.job),
+          colours(order.colours),
+          ready(std::move(ready_)),
+          twin(std::make_unique<PacedTwin>(ready.printer, std::move(options), speed)),
+          part(file, ready),
+          control(setup()) {}
+    Machine(const Order& order, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_,
+            std::string device_)
+        : file(order.job),
+          colours(order.colours),
+          ready(std::move(ready_)),
+          port(std::move(port_)),
+          device(std::move(device_)),
+          part(file, ready),
+          control(setup()) {}
+
+    host::ControlSetup setup() {
+        if (port) {
+            host::ControlSetup made = port->setup(ready.printer);
+            made.after_light = [this](const host::Given& given) { part.exposed(given); };
+            return made;
+        }
+        return {ready.printer,
+                [this]() -> Result<std::unique_ptr<host::Wire>> { return twin->wire(); },
+                twin->projector(),
+                twin->clock(),
+                operate::programs_of(ready.printer),
+                operate::link_options(ready.printer.controller),
+                {},
+                {},
+                nullptr,
+                {}};
+    }
+    /// Nothing of a print is under way, nor waits to be gone on with.
+    [[nodiscard]] bool is_free() const {
+        const host::Snapshot now = control.snapshot();
+        return !under_way(now.state) && !now.can_resume;
+    }
+
+    std::filesystem::path file;
+    std::vector<std::string> colours;
+    operate::ReadyJob ready;
+    std::unique_ptr<PacedTwin> twin;
+    std::unique_ptr<operate::PortStation> port;
+    std::string device;
+    GrowingPart part;
+    host::Control control;
+    std::atomic<bool> ending = false;
+    std::thread worker, watcher;
+};
+
+PrintSession::PrintSession(std::function<void(const std::string&)> tell)
+    : tell_(std::move(tell)), scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
+
+PrintSession::~PrintSession() {
+    end(machine());
+    std::error_code ignored;
+    std::filesystem::remove_all(scratch_, ignored);
+}
+
+std::shared_ptr<PrintSession::Machine> PrintSession::machine() const {
+    const std::lock_guard lock(mutex_);
+    return machine_;
+}
+
+PrintSession::Files PrintSession::files() const {
+    const auto machine = this->machine();
+    if (!machine) return {};
+    return {machine->file, machine->ready.job.journal};
+}
+
+report::PrintExtras PrintSession::extras() const {
+    const auto machine = this->machine();
+    if (!machine) return {};
+    const host::Snapshot now = machine->control.snapshot();
+    report::PrintExtras extras{machine->twin ? "virtual printer" : machine->device, now.firmware, now.lines_sent,
+                               now.resends, nullptr};
+    // A block that still grows is not judged.
+    if (machine->twin && machine->is_free()) extras.block = block_of(*machine->twin, machine->file);
+    return extras;
+}
+
+std::string PrintSession::verdict() const {
+    const auto machine = this->machine();
+    if (!machine || !machine->twin || !machine->is_free() || !machine->control.snapshot().finished) return "null";
+    const auto block = block_of(*machine->twin, machine->file);
+    return block ? dumped({{"passed", block->report.passed}}) : "null";
+}
+
+Status PrintSession::take_twin(const Order& order, double speed) {
+    if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
+    const std::lock_guard one_at_a_time(orders_);
+    if (Status status = leave(); !status) return status;
+    Result<operate::ReadyJob> ready = operate::load_job(order.job);
+    if (!ready) return tl::unexpected(ready.error());
+    Result<std::optional<job::Image>> mask = operate::mask_of(*ready->archive, ready->printer.projector);
+    if (!mask) return tl::unexpected(mask.error());
+    twin::Options options;
+    options.mask = std::move(*mask);
+    std::error_code error;
+    std::filesystem::create_directories(scratch_, error);
+    std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
+    // A new virtual machine stands at its beginning: what another one had begun cannot be gone on with here.
+    ready->job.journal = scratch_ / fmt::format("twin_{}.journal", ++taken_);
+    ready->job.sync_journal = false;
+    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(options), speed));
+}
+
+Status PrintSession::take_port(const Order& order, const operate::PortOptions& port) {
+    if (Status status = check_device(port.device); !status) return status;
+    const std::lock_guard one_at_a_time(orders_);
+    if (Status status = leave(); !status) return status;
+    Result<operate::ReadyJob> ready = operate::load_job(order.job);
+    if (!ready) return tl::unexpected(ready.error());
+    auto station = operate::PortStation::open(port, *ready);
+    if (!station) return tl::unexpected(station.error());
+    ++taken_;
+    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(*station), port.device));
+}
+
+Status PrintSession::take(const std::shared_ptr<Machine>& made) {
+    if (Status loaded = made->control.load(made->ready.job); !loaded) return loaded;
+    made->control.serve_until_idle();
+    // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
+    if (!made->control.snapshot().can_resume) {
+        if (Status status = made->control.connect(); !status) return status;
+    } else {
+        made->part.recall(made->ready.job.journal);
+    }
+    made->worker = std::thread([made = made.get()] { made->control.serve(); });
+    {
+        const std::lock_guard lock(mutex_);
+        machine_ = made;
+    }
+    watch(made);
+    tell_(R"({"type":"machine"})");
+    return {};
+}
+
+/// Sends what has changed a few times a second.
+void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
+    machine->watcher = std::thread([this, m = machine.get()] {
+        long last = 0;
+        std::string before;
+        while (!m->ending) {
+            std::string message = host::current_message(m->control, last);
+            if (message != before) tell_(event_of(message));
+            before = std::move(message);
+            if (m->twin) m->part.look_at(*m->twin, m->is_free());
+            if (const std::string grown = m->part.news(); !grown.empty()) tell_(grown);
+            std::this_thread::sleep_for(between_messages);
+        }
+    });
+}
+
+void PrintSession::end(const std::shared_ptr<Machine>& machine) {
+    if (!machine) return;
+    machine->ending = true;
+    if (machine->watcher.joinable()) machine->watcher.join();
+    if (machine->twin) machine->twin->pace().let_go();
+    machine->control.quit();
+    if (machine->worker.joinable()) machine->worker.join();
+}
+
+Status PrintSession::give_back() {
+    const std::lock_guard one_at_a_time(orders_);
+    return leave();
+}
+
+Status PrintSession::leave() {
+    std::shared_ptr<Machine> machine = this->machine();
+    if (!machine) return {};
+    if (under_way(machine->control.snapshot().state))
+        return failure("a print is under way: cancel it before the machine is given back");
+    {
+        const std::lock_guard lock(mutex_);
+        machine_.reset();
+    }
+    end(machine);
+    machine.reset();  // its device is free before anybody hears of it
+    tell_(R"({"type":"machine"})");
+    return {};
+}
+
+Status PrintSession::set_speed(double speed) {
+    const auto machine = this->machine();
+    if (!machine || !machine->twin) return failure("there is no virtual printer");
+    if (!(speed >= slowest && speed <= fastest)) return input_error("speed: {} to {} is needed", slowest, fastest);
+    machine->twin->pace().set_speed(speed);
+    return {};
+}
+
+Status PrintSession::set_door(bool open) {
+    const auto machine = this->machine();
+    if (!machine || !machine->twin) return failure("there is no virtual printer");
+    if (!machine->ready.printer.door.present()) return failure("{} has no door", machine->ready.printer.name);
+    machine->twin->with([&](twin::Twin& twin) { twin.set_door(open); });
+    return {};
+}
+
+/// A print that begins anew finds the platform clean and, in the virtual printer, the vats full: that is what the page
+/// has asked for before it.
+void PrintSession::prepare_start(Machine& machine) {
+    if (machine.twin) {
+        machine.twin->with([&](twin::Twin& twin) {
+            twin.take_part_off();
+            for (const plan::VatUse& use : machine.ready.plan.vats) twin.fill_vat(use.slot);
+            for (const plan::CareBefore& care : machine.ready.plan.solution.care) {
+                if (care.layer == 0) twin.care(care.care);
+            }
+        });
+    }
+    machine.part.clear();
+}
+
+/// Whoever says that a vat is filled has filled the virtual one.
+void PrintSession::pour(Machine& machine) {
+    const std::string prompt = machine.control.snapshot().prompt;
+    if (!machine.twin || prompt.empty()) return;
+    for (const host::Refill& refill : machine.ready.job.refills) {
+        if (refill.text != prompt) continue;
+        machine.twin->with([&](twin::Twin& twin) {
+            if (refill.slot == 0)
+                twin.care(refill.care);
+            else
+                twin.fill_vat(refill.slot);
+        });
+    }
+}
+
+host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path, std::string_view body) {
+    const auto machine = this->machine();
+    if (!machine) return {404, R"({"error":"no machine has been taken"})"};
+    if (method == "POST" && path == "/api/job") {
+        // Two who start at once: the second must not clear what the first has begun.
+        const std::lock_guard one_at_a_time(orders_);
+        const std::string command = command_of(body);
+        const host::Snapshot now = machine->control.snapshot();
+        if (command == "start" && now.door_open.value_or(false))
+            return {409, R"({"error":"the door is open: shut it, then start"})"};
+        if (command == "start" && machine->is_free() && now.state != host::State::connecting) prepare_start(*machine);
+        if (command == "resume") pour(*machine);
+        return host::handle_api(machine->control, method, path, body);
+    }
+    return host::handle_api(machine->control, method, path, body);
+}
+
+std::string PrintSession::describe() const {
+    const auto machine = this->machine();
+    if (!machine) return R"({"machine":null})";
+    Json vats = Json::array(), refills = Json::array();
+    for (const plan::VatUse& use : machine->ready.plan.vats)
+        vats.push_back({{"slot", use.slot}, {"resin", use.resin}, {"ml", use.resin_ml}, {"materials", use.materials}});
+    for (const host::Refill& refill : machine->ready.job.refills)
+        refills.push_back({{"layer", refill.layer}, {"slot", refill.slot}, {"text", refill.text}});
+    Json materials = Json::array();
+    const auto& listed = machine->ready.archive->manifest().materials;
+    for (std::size_t m = 0; m < listed.size(); ++m) {
+        materials.push_back({{"name", listed[m].name},
+                             {"resin", listed[m].resin},
+                             {"exposure_s", listed[m].exposure_s},
+                             {"colour", m < machine->colours.size() ? machine->colours[m] : ""}});
+    }
+    long last = 0;
+    const Json history = Json::parse(host::history_message(machine->control, last));
+    return dumped({{"machine", printer_json(machine->ready.printer)},
+                   {"twin", machine->twin != nullptr},
+                   {"device", machine->device},
+                   {"speed", machine->twin ? machine->twin->pace().speed() : 1},
+                   {"file", machine->file.filename().string()},
+                   {"materials", materials},
+                   {"taken", taken_.load()},
+                   {"job", machine->ready.job.name},
+                   {"seconds", machine->ready.plan.seconds.total},
+                   {"vats", vats},
+                   {"refills", refills},
+                   {"warnings", machine->ready.warnings},
+                   {"now", history["history"]}});
+}
+
+Result<std::string> PrintSession::image(int layer, int material) const {
+    const auto machine = this->machine();
+    if (!machine) return input_error("no machine has been taken");
+    return machine->part.image(layer, material);
+}
+
+std::string PrintSession::part(int revision, std::size_t from) const {
+    const auto machine = this->machine();
+    return machine ? machine->part.packet(revision, from) : "";
+}
+
+/// That there is none is news too: to a page that knew a machine before the studio was started again.
+std::vector<std::string> PrintSession::news() const {
+    return {R"({"type":"machine"})"};
+}
+
+std::string ports_json() {
+    Json ports = Json::array(), displays = Json::array();
+    for (const host::SerialPort& port : host::serial_ports())
+        ports.push_back({{"device", port.device}, {"name", port.name}});
+    const Result<std::vector<host::PanelInfo>> panels = host::list_displays();
+    if (panels) {
+        for (const host::PanelInfo& p : *panels)
+            displays.push_back(
+                {{"number", p.number}, {"name", p.name}, {"width", p.width_px}, {"height", p.height_px}});
+    }
+    return dumped({{"ports", ports}, {"displays", displays}, {"without", panels ? "" : panels.error().message}});
+}
+
+}  // namespace pliant::studio

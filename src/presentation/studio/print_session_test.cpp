@@ -1,0 +1,128 @@
+#include "presentation/studio/print_session.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "presentation/studio/slice_robot.hpp"
+#include "presentation/studio/test_sessions.hpp"
+#include "printing/prepare/slice_job.hpp"
+
+using namespace pliant;
+using namespace pliant::studio;
+using pliant::test::holds;
+using studio::test::Events;
+using studio::test::Json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Bench {
+    const pliant::test::Folder folder;
+    Events events;
+    PrintSession session{[this](const std::string& json) { events.add(json); }};
+    PrintSession::Order order{folder / "bar.zip", {"#123456"}};
+
+    Bench() {
+        Progress silent;
+        const auto made = slice_robot(studio::test::slice_order(), order.job, silent);
+        REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+    }
+    [[nodiscard]] host::ApiAnswer command(const std::string& text) {
+        return session.ask("POST", "/api/job", R"({"command":")" + text + "\"}");
+    }
+    [[nodiscard]] Json about() const { return Json::parse(session.describe()); }
+    /// Waits until the print has come to its end and has been judged.
+    [[nodiscard]] std::string verdict() const {
+        for (int i = 0; i < 6000; ++i) {
+            if (std::string said = session.verdict(); said != "null") return said;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return "no verdict";
+    }
+    void wait_for_state(const std::string& state) {
+        (void)events.wait_for(
+            [&](const Json& e) { return e["type"] == "print" && e["current"]["state"]["text"] == state; });
+    }
+};
+
+}  // namespace
+
+TEST_CASE("without a machine there is nothing to ask, to see or to steer") {
+    Events events;
+    PrintSession session([&](const std::string& json) { events.add(json); });
+    CHECK(session.describe() == R"({"machine":null})");
+    CHECK(session.ask("GET", "/api/printer", "").status == 404);
+    CHECK(session.part(0, 0).empty());
+    CHECK_FALSE(session.image(0, 0).has_value());
+    CHECK(session.verdict() == "null");
+    CHECK(session.files().job.empty());
+    CHECK(session.set_speed(10).error().message == "there is no virtual printer");
+    CHECK(session.set_door(true).error().message == "there is no virtual printer");
+    CHECK(session.give_back().has_value());
+    CHECK(events.count("machine") == 0);
+}
+
+TEST_CASE("what cannot be taken is refused with its reason, and the machine at hand stays") {
+    Bench b;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double speed : {0.0, -1.0, 1e9, nan})
+        CHECK(holds(b.session.take_twin(b.order, speed).error().message, "speed: "));
+    CHECK(holds(b.session.take_twin({b.folder / "none.zip", {}}, 1).error().message, "none.zip"));
+    CHECK(b.session.describe() == R"({"machine":null})");
+    REQUIRE(b.session.take_twin(b.order, 1).has_value());
+    CHECK(b.about()["taken"] == 1);
+    const auto refused_port = [&](const std::string& device) {
+        operate::PortOptions port;
+        port.device = device;
+        return b.session.take_port(b.order, port).error().message;
+    };
+    CHECK(holds(refused_port("/dev/no_such_port"), "device: there is no /dev/no_such_port"));
+    CHECK(holds(refused_port(b.order.job.string()), "is no serial port"));  // would be written to
+    CHECK(holds(refused_port("/dev"), "is no serial port"));
+    for (const double speed : {0.0, nan}) CHECK(holds(b.session.set_speed(speed).error().message, "speed: "));
+    CHECK(holds(b.session.set_door(true).error().message, "has no door"));
+    CHECK(b.about()["taken"] == 1);
+    CHECK(b.about()["twin"] == true);
+    CHECK(b.session.set_speed(50).has_value());
+    CHECK(b.about()["speed"] == 50);
+}
+
+TEST_CASE("a job is printed on the virtual printer and judged; then the machine is given back") {
+    Bench b;
+    REQUIRE(b.session.take_twin(b.order, 10000).has_value());
+    CHECK(b.about()["job"] == "bar");
+    CHECK(b.about()["file"] == "bar.zip");
+    CHECK(b.about()["materials"][0]["colour"] == "#123456");
+    CHECK(b.session.files().job == b.order.job);
+    CHECK(b.session.image(0, 0).value().substr(1, 3) == "PNG");
+    CHECK_FALSE(b.session.image(99, 0).has_value());
+    CHECK(b.session.verdict() == "null");
+    b.wait_for_state("Operational");
+    REQUIRE(b.command("start").status < 300);
+    CHECK(b.verdict() == R"({"passed":true})");
+    CHECK_FALSE(b.session.part(0, 0).empty());
+    CHECK(fs::exists(b.session.files().journal));
+    const fs::path scratch = b.session.files().journal.parent_path();
+    REQUIRE(b.session.give_back().has_value());
+    CHECK(b.session.describe() == R"({"machine":null})");
+    CHECK(b.events.count("machine") == 2);  // taken, given back
+    CHECK(b.command("start").status == 404);
+}
+
+TEST_CASE("nobody takes the machine away from a print that is under way") {
+    Bench b;
+    REQUIRE(b.session.take_twin(b.order, 1).has_value());
+    b.wait_for_state("Operational");
+    REQUIRE(b.command("start").status < 300);
+    b.wait_for_state("Printing");
+    CHECK(holds(b.session.give_back().error().message, "a print is under way"));
+    CHECK(holds(b.session.take_twin(b.order, 1).error().message, "a print is under way"));
+    CHECK(b.about()["taken"] == 1);
+    REQUIRE(b.session.set_speed(10000).has_value());
+    CHECK(b.verdict() == R"({"passed":true})");
+    CHECK(b.session.take_twin(b.order, 1).has_value());
+    CHECK(b.about()["taken"] == 2);
+}

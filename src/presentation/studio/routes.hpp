@@ -1,0 +1,35 @@
+// The table of everything that can be asked for over HTTP. The OpenAPI description is made from it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "presentation/studio/http.hpp"
+
+namespace pliant::studio {
+
+class Studio;
+
+struct Route {
+    std::string method;
+    std::string path;     ///< "/api/job/layers/{layer}"; a part in braces is one path segment
+    std::string summary;  ///< for the description
+    std::string answers;  ///< media type
+    bool steers = false;  ///< only the page that steers may ask
+    std::function<Response(Studio&, const Request&)> answer;
+    std::string takes = {};  ///< media type of the body, "" for none
+};
+
+[[nodiscard]] std::vector<Route> all_routes();
+void add_project_routes(std::vector<Route>& routes);
+void add_simulation_routes(std::vector<Route>& routes);
+void add_make_routes(std::vector<Route>& routes);
+void add_print_routes(std::vector<Route>& routes);
+
+/// Whether the path fits; fills request.parts.
+[[nodiscard]] bool matches(const Route& route, Request& request);
+/// OpenAPI 3.0, JSON.
+[[nodiscard]] std::string open_api(const std::vector<Route>& routes, const std::string& version);
+
+}  // namespace pliant::studio

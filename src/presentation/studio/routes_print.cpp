@@ -1,0 +1,184 @@
+// The print: which machine, and what the host's control may be asked for, docs/reference/host-api.md.
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "presentation/print_report/print_report.hpp"
+#include "presentation/studio/journal_view.hpp"
+#include "presentation/studio/studio.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+Response done(const Status& status) {
+    return status ? json_response("{}") : error_response(status.error());
+}
+
+double speed_of(const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    return json.is_object() && json.contains("speed") && json["speed"].is_number() ? json["speed"].get<double>() : 1;
+}
+
+Response take_twin(Studio& studio, const Request& request) {
+    const auto job = studio.make().job();
+    if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    return done(studio.print().take_twin({job->file, job->colours}, speed_of(request)));
+}
+
+/// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
+Response take_port(Studio& studio, const Request& request) {
+    const auto job = studio.make().job();
+    if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    if (!studio.folder().holds(job->file))
+        return error_response(409, "save the job into the folder first: the journal of a print stands beside its job");
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto text = [&](const char* key) {
+        return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+    };
+    operate::PortOptions port{text("device"), text("projector"), speed_of(request), {}, {}};
+    const bool display = !port.projector.empty() && port.projector.find_first_not_of("0123456789") == std::string::npos;
+    if (!display) {
+        const Result<std::filesystem::path> folder = studio.folder().resolve(port.projector);
+        if (!folder) return error_response(422, "projector: " + folder.error().message);
+        std::error_code error;
+        std::filesystem::create_directories(*folder, error);
+        port.projector = folder->string();
+    }
+    if (const std::string clock = text("clock"); !clock.empty()) {
+        const Result<std::filesystem::path> file = studio.folder().resolve(clock);
+        if (!file) return error_response(422, "clock: " + file.error().message);
+        port.clock_file = *file;
+    }
+    return done(studio.print().take_port({job->file, job->colours}, port));
+}
+
+Response journals(Studio& studio, const Request&) {
+    std::string list;
+    for (const std::string& name : studio.folder().journals()) {
+        const Result<std::filesystem::path> path = studio.folder().resolve(name);
+        if (path) list += (list.empty() ? "" : ",") + journal_line_json(*path, name);
+    }
+    return json_response("[" + list + "]");
+}
+
+Response journal(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    if (name == request.query.end()) return error_response(422, "?name= is needed");
+    const Result<std::filesystem::path> path = studio.folder().resolve(name->second);
+    if (!path) return error_response(path.error());
+    if (path->extension() != ".journal") return error_response(422, "a journal ends with .journal");
+    Result<std::string> json = journal_json(*path, name->second);
+    return json ? json_response(std::move(*json)) : error_response(json.error());
+}
+
+/// Of the machine at hand, or of a journal of the folder and the job beside it.
+Response report_page(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    PrintSession::Files files = studio.print().files();
+    report::PrintExtras extras = studio.print().extras();
+    if (name != request.query.end()) {
+        const Result<std::filesystem::path> journal = studio.folder().resolve(name->second);
+        if (!journal) return error_response(journal.error());
+        if (journal->extension() != ".journal") return error_response(422, "a journal ends with .journal");
+        files = {std::filesystem::path(*journal).replace_extension(), *journal};
+        extras = {};
+    } else if (files.job.empty()) {
+        return error_response(404, "no machine has been taken");
+    }
+    std::error_code error;
+    if (!std::filesystem::exists(files.journal, error)) return error_response(409, "nothing has been printed yet");
+    Result<std::string> page = report::print_report(files.job, files.journal, extras);
+    if (!page) return error_response(page.error());
+    return {200, "text/html; charset=utf-8", std::move(*page), "print_report.html"};
+}
+
+Response set_door(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains("open") || !json["open"].is_boolean())
+        return error_response(422, "{\"open\": true or false} is needed");
+    return done(studio.print().set_door(json["open"].get<bool>()));
+}
+
+/// A number of the query, 0 if it is none.
+std::size_t number_of(const Request& request, const char* key) {
+    const auto found = request.query.find(key);
+    std::size_t number = 0;
+    if (found != request.query.end())
+        std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+    return number;
+}
+
+Response part(Studio& studio, const Request& request) {
+    std::string packet =
+        studio.print().part(static_cast<int>(number_of(request, "revision")), number_of(request, "from"));
+    if (packet.empty()) return error_response(404, "no machine has been taken");
+    return {200, "application/octet-stream", std::move(packet)};
+}
+
+Response image(Studio& studio, const Request& request) {
+    const auto number = [&](const char* part) {
+        const std::string& text = request.parts.at(part);
+        int value = -1;
+        const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return code == std::errc() && end == text.data() + text.size() ? value : -1;
+    };
+    Result<std::string> png = studio.print().image(number("layer"), number("material"));
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
+}
+
+/// "/api/print/host/printer/axes" is the host's "/api/printer/axes".
+Response forward(Studio& studio, const Request& request) {
+    std::string path = "/api/" + request.parts.at("what");
+    if (const auto more = request.parts.find("more"); more != request.parts.end()) path += "/" + more->second;
+    host::ApiAnswer answer = studio.print().ask(request.method, path, request.body);
+    return {answer.status == 204 ? 200 : answer.status, "application/json",
+            answer.json.empty() ? "{}" : std::move(answer.json)};
+}
+
+}  // namespace
+
+void add_print_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back({"GET", "/api/print", "the machine, its job, where both stand", json, false,
+                      [](Studio& s, const Request&) { return json_response(s.print().describe()); }});
+    routes.push_back({"POST", "/api/print/twin",
+                      "takes a virtual printer for the job: {\"speed\"} times as fast as the wall's clock", json, true,
+                      take_twin, json});
+    routes.push_back({"GET", "/api/print/ports", "serial ports and displays of this computer", json, false,
+                      [](Studio&, const Request&) { return json_response(ports_json()); }});
+    routes.push_back({"POST", "/api/print/port",
+                      "takes the machine at a port for the job: {\"device\", \"projector\", \"speed\", \"clock\"}",
+                      json, true, take_port, json});
+    routes.push_back({"GET", "/api/print/journals", "the journals of the folder", json, false, journals});
+    routes.push_back({"GET", "/api/print/journal", "one of them: ?name=", json, false, journal});
+    routes.push_back({"GET", "/api/print/report",
+                      "a page about the print at hand, or of a journal of the folder: ?name=", "text/html", false,
+                      report_page});
+    routes.push_back({"POST", "/api/print/speed", "another {\"speed\"} of the virtual printer", json, true,
+                      [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
+    routes.push_back({"POST", "/api/print/leave", "gives the machine back", json, true,
+                      [](Studio& s, const Request&) { return done(s.print().give_back()); }});
+    routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or shuts the door of the virtual printer", json,
+                      true, set_door, json});
+    routes.push_back({"GET", "/api/print/verdict",
+                      "of a complete print on the virtual printer: {\"passed\"}, whether it cured as drawn; else null",
+                      json, false, [](Studio& s, const Request&) { return json_response(s.print().verdict()); }});
+    routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
+                      "application/octet-stream", false, part});
+    routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
+                      false, image});
+    // Whoever sees that something goes wrong may stop it.
+    routes.push_back(
+        {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {
+             const host::ApiAnswer answer = s.print().ask("POST", "/api/printer/stop", "");
+             return answer.status == 204 ? json_response("{}") : error_response(404, "no machine has been taken");
+         }});
+    routes.push_back({"GET", "/api/print/host/{what}", "the host's GET /api/{what}", json, false, forward});
+    routes.push_back({"POST", "/api/print/host/{what}", "the host's POST /api/{what}", json, true, forward, json});
+    routes.push_back(
+        {"POST", "/api/print/host/{what}/{more}", "the host's POST /api/{what}/{more}", json, true, forward, json});
+}
+
+}  // namespace pliant::studio

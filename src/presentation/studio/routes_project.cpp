@@ -1,0 +1,89 @@
+// Files: the robot file as text, saving, undo, what else lies in the folder.
+#include <nlohmann/json.hpp>
+
+#include "base/core/files.hpp"
+#include "presentation/studio/examples.hpp"
+#include "presentation/studio/studio.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+Response done(const Status& status) {
+    return status ? json_response("{}") : error_response(status.error());
+}
+
+/// A text under `key` of the JSON body; "" if it is not there.
+std::string body_text(const Request& request, const char* key) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
+    return json[key].get<std::string>();
+}
+
+/// Printer files of the folder: other TOML files have no projector.
+void add_own_printers(const ProjectFolder& folder, Json& printers) {
+    constexpr std::uintmax_t largest = 1 << 20;
+    for (const std::string& name : folder.files()) {
+        if (!name.ends_with(".toml")) continue;
+        const Result<std::string> text = read_file(folder.path() / name, largest);
+        if (text && text->find("[projector]") != std::string::npos) printers.push_back(name);
+    }
+}
+
+Response project(Studio& studio, const Request&) {
+    const Studio::Document d = studio.document();
+    Json examples = Json::array(), printers = Json::array();
+    for (const BuiltInFile& file : example_robots()) examples.push_back(file.name);
+    for (const BuiltInFile& file : example_printers()) printers.push_back(file.name);
+    add_own_printers(studio.folder(), printers);
+    const Json json = {
+        {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},
+        {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers}};
+    return json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Response robot_text(Studio& studio, const Request&) {
+    return {200, "text/plain; charset=utf-8", studio.document().text};
+}
+
+Response set_accuracy(Studio& studio, const Request& request) {
+    const std::string accuracy = body_text(request, "accuracy");
+    if (accuracy != "preview" && accuracy != "fine")
+        return error_response(422, R"(accuracy: "preview" or "fine" is needed)");
+    studio.set_accuracy(accuracy == "fine" ? Accuracy::fine : Accuracy::preview);
+    return json_response("{}");
+}
+
+Response open_example(Studio& studio, const Request& request) {
+    const std::string name = body_text(request, "name");
+    if (find_file(example_robots(), name) == nullptr) return error_response(404, "there is no such example");
+    studio.open_example(name);
+    return json_response("{}");
+}
+
+}  // namespace
+
+void add_project_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json", text = "text/plain";
+    routes.push_back(
+        {"GET", "/api/project", "the folder, its files, built-in examples and printers", json, false, project});
+    routes.push_back({"GET", "/api/robot", "the robot file as it stands in the editor", text, false, robot_text});
+    routes.push_back({"PUT", "/api/robot", "another text for the robot file: checked, built, shown", json, true,
+                      [](Studio& s, const Request& r) { return done(s.edit(r.body)); }, text});
+    routes.push_back({"POST", "/api/robot/undo", "the text before the last change", json, true,
+                      [](Studio& s, const Request&) { return done(s.undo()); }});
+    routes.push_back({"POST", "/api/robot/redo", "the change that was undone", json, true,
+                      [](Studio& s, const Request&) { return done(s.redo()); }});
+    routes.push_back({"POST", "/api/robot/save", "writes the robot file; {\"name\"} for a new one", json, true,
+                      [](Studio& s, const Request& r) { return done(s.save(body_text(r, "name"))); }, json});
+    routes.push_back({"POST", "/api/open", "opens {\"name\"}, a robot file or job of the folder", json, true,
+                      [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
+    routes.push_back(
+        {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
+    routes.push_back({"POST", "/api/accuracy",
+                      "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones", json, true,
+                      set_accuracy, json});
+}
+
+}  // namespace pliant::studio

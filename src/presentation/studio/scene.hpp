@@ -1,0 +1,66 @@
+// What the page draws of a robot: surfaces of every material, cables, chambers, supports, obstacles, markers. Built
+// once for a model; a frame moves it. Lengths leave in mm.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "presentation/draw/obstacle.hpp"
+#include "presentation/draw/surface.hpp"
+#include "presentation/report/simulation.hpp"
+#include "presentation/studio/packet.hpp"
+#include "robot/description/robot.hpp"
+#include "simulation/model/model.hpp"
+#include "simulation/run/trajectory.hpp"
+
+namespace pliant::studio {
+
+/// Fields that a frame can carry beside positions; displacement is the page's own.
+[[nodiscard]] bool is_field(const std::string& name);
+
+class Scene {
+public:
+    /// Both must outlive it.
+    Scene(const robot::Robot& robot, const sim::Model& model);
+
+    /// Everything that does not move, docs/reference/studio.md; `extra` is added to the head, JSON members with a comma
+    /// in front, or nothing.
+    [[nodiscard]] std::string packet(const std::string& extra) const;
+    /// Positions, cables, chambers and the fields that are wanted. `head`: JSON of the frame.
+    [[nodiscard]] std::string frame(const sim::Step& step, const std::set<std::string>& fields,
+                                    const std::string& head) const;
+    /// Where obstacles are: JSON, [[x, y, z] mm of offset].
+    [[nodiscard]] std::string obstacle_offsets(double time) const;
+
+    [[nodiscard]] std::size_t vertex_count() const { return surface_.vertex_node.size(); }
+    [[nodiscard]] int node_of_vertex(std::size_t vertex) const { return surface_.vertex_node[vertex]; }
+    /// (regions), index into the robot's materials, -1: none
+    [[nodiscard]] const std::vector<int>& region_material() const { return region_material_; }
+
+private:
+    void add_materials();
+    void add_grades();
+    void add_field(Packet& packet, const std::string& name, const std::vector<double>& tets) const;
+    [[nodiscard]] std::string head() const;
+
+    const robot::Robot& robot_;
+    const sim::Model& model_;
+    std::vector<int> region_material_;
+    report::Surface surface_;              ///< of all materials, one after the other
+    std::vector<report::Surface> parts_;   ///< (materials)
+    std::vector<std::vector<int>> shown_;  ///< (materials) region_material with all others void
+    std::vector<std::uint32_t> material_;  ///< (vertices)
+    std::vector<std::uint32_t> other_;     ///< (vertices) what a graded body changes into, else its own material
+    std::vector<float> share_;             ///< (vertices) of that; empty: no body is graded
+    std::vector<report::Obstacle> obstacles_;
+};
+
+/// The colour a material is drawn in: its own, or the palette's.
+[[nodiscard]] std::string colour_of(const robot::Robot& robot, std::size_t material);
+
+/// A trajectory as the report takes it. All arguments must outlive it.
+[[nodiscard]] report::Simulation as_report(const robot::Robot& robot, const sim::Model& model,
+                                           const std::vector<int>& region_material, const sim::Trajectory& trajectory);
+
+}  // namespace pliant::studio

@@ -1,0 +1,272 @@
+#include "presentation/studio/server.hpp"
+
+#include <civetweb.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <thread>
+
+#include "presentation/studio/access.hpp"
+#include "presentation/studio/examples.hpp"
+
+namespace pliant::studio {
+namespace {
+
+std::string_view header(mg_connection* wire, const char* name) {
+    const char* value = mg_get_header(wire, name);
+    return value != nullptr ? value : "";
+}
+
+const char* reason(int status) {
+    switch (status) {
+        case 200:
+            return "OK";
+        case 302:
+            return "Found";
+        case 401:
+            return "Unauthorized";
+        case 403:
+            return "Forbidden";
+        case 404:
+            return "Not Found";
+        case 405:
+            return "Method Not Allowed";
+        case 409:
+            return "Conflict";
+        case 413:
+            return "Content Too Large";
+        case 422:
+            return "Unprocessable Content";
+        case 423:
+            return "Locked";
+        default:
+            return "Error";
+    }
+}
+
+/// Nothing from elsewhere, in no frame of others, and types as we say.
+constexpr const char* safety_headers =
+    "X-Content-Type-Options: nosniff\r\n"
+    "Referrer-Policy: no-referrer\r\n"
+    "Cross-Origin-Resource-Policy: same-origin\r\n"
+    "Cross-Origin-Opener-Policy: same-origin\r\n"
+    "Content-Security-Policy: default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n";
+
+void write(mg_connection* wire, const Response& response, const std::string& more = "") {
+    std::string head = fmt::format("HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n{}", response.status,
+                                   reason(response.status), response.type, response.body.size(), safety_headers);
+    head += response.keep ? "Cache-Control: private, max-age=31536000, immutable\r\n" : "Cache-Control: no-store\r\n";
+    if (response.packed) head += "Content-Encoding: gzip\r\n";
+    if (!response.file_name.empty())
+        head += fmt::format("Content-Disposition: attachment; filename=\"{}\"\r\n", response.file_name);
+    head += more + "\r\n";
+    mg_write(wire, head.data(), head.size());
+    if (!response.body.empty()) mg_write(wire, response.body.data(), response.body.size());
+}
+
+std::map<std::string, std::string> read_query(const char* text) {
+    std::map<std::string, std::string> query;
+    std::string_view rest = text != nullptr ? text : "";
+    while (!rest.empty()) {
+        const std::size_t end = std::min(rest.find('&'), rest.size());
+        const std::string_view one = rest.substr(0, end);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        const std::size_t equals = std::min(one.find('='), one.size());
+        std::string value(one.substr(std::min(equals + 1, one.size())));
+        std::string plain(value.size() + 1, '\0');
+        const int length = mg_url_decode(value.data(), static_cast<int>(value.size()), plain.data(),
+                                         static_cast<int>(plain.size()), 1);
+        plain.resize(static_cast<std::size_t>(std::max(length, 0)));
+        query.emplace(one.substr(0, equals), std::move(plain));
+    }
+    return query;
+}
+
+/// The whole body, or nothing where it is too large or breaks off.
+bool read_body(mg_connection* wire, long long length, std::string& body) {
+    if (length > largest_body) return false;
+    char piece[16384];
+    while (static_cast<long long>(body.size()) <= largest_body) {
+        if (length >= 0 && static_cast<long long>(body.size()) >= length) return true;
+        const int got = mg_read(wire, piece, sizeof piece);
+        if (got <= 0) return length < 0;
+        body.append(piece, static_cast<std::size_t>(got));
+    }
+    return false;
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+    return address == "127.0.0.1" || address == "::1" || address == "localhost";
+}
+
+struct Server::State {
+    Studio& studio;
+    AccessRules rules;
+    mg_context* context = nullptr;
+
+    [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
+        std::string_view bearer = header(wire, "Authorization");
+        bearer = bearer.starts_with("Bearer ") ? bearer.substr(7) : "";
+        return check_access(rules, {header(wire, "Host"), header(wire, "Origin"), header(wire, "Cookie"), bearer,
+                                    query_token, websocket});
+    }
+
+    int handle(mg_connection* wire) const {
+        const mg_request_info& info = *mg_get_request_info(wire);
+        Request request{info.request_method, info.local_uri_raw != nullptr ? info.local_uri_raw : "",
+                        read_query(info.query_string)};
+        const std::string token = request.query.contains("token") ? request.query["token"] : "";
+        switch (access(wire, token, false)) {
+            case Access::granted:
+                break;
+            case Access::wrong_host:
+                return refuse(wire, 403, "this name is not the studio's; use the address that it printed");
+            case Access::wrong_origin:
+                return refuse(wire, 403, "requests of other pages are refused");
+            case Access::no_token:
+                return refuse(wire, 401, "the token is missing: use the address that the studio printed");
+        }
+        if (!token.empty() && request.method == "GET" && request.path == "/") return settle_token(wire, token);
+        request.page = header(wire, "X-Pliant-Page");
+        if (request.method != "GET" && !read_body(wire, info.content_length, request.body))
+            return refuse(wire, 413, "more than 4 MB are refused");
+        if (request.path.starts_with("/api/")) return answer(wire, studio.handle(request));
+        return answer(wire, page_file(request));
+    }
+
+    static int refuse(mg_connection* wire, int status, const char* text) {
+        return answer(wire, error_response(status, text));
+    }
+    static int answer(mg_connection* wire, const Response& response) {
+        write(wire, response);
+        return response.status;
+    }
+
+    /// From the address bar into a cookie, so that it does not stay in the history.
+    static int settle_token(mg_connection* wire, const std::string& token) {
+        write(
+            wire, {302, "text/plain", ""},
+            fmt::format("Location: /\r\nSet-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
+        return 302;
+    }
+
+    static Response page_file(const Request& request) {
+        if (request.method != "GET") return error_response(405, "not with this method");
+        for (const PageFile& file : page_files()) {
+            if (file.path != request.path) continue;
+            Response response{200, std::string(file.type), std::string(file.bytes)};
+            response.packed = file.packed;
+            response.keep = file.path != "/";
+            return response;
+        }
+        return error_response(404, "there is nothing here");
+    }
+};
+
+namespace {
+
+/// What belongs to one WebSocket: its place in the hub and the thread that writes.
+struct Socket {
+    std::shared_ptr<Connection> connection;
+    std::thread writer;
+};
+
+void write_all(mg_connection* wire, const std::shared_ptr<Connection>& connection) {
+    while (const auto out = connection->next()) {
+        const int opcode = out->binary ? MG_WEBSOCKET_OPCODE_BINARY : MG_WEBSOCKET_OPCODE_TEXT;
+        if (mg_websocket_write(wire, opcode, out->bytes->data(), out->bytes->size()) <= 0) return;
+    }
+    mg_websocket_write(wire, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, "\x03\xe9", 2);  // 1001, going away
+}
+
+}  // namespace
+
+Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Server::~Server() {
+    state_->studio.close();
+    if (state_->context != nullptr) mg_stop(state_->context);
+    mg_exit_library();
+}
+
+int Server::port() const {
+    return state_->rules.port;
+}
+
+Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettings& settings) {
+    use_large_thread_stacks();
+    mg_init_library(MG_FEATURES_DEFAULT);
+    std::unique_ptr<Server> server(new Server(std::make_unique<State>(State{studio, {0, settings.token}})));
+    const bool six = settings.address.find(':') != std::string::npos;
+    const std::string ports =
+        fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
+    const char* options[] = {"listening_ports",
+                             ports.c_str(),
+                             "num_threads",
+                             "32",
+                             "request_timeout_ms",
+                             "10000",
+                             "websocket_timeout_ms",
+                             "20000",
+                             "enable_keep_alive",
+                             "yes",
+                             "keep_alive_timeout_ms",
+                             "5000",
+                             "linger_timeout_ms",
+                             "0",
+                             "tcp_nodelay",
+                             "1",
+                             nullptr};
+    mg_callbacks callbacks{};
+    callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
+    State* state = server->state_.get();
+    state->context = mg_start(&callbacks, state, options);
+    mg_server_port listening[4];
+    const int count = state->context == nullptr ? 0 : mg_get_server_ports(state->context, 4, listening);
+    if (count < 1)
+        return failure("{}: cannot listen there; the port is taken, or the address is not this machine's", ports);
+    state->rules.port = listening[0].port;
+
+    mg_set_websocket_handler(
+        state->context, "/live",
+        [](const mg_connection* wire, void* data) {
+            auto* s = static_cast<State*>(data);
+            auto query = read_query(mg_get_request_info(wire)->query_string);
+            return s->access(const_cast<mg_connection*>(wire), query["token"], true) == Access::granted ? 0 : 1;
+        },
+        [](mg_connection* wire, void* data) {
+            auto* socket = new Socket{static_cast<State*>(data)->studio.join(), {}};
+            socket->writer = std::thread(write_all, wire, socket->connection);
+            mg_set_user_connection_data(wire, socket);
+        },
+        [](mg_connection* wire, int bits, char* text, std::size_t length, void* data) {
+            const auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
+            const int opcode = bits & 0xf;
+            if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
+            if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return 1;
+            const bool whole = (bits & 0x80) != 0;  // messages are short: nothing comes in pieces
+            if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !whole || length > longest_message) return 0;
+            static_cast<State*>(data)->studio.receive(socket->connection, {text, length});
+            return 1;
+        },
+        [](const mg_connection* wire, void* data) {
+            auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
+            if (socket == nullptr) return;
+            static_cast<State*>(data)->studio.leave(socket->connection);
+            socket->writer.join();
+            delete socket;
+            mg_set_user_connection_data(wire, nullptr);
+        },
+        state);
+    mg_set_request_handler(
+        state->context, "/", [](mg_connection* wire, void* data) { return static_cast<State*>(data)->handle(wire); },
+        state);
+    return server;
+}
+
+}  // namespace pliant::studio

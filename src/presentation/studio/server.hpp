@@ -1,0 +1,39 @@
+// The studio on a socket: HTTP and WebSocket through civetweb, on loopback unless it is bound elsewhere.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/core/error.hpp"
+#include "presentation/studio/studio.hpp"
+
+namespace pliant::studio {
+
+struct ServerSettings {
+    std::string address = "127.0.0.1";
+    int port = 0;       ///< 0: any that is free
+    std::string token;  ///< needed from every page; must not be empty unless the address is loopback
+};
+
+class Server {
+public:
+    /// Listens once it returns. Errors: the port is taken, no such address.
+    [[nodiscard]] static Result<std::unique_ptr<Server>> start(Studio& studio, const ServerSettings& settings);
+    /// Ends all connections and waits for their threads.
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    [[nodiscard]] int port() const;
+
+private:
+    struct State;
+    explicit Server(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+void use_large_thread_stacks();  // thread_stacks.cpp
+
+[[nodiscard]] bool is_loopback(const std::string& address);
+
+}  // namespace pliant::studio

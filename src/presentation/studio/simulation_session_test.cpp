@@ -1,0 +1,166 @@
+#include "presentation/studio/simulation_session.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <future>
+
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "presentation/studio/test_sessions.hpp"
+
+using namespace pliant;
+using namespace pliant::studio;
+using pliant::test::holds;
+using studio::test::bar;
+using studio::test::Events;
+using studio::test::Json;
+
+namespace {
+
+struct Bench {
+    Events events, frames;
+    SimulationSession session{
+        {[this](const std::string& json) { events.add(json); },
+         [this](const std::shared_ptr<const std::string>& packet) { frames.add(head_of(*packet).dump()); },
+         [] { return std::set<std::string>{}; }}};
+
+    static Json head_of(const std::string& packet) {
+        std::uint32_t length = 0;
+        std::memcpy(&length, packet.data() + 4, 4);
+        return Json::parse(packet.substr(8, length))["head"];
+    }
+    void open(const std::string& text, Accuracy accuracy = Accuracy::preview) {
+        session.open({"bar.toml", text, accuracy});
+    }
+    void drive(double tag, const std::string& name, const std::string& kind, double value) {
+        session.drive({tag, -1, {{name, kind, value}}});
+    }
+    /// The frame that shows input `tag` at equilibrium.
+    Json arrived(double tag) {
+        return frames.wait_for([&](const Json& f) { return f["tag"] == tag && f["arrived"] == true; });
+    }
+    /// Of the last event about problems.
+    [[nodiscard]] Json problem() const {
+        for (const std::string& news : session.news()) {
+            const Json event = Json::parse(news);
+            if (event["type"] == "problem") return event["lines"];
+        }
+        return nullptr;
+    }
+};
+
+std::string renamed(const std::string& name) {
+    std::string text = bar;
+    return text.replace(text.find("\"bar\""), 5, "\"" + name + "\"");
+}
+
+}  // namespace
+
+TEST_CASE("before a robot has been opened there is nothing, and input to nobody is no harm") {
+    Bench b;
+    CHECK(b.session.built() == nullptr);
+    CHECK(b.session.scene() == nullptr);
+    CHECK(b.session.last_frame() == nullptr);
+    CHECK(b.session.history().steps.empty());
+    CHECK(b.session.news().empty());
+    b.drive(1, "flexor", "shortening_mm", 0.1);
+    b.session.pull({2, 0, {1, 2, 3}});
+    b.session.play(true);
+    b.session.rest();
+    b.session.release();
+    b.session.show_again();
+}
+
+TEST_CASE("a robot is bent, its states are remembered, and rest forgets them") {
+    Bench b;
+    b.open(bar);
+    REQUIRE(b.session.wait_until_built());
+    CHECK(b.session.built()->robot.name == "bar");
+    CHECK(b.session.built()->model.mesh().order == 1);  // a preview
+    b.drive(1, "flexor", "shortening_mm", 0.2);
+    CHECK(b.arrived(1)["cables"][0]["length_mm"].get<double>() == near(3.8, {.relative = 1e-6}));
+    const sim::Trajectory bent = b.session.history();
+    REQUIRE(bent.steps.size() >= 2);
+    CHECK(bent.steps.front().cables[0].length_ratio == near(1, {.relative = 1e-9}));
+    CHECK(bent.steps.back().cables[0].length_ratio == near(0.95, {.relative = 1e-6}));
+    b.frames.clear();
+    b.session.rest();
+    (void)b.frames.wait_for([](const Json& f) { return f["cables"][0]["length_mm"].get<double>() > 3.9999; });
+    CHECK(b.session.history().steps.size() <= 1);
+}
+
+TEST_CASE("what cannot be is not wanted: strange actuators, kinds and values") {
+    Bench b;
+    b.open(bar);
+    REQUIRE(b.session.wait_until_built());
+    double tag = 1;
+    for (const auto& [name, kind, value] : {std::tuple("nobody", "length_ratio", 0.9),
+                                            {"flexor", "volume_ratio", 0.9},
+                                            {"flexor", "no_such_kind", 0.9},
+                                            {"flexor", "length_ratio", 0.0},
+                                            {"flexor", "length_ratio", -2.0},
+                                            {"flexor", "shortening_mm", 5.0}}) {
+        INFO(name << " " << kind << " " << value);
+        b.drive(tag, name, kind, value);
+        const Json frame = b.arrived(tag++);
+        CHECK(frame["wanted"]["actuators"].empty());
+        CHECK(frame["cables"][0]["length_mm"].get<double>() == near(4, {.relative = 1e-9}));
+    }
+}
+
+TEST_CASE("the last input counts, whatever came before it") {
+    Bench b;
+    b.open(bar);
+    REQUIRE(b.session.wait_until_built());
+    for (int i = 1; i <= 50; ++i) b.drive(i, "flexor", "shortening_mm", 0.004 * i);
+    CHECK(b.arrived(50)["cables"][0]["length_mm"].get<double>() == near(3.8, {.relative = 1e-6}));
+    CHECK(b.frames.count("frame") < 50);
+}
+
+TEST_CASE("a mistake is told with its line, the robot before stays, and a good text takes the mistake away") {
+    Bench b;
+    b.open(renamed("first"));
+    REQUIRE(b.session.wait_until_built());
+    std::string wrong = bar;
+    b.open(wrong.replace(wrong.find("shortening"), 10, "shortenin_"));
+    CHECK(b.session.wait_until_built());
+    const Json problem = b.problem();
+    REQUIRE(problem.is_array());
+    CHECK(problem[0]["line"] == 11);
+    CHECK(problem[0]["text"] == "cable[0].target: takes one of length_ratio, shortening and tension");
+    CHECK(b.session.built()->robot.name == "first");
+    b.open(renamed("third"));
+    CHECK(b.session.wait_until_built());
+    CHECK(b.problem() == nullptr);
+    CHECK(b.session.built()->robot.name == "third");
+    CHECK(b.session.built()->revision == 2);  // the wrong one has none
+}
+
+TEST_CASE("a first robot that is wrong leaves none") {
+    Bench b;
+    b.open("name = 1");
+    CHECK_FALSE(b.session.wait_until_built());
+    CHECK(b.session.built() == nullptr);
+    CHECK(b.problem().is_array());
+}
+
+TEST_CASE("a robot that is replaced while it is built is given up, and who waits waits for the last") {
+    std::promise<void> go;
+    std::shared_future<void> may_go(go.get_future());
+    bool first = true;
+    SimulationSession session({[&](const std::string& json) {
+                                   if (!holds(json, "\"read\"") || !first) return;
+                                   first = false;
+                                   may_go.wait();  // the first one is being built until the second has come
+                               },
+                               [](const std::shared_ptr<const std::string>&) {},
+                               [] { return std::set<std::string>{}; }});
+    session.open({"bar.toml", renamed("first"), Accuracy::preview});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    session.open({"bar.toml", renamed("second"), Accuracy::fine});
+    go.set_value();
+    REQUIRE(session.wait_until_built());
+    CHECK(session.built()->robot.name == "second");
+    CHECK(session.built()->model.mesh().order == 2);
+}

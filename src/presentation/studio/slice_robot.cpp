@@ -1,0 +1,44 @@
+#include "presentation/studio/slice_robot.hpp"
+
+#include "presentation/draw/colour.hpp"
+#include "presentation/studio/scene.hpp"
+#include "robot/file/robot_file.hpp"
+
+namespace pliant::studio {
+namespace {
+
+/// One that was made for a body's own light has the colour of its material. "": the robot has no such material.
+std::string colour_of_material(const std::string& name, const robot::Robot& robot) {
+    for (std::size_t m = 0; m < robot.materials.size(); ++m) {
+        const std::string& known = robot.materials[m].name;
+        if (name == known || name.starts_with(known + " of ")) return colour_of(robot, m);
+    }
+    return "";
+}
+
+/// Of the job's materials; those that are printed together have the colour of the first.
+std::vector<std::string> colours_of(const job::Manifest& manifest, const robot::Robot& robot) {
+    std::vector<std::string> colours;
+    for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
+        const job::Material& material = manifest.materials[m];
+        const std::string own =
+            colour_of_material(material.parts.empty() ? material.name : material.parts.front().name, robot);
+        colours.push_back(own.empty() ? report::hex(report::palette(static_cast<int>(m))) : own);
+    }
+    return colours;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std::filesystem::path& job,
+                                             Progress& progress) {
+    const Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<prepare::Drawing> drawing = prepare::drawing_of(*robot, progress);
+    if (!drawing) return tl::unexpected(drawing.error());
+    const auto made = prepare::slice_job(wanted.order, wanted.printer, std::move(*drawing), job, progress);
+    if (!made) return tl::unexpected(made.error());
+    return colours_of(made->manifest, *robot);
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,13 @@
+// From a robot file to a job file: meshing of surfaces, slicing, plan, G-code, as `pliant slice` does it.
+#pragma once
+
+#include "base/core/progress.hpp"
+#include "presentation/studio/make_session.hpp"
+
+namespace pliant::studio {
+
+/// Colours of the job's materials, in their order. Errors: of the robot, the printer, the slicer, the planner.
+[[nodiscard]] Result<std::vector<std::string>> slice_robot(const SliceOrder& order, const std::filesystem::path& job,
+                                                           Progress& progress);
+
+}  // namespace pliant::studio

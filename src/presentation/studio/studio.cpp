@@ -1,0 +1,244 @@
+#include "presentation/studio/studio.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/core/files.hpp"
+#include "presentation/studio/examples.hpp"
+#include "printing/machine/printer.hpp"
+
+namespace pliant::studio {
+namespace {
+
+constexpr std::uintmax_t largest_robot = 4 << 20;
+constexpr std::size_t most_undo = 200;
+constexpr std::string_view first_example = "cable_gripper";
+
+std::string document_event(const Studio::Document& d) {
+    const nlohmann::json json = {
+        {"type", "document"},           {"name", d.name},
+        {"unsaved", d.text != d.saved}, {"undo", d.undo.size()},
+        {"redo", d.redo.size()},        {"accuracy", d.accuracy == Accuracy::preview ? "preview" : "fine"}};
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A printer file has its own place.
+Status check_kind(const std::string& text, const std::filesystem::path& file) {
+    if (!machine::parse_printer(text, file)) return {};
+    return input_error("{} is a printer file: choose it under Make, when the robot is sliced",
+                       file.filename().string());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Studio>> Studio::open(const Start& start) {
+    Result<ProjectFolder> folder = ProjectFolder::open(start.file.parent_path());
+    if (!folder) return tl::unexpected(folder.error());
+    std::unique_ptr<Studio> studio(new Studio(std::move(*folder), start.version));
+    if (Status status = studio->start(start.file); !status) return tl::unexpected(status.error());
+    return studio;
+}
+
+Studio::Studio(ProjectFolder folder, std::string version)
+    : folder_(std::move(folder)), version_(std::move(version)), routes_(all_routes()) {
+    const auto send = [this](const std::string& json) { hub_.send_text(json); };
+    simulation_ = std::make_unique<SimulationSession>(
+        SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
+    make_ = std::make_unique<MakeSession>(send, version_);
+    print_ = std::make_unique<PrintSession>(send);
+}
+
+Studio::~Studio() = default;
+
+Status Studio::start(const std::filesystem::path& file) {
+    if (file.extension() == ".zip") {
+        if (Status status = make_->open(file); !status) return status;
+    }
+    if (file.empty() || file.extension() == ".zip") {
+        open_example(std::string(first_example));
+        return {};
+    }
+    const Result<std::string> text = read_file(file, largest_robot);
+    if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, file); !status) return status;
+    const std::string name = file.filename().string();
+    document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::preview, {}};
+    // What the user's own file names lies where the user wants it.
+    document_.outside = folder_.texts_leading_outside(*text, document_.file);
+    rebuild(After::from_rest);
+    return {};
+}
+
+Studio::Document Studio::document() {
+    const std::lock_guard lock(mutex_);
+    return document_;
+}
+
+void Studio::rebuild(After after) {
+    simulation_->open({document_.file, document_.text, document_.accuracy}, after);
+    hub_.send_text(document_event(document_));
+}
+
+/// A text that came over the wire must not make the program read what lies outside of the folder.
+Status Studio::check_files(const std::string& text) const {
+    for (const std::string& path : folder_.texts_leading_outside(text, document_.file)) {
+        const auto& known = document_.outside;
+        if (std::find(known.begin(), known.end(), path) != known.end()) continue;
+        return input_error("\"{}\" lies outside of the project folder {}", path, folder_.path().string());
+    }
+    return {};
+}
+
+Status Studio::edit(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
+    if (Status status = check_files(text); !status) return status;
+    if (text != document_.text) {
+        document_.undo.push_back(document_.text);
+        if (document_.undo.size() > most_undo) document_.undo.erase(document_.undo.begin());
+        document_.redo.clear();
+        document_.text = text;
+    }
+    rebuild(After::as_before);
+    return {};
+}
+
+void Studio::take_back(std::vector<std::string>& from, std::vector<std::string>& to) {
+    to.push_back(std::exchange(document_.text, from.back()));
+    from.pop_back();
+    rebuild(After::as_before);
+}
+
+Status Studio::undo() {
+    const std::lock_guard lock(mutex_);
+    if (document_.undo.empty()) return input_error("there is nothing to undo");
+    take_back(document_.undo, document_.redo);
+    return {};
+}
+
+Status Studio::redo() {
+    const std::lock_guard lock(mutex_);
+    if (document_.redo.empty()) return input_error("there is nothing to do again");
+    take_back(document_.redo, document_.undo);
+    return {};
+}
+
+Status Studio::save(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const Result<std::filesystem::path> path = folder_.resolve(name.empty() ? document_.name : name);
+    if (!path) return tl::unexpected(path.error());
+    if (path->extension() != ".toml") return input_error("\"{}\": a robot file ends with .toml", name);
+    std::error_code ignored;
+    if (*path != document_.file && std::filesystem::exists(*path, ignored))
+        return input_error("\"{}\" exists; choose another name", name);
+    if (Status status = write_file(*path, document_.text); !status) return status;
+    document_.name = path->lexically_relative(folder_.path()).generic_string();
+    document_.file = *path;
+    document_.saved = document_.text;
+    hub_.send_text(document_event(document_));
+    return {};
+}
+
+Status Studio::open_file(const std::string& name) {
+    const Result<std::filesystem::path> path = folder_.resolve(name);
+    if (!path) return tl::unexpected(path.error());
+    if (path->extension() == ".zip") return make_->open(*path);
+    if (path->extension() != ".toml")
+        return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
+    const Result<std::string> text = read_file(*path, largest_robot);
+    if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, *path); !status) return status;
+    const std::lock_guard lock(mutex_);
+    Document opened{name, *path, *text, *text, {}, {}, document_.accuracy, {}};
+    std::swap(document_, opened);
+    if (Status status = check_files(*text); !status) {
+        std::swap(document_, opened);
+        return status;
+    }
+    rebuild(After::from_rest);
+    return {};
+}
+
+void Studio::open_example(const std::string& name) {
+    const BuiltInFile* example = find_file(example_robots(), name);
+    if (example == nullptr) return;
+    const std::lock_guard lock(mutex_);
+    const std::string text(example->text);
+    document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}};
+    rebuild(After::from_rest);
+}
+
+void Studio::set_accuracy(Accuracy accuracy) {
+    const std::lock_guard lock(mutex_);
+    if (document_.accuracy == accuracy) return;
+    document_.accuracy = accuracy;
+    rebuild(After::as_before);
+}
+
+Response Studio::handle(const Request& request) {
+    Request asked = request;
+    bool known = false;
+    for (const Route& route : routes_) {
+        if (!matches(route, asked)) continue;
+        known = true;
+        if (route.method != request.method) continue;
+        if (route.steers && !hub_.may_steer(request.page))
+            return error_response(423, "another page steers; ask for the helm first");
+        return route.answer(*this, asked);
+    }
+    return known ? error_response(405, "not with this method") : error_response(404, "there is nothing here");
+}
+
+void Studio::greet(const std::shared_ptr<Connection>& connection) {
+    const auto send = [&](const std::string& json) {
+        connection->send_text(std::make_shared<const std::string>(json));
+    };
+    {
+        // Sent under the lock: a change that comes meanwhile is told after it, not before.
+        const std::lock_guard lock(mutex_);
+        send(document_event(document_));
+    }
+    for (const std::string& news : simulation_->news()) send(news);
+    for (const std::string& news : make_->news()) send(news);
+    for (const std::string& news : print_->news()) send(news);
+    if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);
+}
+
+void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
+    const auto refuse = [&](const std::string& why) {
+        const nlohmann::json json = {{"type", "error"}, {"error", why}};
+        connection->send_text(
+            std::make_shared<const std::string>(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
+    };
+    const Result<Message> message = parse_message(text);
+    if (!message) return refuse(message.error().message);
+    if (const auto* hello = std::get_if<Hello>(&*message)) {
+        hub_.hello(connection, hello->page);
+        return greet(connection);
+    }
+    if (const auto* fields = std::get_if<FieldsMessage>(&*message)) {
+        std::set<std::string> names;
+        for (const std::string& name : fields->names)
+            if (is_field(name)) names.insert(name);
+        hub_.want_fields(connection, std::move(names));
+        return simulation_->show_again();
+    }
+    if (const auto* steer = std::get_if<Steer>(&*message)) {
+        if (steer->action == Steer::Action::ask) return hub_.ask(connection);
+        return steer->action == Steer::Action::give ? hub_.give(connection) : hub_.let_go(connection);
+    }
+    if (std::holds_alternative<Ping>(*message))
+        return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
+    if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page steers");
+    if (const auto* drive = std::get_if<DriveMessage>(&*message)) simulation_->drive(*drive);
+    if (const auto* follow = std::get_if<Follow>(&*message)) simulation_->follow(*follow);
+    if (const auto* play = std::get_if<Play>(&*message)) simulation_->play(play->on);
+    if (std::holds_alternative<Rest>(*message)) simulation_->rest();
+    if (const auto* pull = std::get_if<PullMessage>(&*message)) simulation_->pull(*pull);
+    if (std::holds_alternative<Release>(*message)) simulation_->release();
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,90 @@
+// The studio without its wire: what it holds, and what it answers. `server.hpp` puts it on a socket.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "presentation/studio/http.hpp"
+#include "presentation/studio/hub.hpp"
+#include "presentation/studio/make_session.hpp"
+#include "presentation/studio/print_session.hpp"
+#include "presentation/studio/project_folder.hpp"
+#include "presentation/studio/routes.hpp"
+#include "presentation/studio/simulation_session.hpp"
+
+namespace pliant::studio {
+
+struct Start {
+    std::filesystem::path file;  ///< robot file or job; empty: the example that is built in
+    std::string version;
+};
+
+class Studio {
+public:
+    /// Errors: the file cannot be read, or is neither a robot file nor a job. A robot file with mistakes is opened: the
+    /// page shows them.
+    [[nodiscard]] static Result<std::unique_ptr<Studio>> open(const Start& start);
+    ~Studio();
+    Studio(const Studio&) = delete;
+    Studio& operator=(const Studio&) = delete;
+
+    /// Whoever asks has been let in. From any thread.
+    [[nodiscard]] Response handle(const Request& request);
+    [[nodiscard]] std::shared_ptr<Connection> join() { return hub_.join(); }
+    void leave(const std::shared_ptr<Connection>& connection) { hub_.leave(connection); }
+    /// A text of a page. What cannot be understood or is not allowed is answered with {"type": "error"}.
+    void receive(const std::shared_ptr<Connection>& connection, std::string_view text);
+    /// Ends all connections.
+    void close() { hub_.close_all(); }
+
+    [[nodiscard]] Hub& hub() { return hub_; }
+    [[nodiscard]] ProjectFolder& folder() { return folder_; }
+    [[nodiscard]] SimulationSession& simulation() { return *simulation_; }
+    [[nodiscard]] MakeSession& make() { return *make_; }
+    [[nodiscard]] PrintSession& print() { return *print_; }
+    [[nodiscard]] const std::string& version() const { return version_; }
+    [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
+
+    /// The robot file that is being edited: what was opened, as it is now, and what it was before.
+    struct Document {
+        std::string name;  ///< relative to the folder; empty: not saved yet
+        std::filesystem::path file;
+        std::string text, saved;
+        std::vector<std::string> undo, redo;
+        Accuracy accuracy = Accuracy::preview;
+        std::vector<std::string> outside;  ///< paths out of the folder that the user's own file names
+    };
+    [[nodiscard]] Document document();
+    /// Checks and builds the new text. `because` tells the pages who did it.
+    [[nodiscard]] Status edit(const std::string& text);
+    [[nodiscard]] Status undo();
+    [[nodiscard]] Status redo();
+    [[nodiscard]] Status save(const std::string& name);
+    [[nodiscard]] Status open_file(const std::string& name);
+    void open_example(const std::string& name);
+    void set_accuracy(Accuracy accuracy);
+
+private:
+    Studio(ProjectFolder folder, std::string version);
+    [[nodiscard]] Status start(const std::filesystem::path& file);
+    [[nodiscard]] Status check_files(const std::string& text) const;
+    /// Goes to the last text of `from`; what there was goes to the end of `to`.
+    void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
+    void rebuild(After after);
+    void greet(const std::shared_ptr<Connection>& connection);
+
+    ProjectFolder folder_;
+    std::string version_;
+    Hub hub_;
+    std::unique_ptr<SimulationSession> simulation_;
+    std::unique_ptr<MakeSession> make_;
+    std::unique_ptr<PrintSession> print_;
+    std::vector<Route> routes_;
+    std::mutex mutex_;  ///< guards the document
+    Document document_;
+};
+
+}  // namespace pliant::studio

@@ -1,0 +1,354 @@
+// The studio without its wire: files, edits, live states, routes.
+#include "presentation/studio/studio.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::studio;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr const char* bar = R"(name = "bar"
+length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, resin = "semi-flex" }
+body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [40, 10, 10]] } }]
+fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+marker = [{ name = "tip", point = [40, 5, 5] }]
+mesh = { size = "6 mm" }
+[[cable]]
+name = "flexor"
+points = [[0, 5, 9], [20, 5, 9], [40, 5, 9]]
+target = { shortening = "2 mm" }
+)";
+
+struct Project {
+    pliant::test::Folder folder{"studio"};
+    fs::path base = folder.path();
+    Project() {
+        fs::create_directories(base / "project");
+        std::ofstream(base / "project" / "bar.toml") << bar;
+        std::ofstream(base / "outside.stl") << "solid x\nendsolid x\n";
+    }
+};
+
+Json head_of(const std::string& packet) {
+    REQUIRE(packet.size() > 8);
+    std::uint32_t length = 0;
+    std::memcpy(&length, packet.data() + 4, 4);
+    return Json::parse(packet.substr(8, length))["head"];
+}
+
+/// The head of the frame that answers input `tag` at equilibrium.
+Json arrived(Studio& studio, const std::shared_ptr<Connection>& connection, double tag) {
+    for (;;) {
+        const auto out = connection->next();
+        REQUIRE(out);
+        if (!out->binary) continue;
+        const Json head = head_of(*out->bytes);
+        if (head["tag"] == tag && head["arrived"] == true) return head;
+        (void)studio;
+    }
+}
+
+Response ask(Studio& studio, const std::string& method, const std::string& path, const std::string& body = "",
+             const std::string& page = "") {
+    Request request{method, path};
+    request.body = body;
+    request.page = page;
+    return studio.handle(request);
+}
+
+std::string file_text(const fs::path& path) {
+    std::ifstream file(path);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a robot is opened, bent, edited, undone and saved") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const Json scene = head_of(ask(studio, "GET", "/api/scene").body);
+    CHECK(scene["robot"] == "bar");
+    CHECK(scene["actuators"][0]["kind"] == "shortening_mm");
+    CHECK(scene["actuators"][0]["rest"].get<double>() == near(40, {.relative = 1e-12}));
+
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    studio.receive(page,
+                   R"({"type":"drive","tag":1,"actuators":[{"name":"flexor","kind":"shortening_mm","value":2}]})");
+    const Json bent = arrived(studio, page, 1);
+    CHECK(bent["residual"].get<double>() <= 1e-4);
+    CHECK(bent["cables"][0]["length_mm"].get<double>() == near(38, {.relative = 1e-6}));
+    studio.receive(page, R"({"type":"follow","tag":2,"time":1})");  // the program ends at the same place
+    const Json followed = arrived(studio, page, 2);
+    for (int k = 0; k < 3; ++k)
+        CHECK(followed["markers"][0][k].get<double>() ==
+              near(bent["markers"][0][k].get<double>(), {.relative = 1e-12}));
+
+    std::string stiffer = bar;
+    stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
+    REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    CHECK(head_of(ask(studio, "GET", "/api/scene").body)["materials"][0]["youngs_modulus_MPa"] == 2);
+    studio.receive(page, R"({"type":"follow","tag":3,"time":1})");
+    const Json stiff = arrived(studio, page, 3);
+    CHECK(stiff["cables"][0]["tension_N"].get<double>() ==
+          near(2 * bent["cables"][0]["tension_N"].get<double>(), {.relative = 1e-2}));
+
+    CHECK(ask(studio, "POST", "/api/robot/save", "{}", "first_page").status == 200);
+    CHECK(file_text(project.base / "project" / "bar.toml") == stiffer);
+    CHECK(ask(studio, "POST", "/api/robot/undo", "", "first_page").status == 200);
+    CHECK(ask(studio, "GET", "/api/robot").body == bar);
+    CHECK(ask(studio, "POST", "/api/robot/redo", "", "first_page").status == 200);
+    CHECK(ask(studio, "GET", "/api/robot").body == stiffer);
+    CHECK(ask(studio, "POST", "/api/robot/save", R"({"name":"../evil.toml"})", "first_page").status == 422);
+    CHECK_FALSE(fs::exists(project.base / "evil.toml"));
+    CHECK(ask(studio, "POST", "/api/robot/save", R"({"name":"copy.toml"})", "first_page").status == 200);
+    CHECK(fs::exists(project.base / "project" / "copy.toml"));
+
+    for (const char* name : {"steps.csv", "markers.csv", "robot.glb", "robot.vtu"})
+        CHECK_MESSAGE(ask(studio, "GET", std::string("/api/export/") + name).status == 200, name);
+}
+
+TEST_CASE("a robot that was changed goes where the one before was wanted; another one starts from rest") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    studio.receive(page, R"({"type":"follow","tag":1,"time":0.5})");
+    CHECK(arrived(studio, page, 1)["cables"][0]["length_mm"].get<double>() == near(39, {.relative = 1e-5}));
+    const auto arrived_anew = [&](int revision, double time) {
+        for (;;) {
+            const auto out = page->next();
+            REQUIRE(out);
+            if (!out->binary) continue;
+            const Json head = head_of(*out->bytes);
+            if (head["revision"] == revision && head["arrived"] == true && head["time"] == time) return head;
+        }
+    };
+    std::string stiffer = bar;
+    stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
+    REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
+    const Json followed = arrived_anew(2, 0.5);
+    CHECK(followed["cables"][0]["length_mm"].get<double>() == near(39, {.relative = 1e-5}));
+    CHECK(followed["wanted"]["time"] == 0.5);
+    CHECK(followed["wanted"]["actuators"].empty());
+
+    studio.receive(page,
+                   R"({"type":"drive","tag":2,"actuators":[{"name":"flexor","kind":"shortening_mm","value":1.5}]})");
+    (void)arrived(studio, page, 2);
+    REQUIRE(ask(studio, "POST", "/api/robot/undo", "", "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    Json driven = arrived_anew(3, 0.5);
+    while (driven["cables"][0]["length_mm"].get<double>() > 38.6) driven = arrived_anew(3, 0.5);
+    CHECK(driven["wanted"]["actuators"][0] == Json{{"name", "flexor"}, {"kind", "shortening_mm"}, {"value", 1.5}});
+
+    REQUIRE(ask(studio, "POST", "/api/open", R"({"name":"bar.toml"})", "first_page").status == 200);
+    const Json fresh = arrived_anew(4, 0);
+    CHECK(fresh["cables"][0]["length_mm"].get<double>() == near(40, {.relative = 1e-12}));
+    CHECK(fresh["wanted"]["time"] == 0);
+    // What cannot be leads the robot nowhere, and no page is told that it does.
+    studio.receive(page,
+                   R"({"type":"drive","tag":3,"actuators":[{"name":"flexor","kind":"length_ratio","value":-3}]})");
+    CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
+}
+
+TEST_CASE("expanding elements are steered by volume, and know no pressure") {
+    const Project project;
+    std::ofstream(project.base / "project" / "bar.toml", std::ios::app)
+        << "[[chamber]]\nname = \"air\"\nmodel = \"elements\"\ntarget = { volume_ratio = 1.2 }\n"
+           "geometry = { box = [[5, 3, 2], [35, 7, 5]] }\n";
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    studio.receive(page, R"({"type":"drive","tag":1,"actuators":[{"name":"air","kind":"volume_ratio","value":1.15}]})");
+    const Json blown = arrived(studio, page, 1);
+    CHECK(blown["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
+    CHECK(blown["chambers"][0]["pressure_kPa"].get<double>() > 1);
+    studio.receive(page, R"({"type":"drive","tag":2,"actuators":[{"name":"air","kind":"pressure_kPa","value":50}]})");
+    const Json still = arrived(studio, page, 2);
+    CHECK(still["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
+}
+
+TEST_CASE("a page that comes back hears that there is neither job nor machine") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    CHECK(studio.make().news() == std::vector<std::string>{R"({"revision":0,"type":"job"})"});
+    CHECK(studio.print().news() == std::vector<std::string>{R"({"type":"machine"})"});
+    CHECK(ask(studio, "GET", "/api/print/verdict").body == "null");
+}
+
+TEST_CASE("what the command line warns of, the page hears with every frame") {
+    const Project project;
+    const auto through = project.base / "project" / "gripper.toml";
+    std::ofstream(through) << std::ifstream("examples/cable_gripper/gripper.toml").rdbuf()
+                           << "\n[contact]\nself = false\n";
+    auto opened = Studio::open({through, "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    const auto page = studio.join();
+    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    const auto gaps_closed = [](const Json& head) {
+        const auto& all = head["warnings"];
+        return std::any_of(all.begin(), all.end(), [](const Json& w) {
+            return w.get<std::string>().find("have met: the gap between them is closed") != std::string::npos;
+        });
+    };
+    studio.receive(page, R"({"type":"follow","tag":1,"time":0.2})");
+    CHECK_FALSE(gaps_closed(arrived(studio, page, 1)));
+    // Further than its gaps are wide.
+    studio.receive(page,
+                   R"({"type":"drive","tag":2,"actuators":[{"name":"flexor","kind":"length_ratio","value":0.5}]})");
+    for (;;) {
+        const auto out = page->next();
+        REQUIRE(out);
+        if (!out->binary) continue;
+        const Json head = head_of(*out->bytes);
+        if (gaps_closed(head)) break;
+        REQUIRE(head["stuck"] == "");
+        REQUIRE_FALSE((head["tag"] == 2 && head["arrived"] == true));
+    }
+}
+
+TEST_CASE("a mistake in the file is told with its line, and the robot before stays") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    REQUIRE(studio.simulation().wait_until_built());
+    std::string wrong = bar;
+    wrong.replace(wrong.find("poisson_ratio"), 13, "poison_ratio_");
+    CHECK(ask(studio, "PUT", "/api/robot", wrong).status == 200);
+    CHECK(studio.simulation().wait_until_built());
+    Json problem;
+    for (const std::string& news : studio.simulation().news()) {
+        const Json event = Json::parse(news);
+        if (event["type"] == "problem") problem = event["lines"];
+    }
+    REQUIRE(problem.is_array());
+    CHECK(problem[0]["line"] == 3);
+    CHECK(problem[0]["text"].get<std::string>().find("poison_ratio_") != std::string::npos);
+    CHECK(head_of(ask(studio, "GET", "/api/scene").body)["robot"] == "bar");
+}
+
+TEST_CASE("a text from the page reads no file outside of the folder") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    for (const std::string& path : {std::string("../outside.stl"), (project.base / "outside.stl").string()}) {
+        std::string text = bar;
+        const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
+        text.replace(text.find(geometry), geometry.size(), "\"" + path + "\"");
+        const Response response = ask(studio, "PUT", "/api/robot", text);
+        CHECK(response.status == 422);
+        CHECK(response.body.find("outside of the project folder") != std::string::npos);
+    }
+    CHECK(ask(studio, "GET", "/api/robot").body == bar);
+    CHECK(ask(studio, "POST", "/api/open", R"({"name":"../outside.stl"})").status == 422);
+    CHECK(ask(studio, "POST", "/api/open", R"({"name":"/etc/passwd"})").status == 422);
+}
+
+TEST_CASE("who does not steer changes nothing") {
+    auto opened = Studio::open({"", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    const auto first = studio.join(), second = studio.join();
+    studio.receive(first, R"({"type":"hello","page":"first_page"})");
+    studio.receive(second, R"({"type":"hello","page":"second_page"})");
+    CHECK(ask(studio, "PUT", "/api/robot", bar, "second_page").status == 423);
+    CHECK(ask(studio, "PUT", "/api/robot", bar).status == 423);
+    CHECK(ask(studio, "PUT", "/api/robot", bar, "first_page").status == 200);
+    CHECK(ask(studio, "GET", "/api/robot", "", "second_page").body == bar);
+    const auto stranger = studio.join();
+    studio.receive(stranger, R"({"type":"play","on":true})");
+    const auto answer = stranger->next();
+    REQUIRE(answer);
+    CHECK(answer->bytes->find("another page steers") != std::string::npos);
+}
+
+TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be given up") {
+    const Project project;
+    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    CHECK(ask(studio, "GET", "/api/job").status == 404);
+    const auto page = studio.join();
+    const auto wait_for_end = [&] {
+        for (;;) {
+            const auto out = page->next();
+            REQUIRE(out);
+            if (out->binary) continue;
+            const Json event = Json::parse(*out->bytes);
+            if (event["type"] == "slicing" && event["stage"] == "") return event["error"].get<std::string>();
+        }
+    };
+    REQUIRE(ask(studio, "POST", "/api/job/slice", R"({"printer":"tower","layer_um":500})").status == 200);
+    CHECK(wait_for_end() == "");
+    const Json job = Json::parse(ask(studio, "GET", "/api/job").body);
+    CHECK(job["manifest"]["layers"].size() == 20);
+    CHECK(job["plan"]["layers"] == 20);
+    const Response image = ask(studio, "GET", "/api/job/layers/3/0");
+    CHECK(image.type == "image/png");
+    CHECK(image.body.substr(1, 3) == "PNG");
+    for (const char* path :
+         {"/api/job/layers/20/0", "/api/job/layers/-1/0", "/api/job/layers/0/7", "/api/job/layers/x/0"})
+        CHECK_MESSAGE(ask(studio, "GET", path).status == 404, path);
+    CHECK(Json::parse(ask(studio, "GET", "/api/job/compare").body).size() >= 5);
+    CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"bar.zip"})").status == 200);
+    CHECK(ask(studio, "POST", "/api/open", R"({"name":"bar.zip"})").status == 200);
+
+    for (const char* wrong : {R"({"printer":"no such"})", R"({"layer_um":-1})", R"({"copies":"two"})",
+                              R"({"turn":[1]})", "[]", R"({"printer":7})"})
+        CHECK_MESSAGE(ask(studio, "POST", "/api/job/slice", wrong).status == 422, wrong);
+}
+
+TEST_CASE("what is not there, and what the description says") {
+    auto opened = Studio::open({"", "test"});
+    REQUIRE(opened);
+    Studio& studio = **opened;
+    CHECK(ask(studio, "GET", "/api/nothing").status == 404);
+    CHECK(ask(studio, "GET", "/api/robot/").status == 404);
+    CHECK(ask(studio, "DELETE", "/api/robot").status == 405);
+    const Json description = Json::parse(ask(studio, "GET", "/api/openapi.json").body);
+    CHECK(description["openapi"] == "3.0.3");
+    const std::string manual = file_text("docs/reference/studio.md");
+    for (const Route& route : studio.routes()) {
+        CHECK_MESSAGE(description["paths"][route.path].contains(route.method == "GET"   ? "get"
+                                                                : route.method == "PUT" ? "put"
+                                                                                        : "post"),
+                      route.path);
+        CHECK_MESSAGE(manual.find("`" + route.path + "`") != std::string::npos, route.path);
+    }
+}
+
+TEST_CASE("what is neither a robot nor a job is refused") {
+    CHECK_FALSE(Studio::open({"no/such/robot.toml", "test"}));
+    CHECK_FALSE(Studio::open({"no/such/job.zip", "test"}));
+}

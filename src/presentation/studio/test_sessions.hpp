@@ -1,0 +1,95 @@
+// A small robot and what a session tells, for the tests of the studio's sessions.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/core/files.hpp"
+#include "presentation/studio/make_session.hpp"
+#include "printing/machine/printer.hpp"
+
+namespace pliant::studio::test {
+
+using Json = nlohmann::json;
+
+inline constexpr const char* bar = R"(name = "bar"
+length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, resin = "semi-flex" }
+body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [4, 3, 2]] } }]
+fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 3, 2]] }]
+marker = [{ name = "tip", point = [4, 1.5, 1] }]
+mesh = { size = "1.5 mm" }
+[[cable]]
+name = "flexor"
+points = [[0, 1.5, 1.8], [2, 1.5, 1.8], [4, 1.5, 1.8]]
+target = { shortening = "0.2 mm" }
+)";
+
+/// The events of a session, in their order, from whichever thread.
+class Events {
+public:
+    void add(const std::string& json) {
+        const std::lock_guard lock(mutex_);
+        all_.push_back(Json::parse(json));
+        changed_.notify_all();
+    }
+    /// The first event that is `wanted`; waits for it.
+    Json wait_for(const std::function<bool(const Json&)>& wanted) {
+        std::unique_lock lock(mutex_);
+        Json found;
+        const bool came = changed_.wait_for(lock, std::chrono::seconds(60), [&] {
+            for (const Json& event : all_) {
+                if (wanted(event)) return found = event, true;
+            }
+            return false;
+        });
+        REQUIRE_MESSAGE(came, "what was waited for was never told");
+        return found;
+    }
+    [[nodiscard]] std::size_t count(const std::string& type) const {
+        const std::lock_guard lock(mutex_);
+        std::size_t n = 0;
+        for (const Json& event : all_) n += event["type"] == type ? 1 : 0;
+        return n;
+    }
+    void clear() {
+        const std::lock_guard lock(mutex_);
+        all_.clear();
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<Json> all_;
+};
+
+/// What slicing said at its end: "" where it went well.
+inline std::string end_of_slicing(Events& events) {
+    return events.wait_for([](const Json& e) { return e["type"] == "slicing" && e["stage"] == ""; })["error"];
+}
+
+/// To slice `robot` for a tower with few and large pixels, in layers of 50 um.
+inline SliceOrder slice_order(const std::string& robot = bar) {
+    SliceOrder order;
+    order.robot_text = robot;
+    order.robot_file = "bar.toml";
+    order.printer.text = read_file("examples/printers/tower.toml").value();
+    for (const auto& [key, value] : {std::pair("\nwidth = ", "96"), std::pair("\nheight = ", "64")}) {
+        const std::size_t at = order.printer.text.find(key);
+        REQUIRE(at != std::string::npos);
+        order.printer.text.replace(at, order.printer.text.find('\n', at + 1) - at, std::string(key) + value);
+    }
+    order.printer.printer = machine::parse_printer(order.printer.text, "tower.toml").value();
+    order.order.inputs = {"bar.toml"};
+    order.order.layer = "50 um";  // thicker ones would not cure through
+    return order;
+}
+
+}  // namespace pliant::studio::test

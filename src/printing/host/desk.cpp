@@ -1,0 +1,97 @@
+#include "printing/host/desk.hpp"
+
+#include <utility>
+
+namespace pliant::host {
+namespace {
+
+constexpr std::size_t most_events = 2000;
+
+}  // namespace
+
+Snapshot Desk::snapshot() const {
+    const std::scoped_lock lock(mutex_);
+    Snapshot snapshot = snapshot_;
+    snapshot.last_event = last_event_;
+    return snapshot;
+}
+
+std::vector<Event> Desk::events_since(long number) const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<Event> events;
+    for (const Event& event : events_) {
+        if (event.number > number) events.push_back(event);
+    }
+    return events;
+}
+
+void Desk::event(std::string_view kind, std::string text) {
+    const double now_s = clock_.now();
+    const std::scoped_lock lock(mutex_);
+    events_.push_back({++last_event_, now_s, std::string(kind), std::move(text)});
+    if (events_.size() > most_events) events_.pop_front();
+}
+
+void Desk::update(const std::function<void(Snapshot&)>& change) {
+    const std::scoped_lock lock(mutex_);
+    change(snapshot_);
+}
+
+void Desk::state(State state, std::string message) {
+    event("state", std::string(state_text(state)) + (message.empty() ? "" : ": " + message));
+    update([&](Snapshot& s) {
+        s.state = state;
+        s.message = std::move(message);
+    });
+}
+
+void Desk::wish(const std::function<void(Wishes&)>& change) {
+    const std::scoped_lock lock(mutex_);
+    change(wishes_);
+}
+
+Wishes Desk::wishes() const {
+    const std::scoped_lock lock(mutex_);
+    return wishes_;
+}
+
+void Desk::change_exposure(int material, double seconds) {
+    const std::scoped_lock lock(mutex_);
+    changes_.push_back({material, seconds, 0});
+}
+
+void Desk::skip_layer(int layer) {
+    const std::scoped_lock lock(mutex_);
+    skips_.push_back(layer);
+}
+
+void Desk::stop_everything() {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+}
+
+void Desk::clear_stop() {
+    const std::scoped_lock lock(mutex_);
+    stop_ = false;
+}
+
+bool Desk::stopped() const {
+    const std::scoped_lock lock(mutex_);
+    return stop_;
+}
+
+Status Desk::watch() const {
+    return stopped() ? Status(failure("emergency stop")) : Status{};
+}
+
+std::vector<ChangeFact> Desk::take_changes() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(changes_, {});
+}
+
+std::vector<int> Desk::take_skips() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(skips_, {});
+}
+
+}  // namespace pliant::host

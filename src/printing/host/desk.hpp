@@ -1,0 +1,65 @@
+// Where those who ask for something and the thread that works meet: wishes go one way, snapshot and events the other.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/host/control_types.hpp"
+#include "printing/host/journal_facts.hpp"
+
+namespace pliant::host {
+
+/// What is asked of a print under way.
+struct Wishes {
+    bool pause_after = false;
+    bool pause_now = false;
+    bool resume = false;
+    bool cancel = false;
+    bool suspend = false;
+};
+
+class Desk {
+public:
+    explicit Desk(Clock& clock) : clock_(clock) {}
+
+    // --- any thread ---
+    [[nodiscard]] Snapshot snapshot() const;
+    [[nodiscard]] std::vector<Event> events_since(long number) const;
+    void event(std::string_view kind, std::string text);
+    /// Changes the snapshot.
+    void update(const std::function<void(Snapshot&)>& change);
+    /// Changes the state, with an event.
+    void state(State state, std::string message = {});
+    void wish(const std::function<void(Wishes&)>& change);
+    void change_exposure(int material, double seconds);
+    void skip_layer(int layer);
+    void stop_everything();
+
+    // --- the working thread ---
+    /// An error once an emergency stop was asked for.
+    [[nodiscard]] Status watch() const;
+    [[nodiscard]] bool stopped() const;
+    void clear_stop();
+    [[nodiscard]] Wishes wishes() const;
+    /// What has been asked for since the last call.
+    [[nodiscard]] std::vector<ChangeFact> take_changes();
+    [[nodiscard]] std::vector<int> take_skips();
+
+private:
+    Clock& clock_;
+    mutable std::mutex mutex_;
+    Snapshot snapshot_;
+    std::deque<Event> events_;
+    long last_event_ = 0;
+    Wishes wishes_;
+    std::vector<ChangeFact> changes_;
+    std::vector<int> skips_;
+    bool stop_ = false;
+};
+
+}  // namespace pliant::host

@@ -1,0 +1,249 @@
+#include "printing/host/journal_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "printing/machine/gcode.hpp"
+
+namespace pliant::host {
+namespace {
+
+using machine::Interlock;
+
+std::string vat_word(const std::optional<int>& vat) {
+    return vat ? fmt::format("{}", *vat) : "-";
+}
+
+/// The text up to the next `end`, taken off `rest`.
+std::string_view take(std::string_view& rest, char end) {
+    const std::string_view part = rest.substr(0, rest.find(end));
+    rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+    return part;
+}
+
+/// Positions and the like, in micrometres: up to 100 m.
+bool read_int(std::string_view text, int& value) {
+    constexpr int most = 100'000'000;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return code == std::errc() && end == text.data() + text.size() && value >= -most && value <= most;
+}
+
+bool read_vat(std::string_view text, std::optional<int>& vat) {
+    if (text == "-") return true;
+    int value = 0;
+    if (!read_int(text, value)) return false;
+    vat = value;
+    return true;
+}
+
+bool read_flag(std::string_view text, bool& flag) {
+    flag = text == "1";
+    return text == "0" || text == "1";
+}
+
+/// Reads the records one after the other.
+class Reader {
+public:
+    explicit Reader(JournalFacts& facts) : facts_(facts) {}
+
+    Status take(const JournalRecord& r) {
+        if (r.kind == "begin") return begin(r);
+        if (!facts_.begun) return input_error("journal record {} ({}) stands before the beginning", r.number, r.kind);
+        if (r.kind == "session") return session(r);
+        if (r.kind == "program") return program(r);
+        if (r.kind == "go") return go(r);
+        if (r.kind == "light") return light(r);
+        if (r.kind == "dark") return dark(r);
+        if (r.kind == "exposure") return exposure(r);
+        if (r.kind == "skip") return skip(r);
+        if (r.kind == "stop") return stop(r);
+        if (r.kind == "end") facts_.ended = true;
+        if (r.kind == "cancel") facts_.cancelled = true;
+        return {};  // what a later version adds, and what is for people: pause, resume, suspend, note
+    }
+
+private:
+    Status begin(const JournalRecord& r) {
+        const auto job = r.text("job"), digest = r.text("digest"), printer = r.text("printer");
+        for (const auto* value : {&job, &digest, &printer}) {
+            if (!*value) return tl::unexpected(value->error());
+        }
+        facts_.begun = true;
+        facts_.job = *job;
+        facts_.digest = *digest;
+        facts_.printer = *printer;
+        return {};
+    }
+    Status session(const JournalRecord& r) {
+        const auto base = r.whole("base"), before = r.whole("before");
+        const auto boot = r.text("boot"), word = r.text("state");
+        if (!base) return tl::unexpected(base.error());
+        if (!before) return tl::unexpected(before.error());
+        if (!boot) return tl::unexpected(boot.error());
+        const auto state = word ? read_state(*word) : tl::unexpected(word.error());
+        if (!state) return input_error("journal record {}: {}", r.number, state.error().message);
+        facts_.base = *base;
+        facts_.before_base = *before;
+        facts_.boot = *boot;
+        facts_.stopped_short = facts_.halted = false;
+        facts_.go = GoFact{-1, 0, *base + 1, *state, 0};
+        return {};
+    }
+    Status program(const JournalRecord& r) {
+        const auto text = r.text("text");
+        if (!text) return tl::unexpected(text.error());
+        facts_.programs[r.number] = commands_of(*text);
+        return {};
+    }
+    Status go(const JournalRecord& r) {
+        const auto program = r.whole("program"), step = r.whole("step"), line = r.whole("line");
+        for (const auto* value : {&program, &step, &line}) {
+            if (!*value) return tl::unexpected(value->error());
+            if (**value < 0) return input_error("journal record {} (go): below 0", r.number);
+        }
+        const auto word = r.text("state");
+        const auto state = word ? read_state(*word) : tl::unexpected(word.error());
+        if (!state) return input_error("journal record {}: {}", r.number, state.error().message);
+        if (*program != 0 && facts_.programs.count(*program) == 0)
+            return input_error("journal record {}: there is no program {}", r.number, *program);
+        long most = 0;
+        if (r.find("most") != nullptr) {
+            const auto given = r.whole("most");
+            if (!given) return tl::unexpected(given.error());
+            most = std::max(0L, *given);
+        }
+        facts_.moved = true;
+        facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state, most};
+        return {};
+    }
+    Status light(const JournalRecord& r) {
+        const auto step = r.whole("step"), layer = r.whole("layer"), material = r.whole("material");
+        for (const auto* value : {&step, &layer, &material}) {
+            if (!*value) return tl::unexpected(value->error());
+            if (**value < 0 || **value > 1'000'000'000)
+                return input_error("journal record {} (light): out of range", r.number);
+        }
+        const auto planned = r.number_of("planned"), at = r.number_of("at");
+        if (!planned) return tl::unexpected(planned.error());
+        if (!at) return tl::unexpected(at.error());
+        const auto index = static_cast<std::size_t>(*step);
+        LightFact& fact = facts_.lights[index];
+        fact.layer = static_cast<int>(*layer);
+        fact.material = static_cast<int>(*material);
+        fact.planned_s = *planned;
+        fact.open_light = r.number;
+        fact.open_since_s = *at;
+        facts_.last_light = index;
+        return {};
+    }
+    Status dark(const JournalRecord& r) {
+        const auto light = r.whole("light"), done = r.whole("done");
+        const auto on = r.number_of("on");
+        if (!light) return tl::unexpected(light.error());
+        if (!done) return tl::unexpected(done.error());
+        if (!on) return tl::unexpected(on.error());
+        for (auto& [step, fact] : facts_.lights) {
+            if (fact.open_light != *light || *light == 0) continue;
+            fact.open_light = 0;
+            fact.lit_s += std::max(0.0, *on);
+            fact.complete = *done != 0;
+            return {};
+        }
+        return input_error("journal record {} (dark): light {} was not on", r.number, *light);
+    }
+    Status exposure(const JournalRecord& r) {
+        const auto material = r.whole("material"), from = r.whole("from");
+        const auto seconds = r.number_of("seconds");
+        if (!material) return tl::unexpected(material.error());
+        if (!from) return tl::unexpected(from.error());
+        if (!seconds) return tl::unexpected(seconds.error());
+        facts_.changes.push_back({static_cast<int>(*material), *seconds, static_cast<int>(*from)});
+        return {};
+    }
+    Status skip(const JournalRecord& r) {
+        const auto layer = r.whole("layer");
+        if (!layer) return tl::unexpected(layer.error());
+        facts_.skipped_layers.push_back(static_cast<int>(*layer));
+        return {};
+    }
+    Status stop(const JournalRecord& r) {
+        const auto quick = r.whole("quick");
+        if (!quick) return tl::unexpected(quick.error());
+        facts_.stopped_short = facts_.stopped_short || *quick != 0;
+        const std::string* why = r.find("why");
+        facts_.halted =
+            why != nullptr && (why->find("emergency stop") == 0 || why->find("halted") != std::string::npos);
+        return {};
+    }
+
+    JournalFacts& facts_;
+};
+
+}  // namespace
+
+std::string write_state(const Interlock::State& state) {
+    std::string position, homed, slots;
+    for (const machine::Axis axis : machine::all_axes) {
+        position += fmt::format("{},", state.position[axis]);
+        homed += state.homed[static_cast<std::size_t>(axis)] ? '1' : '0';
+    }
+    for (const auto& vat : state.slots) slots += vat_word(vat) + ",";
+    return fmt::format("{};{};{};{};{};{}", position, homed, vat_word(state.hooked_vat), state.part_height_um,
+                       (state.pump ? 1 : 0) + (state.magnet ? 2 : 0) + (state.fork_out ? 4 : 0), slots);
+}
+
+Result<Interlock::State> read_state(std::string_view word) {
+    constexpr std::size_t most_slots = 1000;
+    const auto wrong = [&] { return input_error("\"{}\" is not the state of a machine", word.substr(0, 80)); };
+    Interlock::State state;
+    std::string_view rest = word;
+    std::string_view position = take(rest, ';');
+    for (const machine::Axis axis : machine::all_axes) {
+        if (!read_int(take(position, ','), state.position[axis])) return wrong();
+    }
+    const std::string_view homed = take(rest, ';');
+    if (homed.size() != machine::axis_count) return wrong();
+    for (std::size_t i = 0; i < homed.size(); ++i) {
+        if (!read_flag(homed.substr(i, 1), state.homed[i])) return wrong();
+    }
+    if (!read_vat(take(rest, ';'), state.hooked_vat)) return wrong();
+    int outputs = 0;
+    if (!read_int(take(rest, ';'), state.part_height_um) || !read_int(take(rest, ';'), outputs)) return wrong();
+    if (outputs < 0 || outputs > 7) return wrong();
+    state.pump = (outputs & 1) != 0;
+    state.magnet = (outputs & 2) != 0;
+    state.fork_out = (outputs & 4) != 0;
+    while (!rest.empty()) {
+        if (state.slots.size() == most_slots) return wrong();
+        if (!read_vat(take(rest, ','), state.slots.emplace_back())) return wrong();
+    }
+    return state;
+}
+
+bool is_interrupted(const JournalFacts& facts) {
+    return facts.begun && !facts.ended && !facts.cancelled && (facts.moved || !facts.lights.empty());
+}
+
+Result<JournalFacts> facts_of(const std::vector<JournalRecord>& records) {
+    JournalFacts facts;
+    Reader reader(facts);
+    for (const JournalRecord& record : records) {
+        if (Status status = reader.take(record); !status) return tl::unexpected(status.error());
+    }
+    return facts;
+}
+
+std::vector<std::string> commands_of(std::string_view program) {
+    std::vector<std::string> commands;
+    while (!program.empty()) {
+        const std::string_view line = program.substr(0, program.find('\n'));
+        program.remove_prefix(std::min(program.size(), line.size() + 1));
+        const std::string_view command = machine::is_directive(line) ? "" : machine::strip_comment(line);
+        if (!command.empty()) commands.emplace_back(command);
+    }
+    return commands;
+}
+
+}  // namespace pliant::host

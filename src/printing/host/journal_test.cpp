@@ -1,0 +1,162 @@
+#include "printing/host/journal.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "printing/host/journal_facts.hpp"
+
+using namespace pliant;
+using namespace pliant::host;
+
+namespace {
+
+std::string three_records() {
+    return write_record(1, "begin", {{"job", "a b%=\n\xff"}, {"digest", ""}, {"printer", "x"}}) +
+           write_record(2, "light",
+                        {{"step", "3"}, {"layer", "0"}, {"material", "1"}, {"planned", "2.5"}, {"at", "10"}}) +
+           write_record(3, "dark", {{"light", "2"}, {"on", "1"}, {"done", "0"}, {"by", "host"}});
+}
+
+}  // namespace
+
+TEST_CASE("a record is a checksum, a number, a kind and values; any bytes survive") {
+    // CRC-32 of "1 end", by zlib.
+    CHECK(write_record(1, "end", {}) == "05ec23b6 1 end\n");
+    const JournalText text = parse_journal(three_records(), "x").value();
+    REQUIRE(text.records.size() == 3);
+    CHECK(text.records[0].text("job").value() == "a b%=\n\xff");
+    CHECK(text.records[0].text("digest").value().empty());
+    CHECK(text.records[1].number_of("planned").value() == 2.5);
+    CHECK_FALSE(text.records[1].whole("planned"));
+    CHECK_FALSE(text.records[1].text("none"));
+}
+
+TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle is not") {
+    const std::string all = three_records();
+    const std::size_t second = all.find('\n') + 1, third = all.find('\n', second) + 1;
+    for (std::size_t bytes = 0; bytes <= all.size(); ++bytes) {
+        const auto text = parse_journal(all.substr(0, bytes), "x");
+        REQUIRE(text);
+        const std::size_t whole = bytes == all.size() ? 3 : bytes >= third ? 2 : bytes >= second ? 1 : 0;
+        CHECK(text->records.size() == whole);
+        CHECK(text->good_bytes == (whole == 3 ? all.size() : whole == 2 ? third : whole == 1 ? second : 0));
+    }
+    for (std::size_t at = 0; at < all.size(); ++at) {
+        std::string damaged = all;
+        damaged[at] = static_cast<char>(damaged[at] ^ 1);
+        const auto text = parse_journal(damaged, "x");
+        if (at >= third)
+            CHECK((text && text->records.size() == 2));
+        else if (at == third - 1)  // the line end between the last two: both are the torn end
+            CHECK((text && text->records.size() == 1));
+        else
+            CHECK_FALSE(text);
+    }
+}
+
+TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on behind them") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "journal";
+    {
+        Journal journal = Journal::open(path, true).value();
+        CHECK(journal.append("begin", {{"job", "x"}}).value() == 1);
+        CHECK(journal.append("pause", {}).value() == 2);
+        CHECK(Journal::open(path, true).error().message.find("another host") != std::string::npos);
+    }
+    std::ofstream(path, std::ios::app) << "0123abcd 3 dark li";
+    {
+        Journal journal = Journal::open(path, true).value();
+        CHECK(journal.records().size() == 2);
+        CHECK(journal.append("resume", {}).value() == 3);
+    }
+    CHECK(Journal::open(path, true).value().records().size() == 3);
+    Journal journal = Journal::open(path, true).value();
+    REQUIRE(journal.clear());
+    CHECK(journal.append("begin", {}).value() == 1);
+}
+
+TEST_CASE("what is no journal is not touched") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "picture.png";
+    REQUIRE(write_file(path, "something else\nof two lines\n"));
+    CHECK_FALSE(Journal::open(path, true));
+    CHECK(read_file(path).value() == "something else\nof two lines\n");
+    CHECK_FALSE(Journal::open(folder.path(), true));
+    CHECK_FALSE(Journal::open(folder.path() / "no" / "folder", true));
+}
+
+TEST_CASE("a full disk is an error, and leaves no half record behind") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "journal";
+    Journal journal = Journal::open(path, false).value();
+    REQUIRE(journal.append("begin", {}));
+    const auto size = std::filesystem::file_size(path);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    const rlimit small{size + 10, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+    const auto full = journal.append("light", {{"step", "123"}});
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+    CHECK_FALSE(full);
+    CHECK(full.error().message.find("no step is taken") != std::string::npos);
+    CHECK(std::filesystem::file_size(path) == size);
+    CHECK(journal.append("stop", {}).value() == 2);
+}
+
+TEST_CASE("the facts: pieces of a light add up, an open light stays open, states are read back") {
+    auto records = parse_journal(three_records(), "x").value().records;
+    JournalFacts facts = facts_of(records).value();
+    CHECK(facts.lights.at(3).lit_s == 1);
+    CHECK_FALSE(facts.lights.at(3).complete);
+    CHECK(facts.lights.at(3).open_light == 0);
+    records.push_back(
+        parse_journal(
+            write_record(1, "light",
+                         {{"step", "3"}, {"layer", "0"}, {"material", "1"}, {"planned", "2.5"}, {"at", "90"}}),
+            "x")
+            .value()
+            .records[0]);
+    records.back().number = 4;
+    facts = facts_of(records).value();
+    CHECK(facts.lights.at(3).open_light == 4);
+    CHECK(facts.lights.at(3).open_since_s == 90);
+    records.push_back({5, "dark", {{"light", "2"}, {"on", "1"}, {"done", "1"}}});
+    CHECK_FALSE(facts_of(records));  // light 2 was not on any more
+
+    machine::Interlock::State state;
+    state.position = {{1, -2, 3, 4}};
+    state.homed = {true, false, true, false};
+    state.slots = {std::nullopt, 1, 0};
+    state.hooked_vat = 2;
+    state.part_height_um = 250;
+    state.pump = true;
+    const std::string word = write_state(state);
+    CHECK(word == "1,-2,3,4,;1010;2;250;1;-,1,0,");
+    const auto back = read_state(word).value();
+    CHECK(back.position == state.position);
+    CHECK(back.homed == state.homed);
+    CHECK(back.slots == state.slots);
+    CHECK(back.hooked_vat == state.hooked_vat);
+    CHECK(back.part_height_um == 250);
+    CHECK(back.pump);
+    CHECK_FALSE(back.magnet);
+    state.magnet = state.fork_out = true;
+    const auto latched = read_state(write_state(state)).value();
+    CHECK(latched.pump);
+    CHECK(latched.magnet);
+    CHECK(latched.fork_out);
+    CHECK_FALSE(read_state("1,2,3,4,;1010;2;250;8;-,"));
+    for (const char* bad : {"", "1,2,3,4,;1010;2;250;1", "1,2,3,;1010;2;250;1;-", "1,2,3,4,;10;2;250;1;-,", "a"}) {
+        INFO(bad);
+        const auto read = read_state(bad);
+        CHECK((!read || read->slots.empty()));
+    }
+}

@@ -1,0 +1,472 @@
+#include "printing/host/print_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "printing/host/resume_point.hpp"
+
+namespace pliant::host {
+namespace {
+
+constexpr double look_every_s = 0.01;   // at wishes, while the light is on
+constexpr double pause_look_s = 0.05;   // at wishes, while paused
+constexpr double last_stretch_s = 0.5;  // of a light: what a noisy wire asks for must not delay its end
+
+std::string number(double value) {
+    return fmt::format("{}", value);
+}
+
+/// Why a run returns before its end without an error of its own.
+tl::unexpected<Error> wish_to_end() {
+    return cancelled();
+}
+
+/// Steps at whose end the machine has done everything that was sent: lights, and homing.
+bool is_waited_for(const std::variant<std::string, machine::Expose>& step) {
+    const auto* command = std::get_if<std::string>(&step);
+    return command == nullptr || command->compare(0, 3, "G28") == 0;
+}
+
+}  // namespace
+
+using machine::Axis;
+
+PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
+    : run_(run),
+      facts_(std::move(facts)),
+      printer_(run.setup.printer),
+      projector_(run.setup.projector),
+      clock_(run.setup.clock),
+      begin_s_(run.setup.clock.now()) {
+    run_.desk.update([&](Snapshot& s) {
+        s.begun_s = begin_s_;
+        s.exposures_s.assign(run_.job.materials.size(), 0);
+        for (const ChangeFact& change : facts_.changes) {
+            if (change.material >= 0 && static_cast<std::size_t>(change.material) < s.exposures_s.size())
+                s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
+        }
+    });
+    reach(next_light(facts_, run_.script));
+    run_.machine.link().set_watch([this] {
+        show_progress();
+        return run_.desk.watch();
+    });
+}
+
+PrintRun::~PrintRun() {
+    run_.machine.link().set_watch([&desk = run_.desk] { return desk.watch(); });
+    (void)projector_.black();
+}
+
+Result<Ending> PrintRun::print() {
+    run_.desk.state(State::printing);
+    if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
+    return steps_from(0);
+}
+
+Result<Ending> PrintRun::resume(const Recovery& recovery) {
+    run_.desk.state(State::printing, "going on: homing, bringing the vat");
+    if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
+    const auto program = run_.setup.programs.resume(recovery);
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (recovery.finished) {
+        if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
+        return Ending::finished;
+    }
+    const bool there = run_.machine.state().position()[Axis::platform] == recovery.target.position()[Axis::platform] &&
+                       run_.machine.state().hooked_vat() == recovery.target.hooked_vat();
+    if (!there) return failure("the program that goes on does not lead to the next light");
+    return steps_from(next_light(facts_, run_.script));
+}
+
+Result<Ending> PrintRun::abandon(const Recovery& recovery) {
+    Recovery end = recovery;
+    end.finished = true;
+    const auto program = run_.setup.programs.resume(end);
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (Status status = note("cancel", {}); !status) return tl::unexpected(status.error());
+    return Ending::cancelled;
+}
+
+/// The machine has done what stands before step `step`.
+void PrintRun::reach(std::size_t step) {
+    reached_s_ = sent_s_ = run_.times[step];
+    reached_at_s_ = clock_.now();
+}
+
+Result<Ending> PrintRun::steps_from(std::size_t first) {
+    reach(first);
+    for (std::size_t i = first; i < run_.script.steps.size(); ++i) {
+        sent_s_ = run_.times[i + 1];
+        show_progress();
+        Status status = serve_wishes(i);
+        if (status) {
+            const auto* command = std::get_if<std::string>(&run_.script.steps[i]);
+            status = command != nullptr ? run_.machine.send(0, i, *command) : expose(i);
+        }
+        if (!status && status.error().cause == Cause::cancelled)
+            return park(run_.desk.wishes().cancel ? Ending::cancelled : Ending::suspended);
+        if (!status) return tl::unexpected(status.error());
+        if (is_waited_for(run_.script.steps[i])) reach(i + 1);
+    }
+    if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
+    if (Status status = note("end", {}); !status) return tl::unexpected(status.error());
+    return Ending::finished;
+}
+
+// --- light ---------------------------------------------------------------------------------------------------------
+
+double PrintRun::exposure_s(const machine::Expose& light) const {
+    double seconds = light.seconds;
+    for (const ChangeFact& change : facts_.changes) {
+        if (change.material == light.material && light.layer >= change.from_layer) seconds = change.seconds;
+    }
+    return seconds;
+}
+
+std::string PrintRun::material_name(int material) const {
+    const auto m = static_cast<std::size_t>(material);
+    return m < run_.job.materials.size() ? run_.job.materials[m] : fmt::format("material {}", material + 1);
+}
+
+bool PrintRun::skipped(int layer) const {
+    return std::find(facts_.skipped_layers.begin(), facts_.skipped_layers.end(), layer) != facts_.skipped_layers.end();
+}
+
+Status PrintRun::expose(std::size_t step) {
+    const machine::Expose& light = *run_.script.light(step);
+    if (light.layer != layer_) run_.desk.event("layer", fmt::format("{}", light.layer + 1));
+    layer_ = light.layer;
+    run_.desk.update([&](Snapshot& s) {
+        s.layer = light.layer;
+        s.material = light.material;
+        s.image = light.image;
+    });
+    const auto [found, is_new] = facts_.lights.try_emplace(step);
+    LightFact& fact = found->second;
+    if (is_new && skipped(light.layer)) {
+        facts_.lights.erase(found);
+        run_.desk.event("log", fmt::format("the light of layer {} is left out", light.layer + 1));
+        return {};
+    }
+    if (is_new) fact = {light.layer, light.material, exposure_s(light), 0, false, 0, 0};
+    // The image is decoded while the machine moves.
+    const auto image = fact.complete ? Result<job::Image>{} : run_.job.images(light.layer, light.material);
+    if (!image) return tl::unexpected(image.error());
+    while (!fact.complete) {
+        if (Status status = run_.machine.rest_in_place(); !status) return status;
+        if (Status status = serve_wishes(step); !status) return status;
+        if (Status status = shine(step, *image, fact); !status) return status;
+    }
+    return {};
+}
+
+/// One piece of a light: all that is left of it, unless somebody wants it to end before.
+Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fact) {
+    if (Status status = run_.machine.light_on(); !status) return status;
+    const double left_s = fact.planned_s - fact.lit_s;
+    const double noted_s = clock_.now();
+    if (run_.setup.guard != nullptr && run_.journal != nullptr)
+        run_.setup.guard->announced(run_.journal->next_number());
+    if (Status status = note("light", {{"step", fmt::format("{}", step)},
+                                       {"layer", fmt::format("{}", fact.layer)},
+                                       {"material", fmt::format("{}", fact.material)},
+                                       {"planned", number(fact.planned_s)},
+                                       {"at", number(noted_s)}});
+        !status) {
+        run_.machine.light_off();
+        return status;
+    }
+    fact.open_light = last_record_;
+    // The last look before the light: a controller that has restarted since says so, or does not answer any more.
+    Status alive = run_.machine.rest();
+    if (alive) alive = run_.machine.link().listen_for(0);
+    if (!alive) {
+        run_.machine.light_off();
+        (void)note("dark", {{"light", fmt::format("{}", fact.open_light)}, {"on", "0"}, {"done", "0"}, {"by", "host"}});
+        return alive;
+    }
+    const double start_s = clock_.now();
+    if (run_.setup.guard != nullptr) run_.setup.guard->lit(start_s);
+    Status status = projector_.show_for(image, left_s);
+    run_.desk.event("light",
+                    fmt::format("layer {}, {}, {:.3f} s", fact.layer + 1, material_name(fact.material), left_s));
+    run_.desk.update([&](Snapshot& s) {
+        s.lit = true;
+        s.exposure_s = fact.planned_s;
+    });
+    bool whole = false;
+    if (status) status = burn(start_s + left_s, whole);
+    double on_s = 0;
+    Status dark;
+    if (whole) {
+        const auto measured = projector_.finish();
+        on_s = measured && *measured ? (*measured)->on_s : clock_.now() - start_s;
+        if (!measured) dark = tl::unexpected(measured.error());
+    } else {
+        dark = projector_.black();
+        on_s = clock_.now() - start_s;
+    }
+    if (!dark) (void)projector_.black();
+    run_.machine.light_off();
+    if (run_.setup.guard != nullptr) run_.setup.guard->dark(clock_.now());
+    run_.desk.update([](Snapshot& s) { s.lit = false; });
+    fact.lit_s += on_s;
+    fact.complete = whole || is_enough(fact.lit_s, fact.planned_s);
+    run_.desk.event("dark", fmt::format("{:.3f} s", on_s));
+    const Status noted = note("dark", {{"light", fmt::format("{}", fact.open_light)},
+                                       {"on", number(on_s)},
+                                       {"done", fact.complete ? "1" : "0"},
+                                       {"by", "host"}});
+    fact.open_light = 0;
+    if (run_.setup.after_light) run_.setup.after_light({fact.layer, fact.material, fact.lit_s, fact.complete});
+    if (!status) return status;
+    if (!dark) return dark;
+    return noted;
+}
+
+/// Waits, with an ear on the wire. `whole`: until the end.
+Status PrintRun::burn(double until_s, bool& whole) {
+    const double start_s = clock_.now();
+    for (double now_s = start_s; now_s < until_s; now_s = clock_.now()) {
+        const Wishes wishes = run_.desk.wishes();
+        if (wishes.pause_now || wishes.cancel || wishes.suspend || door_is_open()) return {};
+        run_.desk.update([&](Snapshot& s) { s.lit_s = now_s - start_s; });
+        if (until_s - now_s > last_stretch_s) {
+            if (Status status = run_.machine.ask_for_door(); !status) return status;
+        }
+        const double next_s = std::min(look_every_s, until_s - now_s);
+        if (Status status = run_.machine.link().listen_for(next_s, until_s - now_s > last_stretch_s); !status)
+            return status;
+    }
+    whole = true;
+    return {};
+}
+
+// --- what people want ----------------------------------------------------------------------------------------------
+
+bool PrintRun::wants_to_end() const {
+    const Wishes wishes = run_.desk.wishes();
+    return wishes.cancel || wishes.suspend;
+}
+
+/// Between two layers, or two vats: pump off, the vat under the platform, the part loose from its floor.
+bool PrintRun::at_safe_point() const {
+    const machine::Interlock& state = run_.machine.state();
+    if (state.pump_runs()) return false;
+    const bool tower = printer_.has_carriage();
+    if (tower && state.position()[Axis::carriage] != printer_.carriage.print_um) return false;
+    return state.position()[Axis::platform] > state.part_height_um();
+}
+
+int PrintRun::next_layer(std::size_t step) const {
+    for (std::size_t i = step; i < run_.script.steps.size(); ++i) {
+        if (const machine::Expose* light = run_.script.light(i)) return light->layer;
+    }
+    return -1;
+}
+
+Status PrintRun::serve_wishes(std::size_t step) {
+    if (Status status = run_.desk.watch(); !status) return status;
+    if (Status status = keep_changes(); !status) return status;
+    const Wishes wishes = run_.desk.wishes();
+    if (wishes.cancel || wishes.suspend) return wish_to_end();
+    show_switches();
+    if (door_is_open()) return hold_for_door();
+    if (wishes.pause_now || (wishes.pause_after && at_safe_point())) return pause("");
+    return at_safe_point() ? between_layers(step) : Status{};
+}
+
+/// The picture of the layer before, and resin for the one to come.
+Status PrintRun::between_layers(std::size_t step) {
+    const bool hook = run_.setup.after_layer && layer_ > hooked_layer_;
+    if (!hook && run_.job.refills.empty()) return {};
+    const int next = next_layer(step);
+    if (hook && next != layer_) {
+        hooked_layer_ = layer_;
+        if (Status status = run_.machine.rest(); !status) return status;
+        run_.setup.after_layer(layer_);
+    }
+    for (const Refill& refill : run_.job.refills) {
+        if (refill.layer != next || refilled_layer_ >= next || next == layer_) continue;
+        refilled_layer_ = next;
+        return pause(refill.text);
+    }
+    return {};
+}
+
+Status PrintRun::keep_changes() {
+    for (ChangeFact change : run_.desk.take_changes()) {
+        change.from_layer = layer_ + 1;
+        if (Status status = note("exposure", {{"material", fmt::format("{}", change.material)},
+                                              {"seconds", number(change.seconds)},
+                                              {"from", fmt::format("{}", change.from_layer)}});
+            !status)
+            return status;
+        facts_.changes.push_back(change);
+        run_.desk.update([&](Snapshot& s) {
+            s.exposures_s.resize(run_.job.materials.size());
+            s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
+        });
+        run_.desk.event("log", fmt::format("from layer {} on {} is lit for {:g} s", change.from_layer + 1,
+                                           material_name(change.material), change.seconds));
+    }
+    for (const int layer : run_.desk.take_skips()) {
+        if (layer <= layer_) continue;
+        if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
+        facts_.skipped_layers.push_back(layer);
+        run_.desk.event("log", fmt::format("layer {} will get no light", layer + 1));
+    }
+    return {};
+}
+
+Status PrintRun::pause(const std::string& prompt) {
+    return halt(prompt, run_.setup.programs.pause_begin, run_.setup.programs.pause_end);
+}
+
+/// Somebody has opened the door: nothing moves before it is shut and somebody says so.
+Status PrintRun::hold_for_door() {
+    if (Status status = note("door", {{"open", "1"}}); !status) return status;
+    run_.desk.event("log", "the door is open");
+    Status status =
+        halt("the door is open: shut it, then resume", run_.setup.programs.hold_begin, run_.setup.programs.hold_end);
+    return status ? note("door", {{"open", "0"}}) : status;
+}
+
+/// Brings the machine to a halt by `begin`, waits for somebody to resume, and goes back by `end`.
+Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begin, const Programs::Make& make_end) {
+    run_.desk.state(State::pausing);
+    if (Status status = run_.machine.rest(); !status) return status;
+    const machine::Interlock before = run_.machine.state();
+    const auto begin = make_begin(before);
+    if (!begin) return tl::unexpected(begin.error());
+    if (Status status = run_.machine.run(*begin); !status) return status;
+    if (Status status = note("pause", {}); !status) return status;
+    run_.desk.wish([](Wishes& w) { w.pause_after = w.pause_now = w.resume = false; });
+    run_.desk.update([&](Snapshot& s) { s.prompt = prompt; });
+    if (!prompt.empty()) run_.desk.event("prompt", prompt);
+    run_.desk.state(State::paused, prompt);
+    Status status = wait_for_resume();
+    run_.desk.update([](Snapshot& s) { s.prompt.clear(); });
+    if (!status) return status;
+    if (status = note("resume", {}); !status) return status;
+    const auto end = make_end(before);
+    if (!end) return tl::unexpected(end.error());
+    return run_.machine.run(*end);
+}
+
+Status PrintRun::wait_for_resume() {
+    waits_ = true;
+    for (;;) {
+        if (Status status = run_.desk.watch(); !status) return status;
+        if (wants_to_end()) return wish_to_end();
+        if (run_.desk.wishes().resume && !door_is_open()) break;
+        run_.desk.wish([](Wishes& w) { w.resume = false; });  // not while the door is open
+        if (Status status = listen_at_door(pause_look_s); !status) return status;
+    }
+    run_.desk.wish([](Wishes& w) { w.resume = false; });
+    waits_ = false;
+    reached_s_ = done_s_;
+    reached_at_s_ = clock_.now();
+    run_.desk.state(State::printing);
+    return {};
+}
+
+// --- the door ------------------------------------------------------------------------------------------------------
+
+Status PrintRun::listen_at_door(double seconds) {
+    if (Status status = run_.machine.ask_for_door(); !status) return status;
+    Status status = run_.machine.link().listen_for(seconds);
+    show_switches();
+    return status;
+}
+
+void PrintRun::show_switches() {
+    run_.desk.update([&](Snapshot& s) {
+        s.door_open = run_.machine.door_open();
+        s.switches = run_.machine.limit_switches();
+    });
+}
+
+/// Nothing is parked while the door is open. A suspended print stays as it is; a cancelled one waits, unless the host
+/// has to end.
+Result<Ending> PrintRun::wait_to_park(Ending ending) {
+    if (!door_is_open()) return ending;
+    if (ending == Ending::cancelled)
+        run_.desk.state(State::cancelling, "the door is open: shut it, then the machine parks");
+    while (door_is_open()) {
+        if (Status status = run_.desk.watch(); !status) return tl::unexpected(status.error());
+        if (run_.desk.wishes().suspend) return Ending::left;
+        if (Status status = listen_at_door(pause_look_s); !status) return tl::unexpected(status.error());
+    }
+    return ending;
+}
+
+// --- the end -------------------------------------------------------------------------------------------------------
+
+Result<Ending> PrintRun::park(Ending ending) {
+    (void)projector_.black();
+    run_.desk.state(State::cancelling);
+    if (Status status = run_.machine.rest(); !status) return tl::unexpected(status.error());
+    const auto may_park = wait_to_park(ending);
+    if (!may_park) return may_park;
+    if (*may_park == Ending::left) {
+        if (Status status = note("suspend", {{"parked", "0"}}); !status) return tl::unexpected(status.error());
+        return Ending::left;
+    }
+    const auto program = run_.setup.programs.cancel(run_.machine.state());
+    if (!program) return tl::unexpected(program.error());
+    if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
+    if (Status status = note(ending == Ending::cancelled ? "cancel" : "suspend", {}); !status)
+        return tl::unexpected(status.error());
+    return ending;
+}
+
+void PrintRun::make_safe(const Error& error) {
+    (void)projector_.black();
+    Link& link = run_.machine.link();
+    const bool emergency = run_.desk.stopped();
+    const bool quick = emergency || !(link.was_reset() || link.wire_failed() || journal_failed_);
+    (void)note("stop", {{"quick", quick ? "1" : "0"}, {"why", error.message}});
+    if (emergency || link.was_reset() || link.wire_failed() || link.has_halted()) return;
+    if (!journal_failed_) return link.stop(run_.script.stop_commands);
+    // Nothing more can be kept: what is under way ends, and nothing else moves.
+    for (const std::string& command : run_.script.stop_commands) (void)link.send(command);
+    (void)link.fence();
+}
+
+Status PrintRun::note(std::string_view kind, const JournalValues& values) {
+    if (run_.journal == nullptr) return {};
+    const auto record = run_.journal->append(kind, values);
+    journal_failed_ = journal_failed_ || !record;
+    if (!record) return tl::unexpected(record.error());
+    last_record_ = *record;
+    return {};
+}
+
+/// Time goes on while the machine is homed or a vat is brought, but not beyond what has been sent.
+void PrintRun::show_progress() {
+    const double all_s = run_.times.back();
+    const double now_s = clock_.now();
+    if (!waits_) done_s_ = std::clamp(reached_s_ + now_s - reached_at_s_, reached_s_, std::max(reached_s_, sent_s_));
+    const machine::Interlock& state = run_.machine.state();
+    const auto vat = state.hooked_vat();
+    run_.desk.update([&](Snapshot& s) {
+        s.completion = all_s > 0 ? done_s_ / all_s : 1;
+        s.seconds_left = all_s - done_s_;
+        s.seconds_done = now_s - begin_s_;
+        s.position = state.position();
+        for (const Axis axis : machine::all_axes) s.homed[static_cast<std::size_t>(axis)] = state.homed(axis);
+        s.slot = vat ? printer_.vats[static_cast<std::size_t>(*vat)].slot : 0;
+        s.pump = state.pump_runs();
+        s.lines_sent = run_.machine.link().lines_sent();
+        s.resends = run_.machine.link().resends();
+    });
+}
+
+}  // namespace pliant::host

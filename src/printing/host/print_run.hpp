@@ -1,0 +1,95 @@
+// One print from some step to its end: commands, lights, pauses, prompts, parking.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/host/desk.hpp"
+#include "printing/host/journal.hpp"
+#include "printing/host/journal_facts.hpp"
+#include "printing/host/machine.hpp"
+#include "printing/host/script.hpp"
+
+namespace pliant::host {
+
+/// All must outlive the run.
+struct RunSetup {
+    const ControlSetup& setup;
+    const PrintJob& job;
+    const Script& script;
+    const std::vector<double>& times;  ///< of script_times()
+    Machine& machine;
+    Journal* journal;  ///< nullptr: none is kept
+    Desk& desk;
+};
+
+enum class Ending {
+    finished,
+    cancelled,
+    suspended,
+    left,  ///< suspended, but not parked: the door is open
+};
+
+class PrintRun {
+public:
+    PrintRun(const RunSetup& run, JournalFacts facts);
+    ~PrintRun();
+    PrintRun(const PrintRun&) = delete;
+    PrintRun& operator=(const PrintRun&) = delete;
+
+    /// Prints from the beginning.
+    [[nodiscard]] Result<Ending> print();
+    /// Goes on from where the machine stands.
+    [[nodiscard]] Result<Ending> resume(const Recovery& recovery);
+    /// Puts an interrupted print away for good.
+    [[nodiscard]] Result<Ending> abandon(const Recovery& recovery);
+    /// After an error: dark, and what else can be made safe.
+    void make_safe(const Error& error);
+
+private:
+    [[nodiscard]] Result<Ending> steps_from(std::size_t step);
+    [[nodiscard]] Status expose(std::size_t step);
+    [[nodiscard]] Status shine(std::size_t step, const job::Image& image, LightFact& fact);
+    [[nodiscard]] Status burn(double until_s, bool& whole);
+    [[nodiscard]] Status serve_wishes(std::size_t step);
+    [[nodiscard]] Status between_layers(std::size_t step);
+    [[nodiscard]] Status keep_changes();
+    [[nodiscard]] Status pause(const std::string& prompt);
+    [[nodiscard]] Status hold_for_door();
+    [[nodiscard]] Status halt(const std::string& prompt, const Programs::Make& begin, const Programs::Make& end);
+    [[nodiscard]] Status wait_for_resume();
+    [[nodiscard]] Status listen_at_door(double seconds);
+    [[nodiscard]] Result<Ending> wait_to_park(Ending ending);
+    [[nodiscard]] bool door_is_open() const { return run_.machine.door_open().value_or(false); }
+    void show_switches();
+    [[nodiscard]] Result<Ending> park(Ending ending);
+    [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
+    [[nodiscard]] double exposure_s(const machine::Expose& light) const;
+    [[nodiscard]] std::string material_name(int material) const;  ///< as people know it
+    [[nodiscard]] bool skipped(int layer) const;
+    [[nodiscard]] bool at_safe_point() const;
+    [[nodiscard]] int next_layer(std::size_t step) const;
+    [[nodiscard]] bool wants_to_end() const;
+    void show_progress();
+    void reach(std::size_t step);
+
+    RunSetup run_;
+    JournalFacts facts_;
+    const machine::Printer& printer_;
+    Projector& projector_;
+    Clock& clock_;
+    double begin_s_;
+    // Seconds of the job as planned: what has been reached for sure (and when), what has been sent, what is shown.
+    double reached_s_ = 0, reached_at_s_ = 0, sent_s_ = 0, done_s_ = 0;
+    bool waits_ = false;       ///< for somebody to resume: that is no time of the job
+    int layer_ = -1;           ///< of the last light
+    int hooked_layer_ = -1;    ///< for which after_layer has been called
+    int refilled_layer_ = -1;  ///< before which a refill has been asked for
+    long last_record_ = 0;
+    bool journal_failed_ = false;
+};
+
+}  // namespace pliant::host

@@ -1,0 +1,169 @@
+#include "printing/host/resume_point.hpp"
+
+#include <algorithm>
+
+#include "printing/host/machine.hpp"
+#include "printing/machine/follow.hpp"
+
+namespace pliant::host {
+namespace {
+
+using machine::Interlock;
+
+constexpr long most_introduction_lines = 100;  // that a session sends before it moves anything
+constexpr long most_questions = 100;           // fences and such, among the commands up to a light
+
+/// Whether the controller is as that host left it, which had `commands` to send at most.
+bool is_proven(const JournalFacts& facts, long last_line, std::size_t commands) {
+    if (facts.stopped_short || last_line <= 0) return false;
+    if (facts.go->program >= 0) {
+        const long most = facts.go->line + static_cast<long>(commands) + most_questions;
+        return last_line >= facts.go->line - 1 && last_line <= most;
+    }
+    if (last_line == facts.before_base) return true;
+    return last_line >= facts.base && last_line < facts.base + most_introduction_lines;
+}
+
+/// The commands from there on, up to a light or the end.
+std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& facts, const Script& script) {
+    std::vector<std::string> commands;
+    if (go.program > 0) {
+        const std::vector<std::string>& all = facts.programs.at(go.program);
+        if (go.step < all.size()) commands.assign(all.begin() + static_cast<std::ptrdiff_t>(go.step), all.end());
+    }
+    for (std::size_t i = go.step; go.program == 0 && i < script.steps.size(); ++i) {
+        const auto* command = std::get_if<std::string>(&script.steps[i]);
+        if (command == nullptr) break;
+        commands.push_back(*command);
+    }
+    if (go.most > 0 && static_cast<std::size_t>(go.most) < commands.size())
+        commands.resize(static_cast<std::size_t>(go.most));
+    return commands;
+}
+
+/// What the journal asks for, against what the machine allows.
+Status check_lights(const JournalFacts& facts, const machine::Printer& printer) {
+    const auto allowed = [&](double seconds) { return seconds >= 0 && seconds <= printer.limits.exposure_s; };
+    for (const auto& [step, light] : facts.lights) {
+        if (!allowed(light.planned_s))
+            return input_error("the journal asks for {:g} s of light, {} allows up to {:g} s", light.planned_s,
+                               printer.name, printer.limits.exposure_s);
+    }
+    for (const ChangeFact& change : facts.changes) {
+        if (!allowed(change.seconds))
+            return input_error("the journal changes an exposure to {:g} s, {} allows up to {:g} s", change.seconds,
+                               printer.name, printer.limits.exposure_s);
+    }
+    return {};
+}
+
+Interlock without_position(const Interlock& state) {
+    Interlock lost = state;
+    lost.stopped_at(state.position());
+    return lost;
+}
+
+}  // namespace
+
+Result<Standing> standing_of(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
+                             long last_line, const Assume& assume) {
+    if (!facts.go) return Standing{Interlock(printer), false};
+    const auto restored = Interlock::restored(printer, facts.go->state);
+    if (!restored) return tl::unexpected(restored.error());
+    const std::vector<std::string> commands = commands_from(*facts.go, facts, script);
+    const bool proven = is_proven(facts, last_line, commands.size());
+    if (!proven && last_line > 0 && !facts.stopped_short && !assume.vats_untouched) {
+        return failure(
+            "another program has spoken to the controller since this print was interrupted; if every vat is "
+            "where it was then, go on with --assume-vats-untouched");
+    }
+    const machine::Switch& magnet = printer.hooks.magnet.coil;
+    const bool needs_power = !magnet.on.empty() && !machine::on_without_power(magnet);
+    machine::Followed at{*restored};
+    bool on_hooks = false;
+    const long carried_out = proven ? last_line - facts.go->line + 1 : static_cast<long>(commands.size());
+    for (std::size_t i = 0; i < commands.size() && static_cast<long>(i) < carried_out; ++i) {
+        machine::Followed after = at;
+        if (Status status = after.line(printer, commands[i]); !status) return tl::unexpected(status.error());
+        // Where the next phase begins the journal would have another entry.
+        if (i > 0 && !same_phase(printer, at.lock, after.lock)) break;
+        const bool stroke =
+            at.lock.in_hooks_stroke() && after.lock.in_hooks_stroke() && at.lock.position() != after.lock.position();
+        const bool dragged =
+            needs_power && at.lock.hooked_vat() && !same_phase(printer, at.lock, after.lock) &&
+            at.lock.position()[machine::Axis::carriage] != after.lock.position()[machine::Axis::carriage];
+        const bool reaches = at.lock.fork_out() || after.lock.fork_out();
+        if (!proven && (stroke || dragged || reaches)) {
+            on_hooks = true;
+            break;
+        }
+        at = std::move(after);
+    }
+    if (proven) return Standing{at.lock, false};
+    // The vat on the hooks is the same all the way; what else has happened does not matter, the axes are homed anew.
+    return Standing{without_position(commands.empty() ? at.lock : *restored), on_hooks};
+}
+
+bool is_enough(double lit_s, double planned_s) {
+    return planned_s - lit_s < std::min(0.02, 0.02 * planned_s);
+}
+
+Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* guard, const Assume& assume) {
+    for (auto& [step, fact] : facts.lights) {
+        if (fact.open_light == 0) continue;
+        OpenLight open{fact.open_light, 0, false, false};
+        const auto seen_s = guard != nullptr ? guard->lit_s(fact.open_light) : std::nullopt;
+        if (seen_s) {
+            open.on_s = std::max(0.0, *seen_s);
+        } else if (assume.lit_s) {
+            open.on_s = *assume.lit_s;
+            open.assumed = true;
+        } else {
+            return failure(
+                "layer {}, material {}: the light of {:g} s was on when the host ended, and nobody saw how "
+                "long; look at the part and go on with --assume-lit SECONDS (0: not at all, {:g}: all of it)",
+                fact.layer, fact.material, fact.planned_s - fact.lit_s, fact.planned_s - fact.lit_s);
+        }
+        fact.lit_s += open.on_s;
+        fact.complete = open.complete = is_enough(fact.lit_s, fact.planned_s);
+        fact.open_light = 0;
+        return open;
+    }
+    return std::nullopt;
+}
+
+std::size_t next_light(const JournalFacts& facts, const Script& script) {
+    const auto skipped = [&](int layer) {
+        return std::find(facts.skipped_layers.begin(), facts.skipped_layers.end(), layer) != facts.skipped_layers.end();
+    };
+    for (std::size_t i = 0; i < script.steps.size(); ++i) {
+        const machine::Expose* light = script.light(i);
+        if (light == nullptr) continue;
+        const auto fact = facts.lights.find(i);
+        if (fact != facts.lights.end() ? fact->second.complete : skipped(light->layer)) continue;
+        return i;
+    }
+    return script.steps.size();
+}
+
+Result<Recovery> recovery_of(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
+                             const Standing& standing) {
+    if (Status status = check_lights(facts, printer); !status) return tl::unexpected(status.error());
+    const std::size_t step = next_light(facts, script);
+    Recovery recovery{standing.state, state_before(script, printer, step), step == script.steps.size(), -1,
+                      standing.on_hooks};
+    if (facts.last_light) {
+        if (*facts.last_light >= script.steps.size() || script.light(*facts.last_light) == nullptr)
+            return input_error("the journal speaks of step {}, which is no light of this job", *facts.last_light);
+        const Interlock lit = state_before(script, printer, *facts.last_light + 1);
+        recovery.last_lit_vat = lit.hooked_vat().value_or(-1);
+        Interlock::State state = recovery.state.state();
+        state.part_height_um = std::max(state.part_height_um, lit.part_height_um());
+        auto taller = Interlock::restored(printer, state);
+        if (!taller) return tl::unexpected(taller.error());
+        recovery.state = std::move(*taller);
+    }
+    return recovery;
+}
+
+}  // namespace pliant::host

@@ -1,0 +1,37 @@
+// The G-code of a job, read whole before anything moves: commands for the wire and lights for the projector, in order.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/machine/gcode.hpp"
+#include "printing/machine/interlock.hpp"
+#include "printing/machine/printer.hpp"
+
+namespace pliant::host {
+
+struct Script {
+    std::vector<std::variant<std::string, machine::Expose>> steps;
+    std::deque<std::string> stop_commands;  ///< what `;@stop` names
+
+    [[nodiscard]] const machine::Expose* light(std::size_t step) const {
+        return std::get_if<machine::Expose>(&steps[step]);
+    }
+};
+
+/// Errors name the line.
+[[nodiscard]] Result<Script> read_script(std::string_view gcode);
+
+/// When each step begins, in seconds from the beginning, and behind them the end; (steps + 1). Errors: a step that the
+/// interlocks of the machine forbid, or light for longer than it allows.
+[[nodiscard]] Result<std::vector<double>> script_times(const Script& script, const machine::Printer& printer);
+
+/// The machine before step `step` of a print that has gone as it should. Precondition: script_times() has found no
+/// fault. The printer must outlive the result.
+[[nodiscard]] machine::Interlock state_before(const Script& script, const machine::Printer& printer, std::size_t step);
+
+}  // namespace pliant::host

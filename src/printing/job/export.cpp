@@ -1,0 +1,175 @@
+#include "printing/job/export.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "base/core/files.hpp"
+#include "base/zip/zip_file.hpp"
+#include "printing/job/export_texts.hpp"
+#include "printing/job/png.hpp"
+
+namespace pliant::job {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Letters, digits, '-' and '_' as they are, all else '_'.
+std::string file_word(const std::string& text) {
+    std::string word;
+    for (const char c : text.substr(0, 80)) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+        word.push_back(plain ? c : '_');
+    }
+    return word.empty() ? "job" : word;
+}
+
+/// Calls `put(layer, png)` for every layer of a material, blank ones too.
+Status each_layer(const Archive& archive, int material, const std::function<Status(std::size_t, std::string)>& put) {
+    const Manifest& m = archive.manifest();
+    const std::string blank = encode_png(slice::RunImage(m.width_px, m.height_px));
+    for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        Result<std::string> png = blank;
+        for (const LayerImage& image : m.layers[k].images) {
+            if (image.material == material) png = archive.file(image.file);
+        }
+        if (!png) return tl::unexpected(png.error());
+        if (auto status = put(k, std::move(*png)); !status) return status;
+    }
+    return {};
+}
+
+std::string image_name(Format format, const std::string& prefix, std::size_t layer) {
+    if (format == Format::sl1) return fmt::format("{}{:05}.png", prefix, layer);
+    return fmt::format("{}.png", layer + 1);
+}
+
+/// Of every layer's image of a material.
+Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material) {
+    const Manifest& m = archive.manifest();
+    std::vector<ImageAreas> areas(m.layers.size());
+    for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        for (const LayerImage& layer : m.layers[k].images) {
+            if (layer.material != material) continue;
+            const Result<Image> image = archive.image(layer.file);
+            if (!image) return tl::unexpected(image.error());
+            areas[k] = areas_of(*image);
+        }
+    }
+    return areas;
+}
+
+bool is_even(const Manifest& m) {
+    return std::all_of(m.layers.begin(), m.layers.end(),
+                       [&](const Layer& layer) { return layer.thickness_um == m.layers[0].thickness_um; });
+}
+
+/// The files beside the images.
+Result<std::vector<NamedText>> texts_of(const Archive& archive, int material, Format format,
+                                        const std::string& prefix) {
+    const StackFacts facts = facts_of(archive.manifest(), material, prefix);
+    if (format == Format::sl1) return sl1_texts(facts);
+    if (format == Format::zip) return is_even(archive.manifest()) ? zip_texts(facts) : std::vector<NamedText>{};
+    const Result<std::vector<ImageAreas>> areas = layer_areas(archive, material);
+    if (!areas) return tl::unexpected(areas.error());
+    return nanodlp_texts(facts, *areas);
+}
+
+Status fill_stack(const Archive& archive, int material, Format format, ZipWriter& zip) {
+    const std::string prefix = file_word(archive.manifest().name);
+    const Result<std::vector<NamedText>> texts = texts_of(archive, material, format, prefix);
+    if (!texts) return tl::unexpected(texts.error());
+    for (const auto& [name, text] : *texts) {
+        if (auto status = zip.add(name, text, ZipWriter::Method::deflate); !status) return status;
+    }
+    if (format == Format::sl1 && archive.has_file(thumbnail_file)) {
+        const Result<std::string> picture = archive.file(thumbnail_file);
+        if (!picture) return tl::unexpected(picture.error());
+        if (auto status = zip.add("thumbnail/thumbnail400x400.png", *picture, ZipWriter::Method::store); !status)
+            return status;
+    }
+    const Status images = each_layer(archive, material, [&](std::size_t k, std::string png) {
+        return zip.add(image_name(format, prefix, k), std::move(png), ZipWriter::Method::store);
+    });
+    return images ? zip.close() : images;
+}
+
+Status write_stack(const Archive& archive, int material, Format format, const fs::path& path) {
+    const fs::path aside = path.string() + ".partial";
+    std::error_code code, ignored;
+    auto zip = ZipWriter::create(aside);
+    Status status = zip ? fill_stack(archive, material, format, *zip) : tl::unexpected(zip.error());
+    if (status) {
+        fs::rename(aside, path, code);
+        if (code) status = failure("{}: cannot be written: {}", path.string(), code.message());
+    }
+    if (!status) fs::remove(aside, ignored);
+    return status;
+}
+
+Status write_vats(const Archive& archive, const fs::path& folder) {
+    const auto count = archive.manifest().materials.size();
+    if (count > 26) return input_error("{} materials: vats have the letters a to z", count);
+    return write_folder(folder, "vats.txt", [&](const fs::path& inside) -> Status {
+        std::string list;
+        for (std::size_t m = 0; m < count; ++m) {
+            const char letter = static_cast<char>('a' + m);
+            const Material& material = archive.manifest().materials[m];
+            list += fmt::format("vat_{}: {} in {}\n", letter, material.name, material.resin);
+            const fs::path vat = inside / fmt::format("vat_{}", letter);
+            std::error_code code;
+            fs::create_directory(vat, code);
+            const Status images = each_layer(archive, static_cast<int>(m), [&](std::size_t k, const std::string& png) {
+                return write_file(vat / fmt::format("vat{}_layer_{:04}.png", letter, k), png);
+            });
+            if (!images) return images;
+        }
+        return write_file(inside / "vats.txt", list);
+    });
+}
+
+/// The formats know one thickness of all layers.
+Status check_alike(const Manifest& m, Format format) {
+    if (format != Format::sl1 && format != Format::nanodlp) return {};
+    for (std::size_t k = 1; k < m.layers.size(); ++k) {
+        if (m.layers[k].thickness_um != m.layers[0].thickness_um)
+            return input_error("layer {} is {} um thick, layer 0 {} um: this format knows layers of one thickness only",
+                               k, m.layers[k].thickness_um, m.layers[0].thickness_um);
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<Format> format_from(const std::string& name) {
+    if (name == "sl1") return Format::sl1;
+    if (name == "nanodlp") return Format::nanodlp;
+    if (name == "zip") return Format::zip;
+    if (name == "vats") return Format::vats;
+    return input_error("format \"{}\": must be sl1, nanodlp, zip or vats", name);
+}
+
+Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder) {
+    if (auto status = check_alike(archive.manifest(), format); !status) return tl::unexpected(status.error());
+    if (format == Format::vats) {
+        if (auto status = write_vats(archive, folder); !status) return tl::unexpected(status.error());
+        return std::vector<fs::path>{folder};
+    }
+    std::error_code code;
+    fs::create_directories(folder, code);
+    if (!fs::is_directory(folder)) return failure("{}: cannot be made a folder", folder.string());
+    const char* extension = format == Format::sl1 ? "sl1" : format == Format::nanodlp ? "nanodlp" : "zip";
+    std::vector<fs::path> written;
+    const Manifest& manifest = archive.manifest();
+    for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
+        const std::string stem = file_word(manifest.name) + "_" + file_word(manifest.materials[m].name);
+        fs::path path = folder / fmt::format("{}.{}", stem, extension);
+        if (std::find(written.begin(), written.end(), path) != written.end())
+            path = folder / fmt::format("{}_{}.{}", stem, m, extension);
+        if (auto status = write_stack(archive, static_cast<int>(m), format, path); !status)
+            return tl::unexpected(status.error());
+        written.push_back(path);
+    }
+    return written;
+}
+
+}  // namespace pliant::job

@@ -1,0 +1,155 @@
+#include "printing/job/image_stack.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "base/core/files.hpp"
+#include "base/zip/zip_file.hpp"
+#include "printing/job/png.hpp"
+#include "printing/job/stack_height.hpp"
+
+namespace pliant::job {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t max_image_bytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t max_text_bytes = std::uint64_t{1} << 22;
+constexpr std::uint64_t max_entries = 1 << 22;
+
+struct Entry {
+    std::string name;
+    long number;
+};
+
+/// "layers/cone_" and 12 of "layers/cone_0012.png".
+std::optional<std::pair<std::string, long>> split_name(const std::string& name) {
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!lower.ends_with(".png") || lower.find("thumbnail") != std::string::npos ||
+        lower.find("preview") != std::string::npos)
+        return std::nullopt;
+    const std::size_t end = name.size() - 4;
+    std::size_t begin = end;
+    while (begin > 0 && std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0) --begin;
+    if (begin == end || end - begin > 9) return std::nullopt;
+    return std::pair(name.substr(0, begin), std::stol(name.substr(begin, end - begin)));
+}
+
+/// The entries of the largest group, in order.
+Result<std::vector<Entry>> choose(const std::vector<std::string>& names, const std::string& path) {
+    std::map<std::string, std::vector<Entry>> groups;
+    for (const std::string& name : names) {
+        if (const auto split = split_name(name)) groups[split->first].push_back({name, split->second});
+    }
+    if (groups.empty()) return input_error("{}: holds no layer images, PNG files whose names end with a number", path);
+    auto& largest = std::max_element(groups.begin(), groups.end(), [](const auto& l, const auto& r) {
+                        return l.second.size() < r.second.size();
+                    })->second;
+    std::sort(largest.begin(), largest.end(), [](const Entry& l, const Entry& r) { return l.number < r.number; });
+    if (largest.front().number > 1)
+        return input_error("{}: the first image is {}, one with 0 or 1 is needed", path, largest.front().name);
+    for (std::size_t i = 1; i < largest.size(); ++i) {
+        if (largest[i].number != largest[i - 1].number + 1)
+            return input_error("{}: {} follows {}: numbers must rise by one", path, largest[i].name,
+                               largest[i - 1].name);
+    }
+    return std::move(largest);
+}
+
+Result<std::vector<std::string>> names_in(const fs::path& path, const ZipReader* zip) {
+    std::vector<std::string> names;
+    if (zip != nullptr) {
+        if (zip->entry_count() > max_entries)
+            return input_error("{}: more than {} entries", path.string(), max_entries);
+        for (std::uint64_t i = 0; i < zip->entry_count(); ++i) names.push_back(zip->name(i));
+        return names;
+    }
+    std::error_code code;
+    for (fs::directory_iterator it(path, code), end; !code && it != end; it.increment(code)) {
+        if (it->is_regular_file()) names.push_back(it->path().filename().string());
+        if (names.size() > max_entries) return input_error("{}: more than {} files", path.string(), max_entries);
+    }
+    if (code) return input_error("{}: {}", path.string(), code.message());
+    return names;
+}
+
+}  // namespace
+
+struct ImageStack::State {
+    fs::path path;
+    std::optional<ZipReader> zip;
+    std::vector<Entry> entries;
+    PngSize size;
+    std::optional<double> layer_um;
+
+    [[nodiscard]] Result<std::string> read(const std::string& name, std::uint64_t most) const {
+        return zip ? zip->read(name, most) : read_file(path / name, most);
+    }
+    [[nodiscard]] Result<std::string> bytes(std::size_t i) const { return read(entries[i].name, max_image_bytes); }
+};
+
+ImageStack::ImageStack(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ImageStack::ImageStack(ImageStack&&) noexcept = default;
+ImageStack& ImageStack::operator=(ImageStack&&) noexcept = default;
+ImageStack::~ImageStack() = default;
+
+Result<ImageStack> ImageStack::open(const fs::path& path) {
+    auto state = std::make_unique<State>();
+    state->path = path;
+    if (!fs::is_directory(path)) {
+        auto zip = ZipReader::open(path);
+        if (!zip) return tl::unexpected(zip.error());
+        state->zip = std::move(*zip);
+    }
+    const auto names = names_in(path, state->zip ? &*state->zip : nullptr);
+    if (!names) return tl::unexpected(names.error());
+    auto entries = choose(*names, path.string());
+    if (!entries) return tl::unexpected(entries.error());
+    state->entries = std::move(*entries);
+    const auto layer_um =
+        stated_layer_um(*names, [&](const std::string& name) { return state->read(name, max_text_bytes); });
+    if (!layer_um) return input_error("{}: {}", path.string(), layer_um.error().message);
+    state->layer_um = *layer_um;
+    const auto first = state->bytes(0);
+    if (!first) return tl::unexpected(first.error());
+    const auto size = any_png_size(*first, fmt::format("{}: {}", path.string(), state->entries[0].name));
+    if (!size) return tl::unexpected(size.error());
+    state->size = *size;
+    return ImageStack(std::move(state));
+}
+
+int ImageStack::layer_count() const {
+    return static_cast<int>(state_->entries.size());
+}
+
+int ImageStack::width_px() const {
+    return state_->size.width_px;
+}
+
+int ImageStack::height_px() const {
+    return state_->size.height_px;
+}
+
+std::optional<double> ImageStack::layer_um() const {
+    return state_->layer_um;
+}
+
+Result<slice::Image> ImageStack::image(int layer) const {
+    const auto i = static_cast<std::size_t>(layer);
+    const auto bytes = state_->bytes(i);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return decode_any_png(*bytes, state_->size, fmt::format("{}: {}", state_->path.string(), state_->entries[i].name));
+}
+
+bool is_image_stack(const fs::path& path) {
+    if (fs::is_directory(path)) return true;
+    const auto zip = ZipReader::open(path);
+    if (!zip || zip->has("_rels/.rels") || zip->has("manifest.json")) return false;
+    const auto names = names_in(path, &*zip);
+    return names && std::any_of(names->begin(), names->end(), [](const std::string& n) { return n.ends_with(".png"); });
+}
+
+}  // namespace pliant::job

@@ -1,0 +1,113 @@
+#include "printing/job/stack_height.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace pliant::job {
+namespace {
+
+constexpr double um_per_mm = 1000;
+
+/// Values of a key as they stand in a file; several where the file has several.
+using Values = std::vector<std::string>;
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n\"";
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(blanks)));
+    const std::size_t last = text.find_last_not_of(blanks);
+    return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
+/// "key = value" lines.
+Values ini_values(std::string_view text, std::string_view key) {
+    Values values;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(text.size(), line.size() + 1));
+        const std::size_t equals = line.find('=');
+        if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != key) continue;
+        const std::string_view value = line.substr(equals + 1);
+        values.emplace_back(trimmed(value.substr(0, value.find('#'))));
+    }
+    return values;
+}
+
+/// <key>value</key>
+Values xml_values(std::string_view text, std::string_view key) {
+    Values values;
+    const std::string open = fmt::format("<{}>", key);
+    for (std::size_t at = text.find(open); at != std::string_view::npos; at = text.find(open, at + 1)) {
+        const std::string_view rest = text.substr(at + open.size());
+        values.emplace_back(trimmed(rest.substr(0, rest.find('<'))));
+    }
+    return values;
+}
+
+/// The member of a JSON object; a text that is no JSON has none.
+Values json_values(std::string_view text, std::string_view key) {
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object()) return {};
+    const auto found = json.find(key);
+    if (found == json.end()) return {};
+    return {std::string(trimmed(found->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)))};
+}
+
+struct Source {
+    std::string_view file;  ///< whole name, or with '*' in front how it ends
+    std::string_view key;
+    Values (*values)(std::string_view text, std::string_view key);
+    double um;  ///< of its unit
+};
+constexpr std::array<Source, 7> sources = {Source{"config.ini", "layerHeight", ini_values, um_per_mm},
+                                           Source{"prusaslicer.ini", "layer_height", ini_values, um_per_mm},
+                                           Source{"slicer.json", "Thickness", json_values, 1},
+                                           Source{"profile.json", "Depth", json_values, 1},
+                                           Source{"slice.conf", "thickness", ini_values, um_per_mm},
+                                           Source{"*.slicing", "SliceHeight", xml_values, um_per_mm},
+                                           Source{"manifest.uvtools", "LayerHeight", xml_values, um_per_mm}};
+
+bool is_named(const std::string& name, std::string_view pattern) {
+    return pattern.starts_with('*') ? name.ends_with(pattern.substr(1)) : name == pattern;
+}
+
+Result<double> height_um(const std::string& value, const Source& source, const std::string& file) {
+    constexpr double most_um = 10000;
+    char* end = nullptr;
+    const double um = std::strtod(value.c_str(), &end) * source.um;
+    if (value.empty() || *end != '\0' || !(um > 0 && um < most_um))
+        return input_error("{}: {} = \"{}\": a layer height above 0 and below 10 mm is needed", file, source.key,
+                           value);
+    return um;
+}
+
+}  // namespace
+
+Result<std::optional<double>> stated_layer_um(const std::vector<std::string>& names, const SideText& text) {
+    for (const Source& source : sources) {
+        const auto file =
+            std::find_if(names.begin(), names.end(), [&](const std::string& n) { return is_named(n, source.file); });
+        if (file == names.end()) continue;
+        const Result<std::string> content = text(*file);
+        if (!content) return tl::unexpected(content.error());
+        std::optional<double> found;
+        for (const std::string& value : source.values(*content, source.key)) {
+            const Result<double> um = height_um(value, source, *file);
+            if (!um) return tl::unexpected(um.error());
+            constexpr double same_um = 1e-3;
+            if (found && std::fabs(*found - *um) > same_um)
+                return input_error("{}: {} is {:g} um and {:g} um: layers of one height are needed", *file, source.key,
+                                   *found, *um);
+            found = *um;
+        }
+        if (found) return found;
+    }
+    return std::nullopt;
+}
+
+}  // namespace pliant::job

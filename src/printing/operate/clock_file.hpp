@@ -1,0 +1,32 @@
+// The clock of a virtual printer, shared with its host through a file: however slow the computer is, both agree on how
+// long the light was on.
+#pragma once
+
+#include <filesystem>
+
+#include "base/core/error.hpp"
+#include "printing/wire/devices.hpp"
+
+namespace pliant::operate {
+
+class ClockFile final : public host::Clock {
+public:
+    /// For the printer: makes the file.
+    [[nodiscard]] static Result<ClockFile> create(const std::filesystem::path& path);
+    /// For the host. Errors: no such file, or no clock.
+    [[nodiscard]] static Result<ClockFile> open(const std::filesystem::path& path);
+    ClockFile(ClockFile&& other) noexcept;
+    ClockFile& operator=(ClockFile&&) = delete;
+    ~ClockFile() override;
+
+    void set(double seconds) const;
+    [[nodiscard]] double now() const override;
+    void sleep(double seconds) override;
+
+private:
+    explicit ClockFile(double* seconds) : seconds_(seconds) {}
+    [[nodiscard]] static Result<ClockFile> map(const std::filesystem::path& path, bool make);
+    double* seconds_ = nullptr;
+};
+
+}  // namespace pliant::operate

@@ -1,0 +1,85 @@
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "printing/job/png.hpp"
+#include "printing/operate/clock_file.hpp"
+#include "printing/operate/layer_command.hpp"
+#include "printing/operate/picture_projector.hpp"
+
+using namespace pliant;
+using namespace pliant::operate;
+
+TEST_CASE("a folder shows the picture as long as there is light") {
+    const pliant::test::Folder folder;
+    {
+        PictureProjector projector(folder.path());
+        REQUIRE(projector.black());
+        REQUIRE(projector.show({2, 1, {0, 200}}));
+        const auto image = job::decode_png(read_file(projector.shown()).value(), {2, 1}, "shown").value();
+        CHECK(image.pixels == std::vector<std::uint8_t>{0, 200});
+        REQUIRE(projector.black());
+        CHECK_FALSE(std::filesystem::exists(projector.shown()));
+        REQUIRE(projector.show({2, 1, {0, 200}}));
+    }
+    CHECK(std::filesystem::is_empty(folder.path()));
+    PictureProjector nowhere(folder.path() / "none");
+    CHECK_FALSE(nowhere.show({2, 1, {0, 200}}));
+}
+
+TEST_CASE("the command after a layer knows the layer; one that fails or hangs is reported") {
+    const pliant::test::Folder folder;
+    const std::string file = (folder.path() / "layer").string();
+    CHECK(run_layer_command("echo -n $PLIANT_LAYER > " + file, 12));
+    CHECK(read_file(file).value() == "12");
+    CHECK_FALSE(run_layer_command("exit 3", 0));
+    CHECK(run_layer_command("sleep 60", 0, 0.05).error().message.find("took over") != std::string::npos);
+}
+
+TEST_CASE("what a command has started is ended with it") {
+    const pliant::test::Folder folder;
+    const auto late = folder.path() / "late";
+    const Status status = run_layer_command("(sleep 0.3; touch " + late.string() + ") & wait", 0, 0.05);
+    CHECK(status.error().message.find("took over") != std::string::npos);
+    ::usleep(600000);
+    CHECK_FALSE(std::filesystem::exists(late));
+}
+
+TEST_CASE("host and virtual printer share a clock through a file") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "clock";
+    CHECK_FALSE(ClockFile::open(path).has_value());
+    auto printer = ClockFile::create(path);
+    REQUIRE(printer.has_value());
+    auto host = ClockFile::open(path);
+    REQUIRE(host.has_value());
+    CHECK(host->now() == 0);
+    printer->set(12.5);
+    CHECK(host->now() == 12.5);
+    // The host sleeps for as long as the printer's time takes, however long that is.
+    std::thread time([&] {
+        for (int i = 1; i <= 20; ++i, ::usleep(1000)) printer->set(12.5 + 0.1 * i);
+    });
+    host->sleep(1.5);
+    CHECK(host->now() >= 14);
+    time.join();
+    ClockFile moved = std::move(*host);
+    CHECK(moved.now() == 14.5);
+}
+
+TEST_CASE("a file that is no clock is refused, and stays as it is") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "clock";
+    for (const std::string text : {"", "1234567", "123456789"}) {
+        REQUIRE(write_file(path, text));
+        const auto clock = ClockFile::open(path);
+        REQUIRE_FALSE(clock.has_value());
+        CHECK(clock.error().message == path.string() + ": not the clock of a virtual printer");
+        CHECK(read_file(path).value() == text);
+    }
+    CHECK_FALSE(ClockFile::create(folder.path() / "none/clock").has_value());
+}

@@ -1,0 +1,59 @@
+// The machine at a serial port, with all that a print on it needs: wire, projector, clock, emergency line, and a guard
+// that outlives the host. Whoever prints, the command line or a page, does it with this.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/core/error.hpp"
+#include "printing/host/control_types.hpp"
+#include "printing/operate/clock_file.hpp"
+#include "printing/operate/print_job.hpp"
+#include "printing/operate/process_guard.hpp"
+#include "printing/screen/image_ahead.hpp"
+#include "printing/wire/emergency_line.hpp"
+#include "printing/wire/scaled_time.hpp"
+#include "printing/wire/steady_clock.hpp"
+
+namespace pliant::operate {
+
+struct PortOptions {
+    std::string device;
+    std::string projector;             ///< number of a display, or a folder
+    double speed = 1;                  ///< seconds of the machine in one of the wall: above 1 for virtual printers only
+    std::filesystem::path clock_file;  ///< of a virtual printer; "": the wall's clock
+    std::string emergency_line;        ///< as host::parse_emergency_line() reads it; "": the printer file's
+};
+
+class PortStation {
+public:
+    /// Opens the projector (dark) and starts the guard beside the job's journal; the port itself is opened by the
+    /// control. The images of `ready` are decoded ahead from now on: the station must outlive the control. Errors: a
+    /// speed out of range, no such projector, no such clock, an emergency line that cannot be pulled.
+    [[nodiscard]] static Result<std::unique_ptr<PortStation>> open(PortOptions options, ReadyJob& ready);
+    PortStation(const PortStation&) = delete;
+    PortStation& operator=(const PortStation&) = delete;
+
+    [[nodiscard]] host::ControlSetup setup(const machine::Printer& printer);
+
+private:
+    PortStation(PortOptions options, std::optional<ClockFile> file);
+    [[nodiscard]] host::Clock& clock();
+
+    PortOptions options_;
+    std::optional<ClockFile> file_;
+    host::SteadyClock steady_;
+    host::ScaledClock scaled_;
+    std::optional<ProcessGuard> guard_;
+    std::unique_ptr<host::EmergencyLine> emergency_line_;  ///< null: none
+    std::unique_ptr<host::Projector> projector_;
+    std::unique_ptr<host::ImageAhead> ahead_;
+};
+
+/// What a control needs to print at `device`, a serial port or a pseudo-terminal.
+[[nodiscard]] host::ControlSetup port_setup(const std::string& device, double speed, const machine::Printer& printer,
+                                            host::Projector& projector, host::Clock& clock, host::Guard* guard);
+
+}  // namespace pliant::operate

@@ -1,0 +1,159 @@
+#include "printing/operate/process_guard.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace pliant::operate {
+namespace {
+
+struct Message {
+    GuardWord word = GuardWord::farewell;
+    long light = 0;
+    double at_s = 0;
+};
+
+/// The last light that the guard has heard of.
+struct LastLight {
+    long number = 0;  ///< 0: none yet
+    GuardWord word = GuardWord::dark;
+    double lit_at_s = 0;
+    double on_s = 0;
+};
+
+std::string boot_name() {
+    std::ifstream file("/proc/sys/kernel/random/boot_id");
+    std::string name;
+    std::getline(file, name);
+    return name.empty() ? "-" : name;
+}
+
+double monotonic_s() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+double now_of(const ProcessGuard::Options& options) {
+    return options.clock != nullptr ? options.clock->now() : monotonic_s() * options.clock_speed;
+}
+
+/// What the guard does when the host has died. The picture goes first.
+void host_died(const ProcessGuard::Options& options, const std::string& boot, const LastLight& last) {
+    double on_s = last.on_s;
+    if (last.word == GuardWord::lit) {
+        if (!options.shown.empty()) ::unlink(options.shown.c_str());
+        on_s = now_of(options) - last.lit_at_s;
+    }
+    if (last.number == 0) return;
+    std::array<char, 160> line{};
+    const int length = std::snprintf(line.data(), line.size(), "%s %ld on %.6f\n", boot.c_str(), last.number, on_s);
+    const int file = ::open(options.witness.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (file < 0) return;
+    if (::write(file, line.data(), static_cast<std::size_t>(length)) == length) ::fsync(file);
+    ::close(file);
+}
+
+/// What else this program has open (sockets, the journal, other guards' pipes) must not stay open in the guard.
+void close_all_but(int kept) {
+    if (kept > 3) ::close_range(3, static_cast<unsigned>(kept) - 1, 0);
+    ::close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
+}
+
+/// The guard's life. Nothing here waits for another thread: of those the guard has none, whatever they held.
+[[noreturn]] void stand_guard(int pipe, const ProcessGuard::Options& options, const std::string& boot) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
+    ::setsid();
+    LastLight last;
+    for (;;) {
+        Message message;
+        const ssize_t got = ::read(pipe, &message, sizeof message);
+        if (got < 0 && errno == EINTR) continue;
+        if (got != sizeof message) break;
+        if (message.word == GuardWord::farewell) ::_exit(0);
+        last.word = message.word;
+        if (message.word == GuardWord::announced) last.number = message.light, last.on_s = 0;
+        if (message.word == GuardWord::lit) last.lit_at_s = message.at_s;
+        if (message.word == GuardWord::dark) last.on_s = message.at_s - last.lit_at_s;
+    }
+    host_died(options, boot, last);
+    ::_exit(0);
+}
+
+}  // namespace
+
+Result<ProcessGuard> ProcessGuard::start(const Options& options) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no guard: {}", std::strerror(errno));
+    const std::string boot = boot_name();
+    const pid_t process = ::fork();
+    if (process < 0) return failure("no guard: {}", std::strerror(errno));
+    if (process == 0) {
+        close_all_but(ends[0]);
+        stand_guard(ends[0], options, boot);
+    }
+    ::close(ends[0]);
+    return ProcessGuard(ends[1], process, options);
+}
+
+ProcessGuard::ProcessGuard(ProcessGuard&& other) noexcept
+    : pipe_(std::exchange(other.pipe_, -1)),
+      process_(std::exchange(other.process_, -1)),
+      options_(std::move(other.options_)) {}
+
+ProcessGuard::~ProcessGuard() {
+    if (pipe_ < 0) return;
+    tell(GuardWord::farewell);
+    ::close(pipe_);
+    ::waitpid(process_, nullptr, 0);
+}
+
+/// Short enough to arrive whole or not at all.
+void ProcessGuard::tell(GuardWord word, long light, double at_s) const {
+    const Message message{word, light, at_s};
+    ssize_t put = 0;
+    do {
+        put = ::write(pipe_, &message, sizeof message);
+    } while (put < 0 && errno == EINTR);
+}
+
+void ProcessGuard::announced(long light) {
+    tell(GuardWord::announced, light);
+}
+
+void ProcessGuard::lit(double now_s) {
+    tell(GuardWord::lit, 0, now_s);
+}
+
+void ProcessGuard::dark(double now_s) {
+    tell(GuardWord::dark, 0, now_s);
+}
+
+std::optional<double> ProcessGuard::lit_s(long light) {
+    const std::string boot = boot_name();
+    std::ifstream file(options_.witness);
+    std::optional<double> found;
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        std::string when_booted, word;
+        long seen = 0;
+        double on_s = 0;
+        const bool whole = words >> when_booted >> seen >> word >> on_s && word == "on";
+        if (whole && when_booted == boot && seen == light) found = on_s;
+    }
+    return found;
+}
+
+}  // namespace pliant::operate

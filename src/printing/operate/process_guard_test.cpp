@@ -1,0 +1,110 @@
+#include "printing/operate/process_guard.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <ctime>
+#include <fstream>
+#include <functional>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::operate;
+
+namespace {
+
+/// A host that does so much with light 17 and is killed.
+void die(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& deeds) {
+    const pid_t host = ::fork();
+    if (host == 0) {
+        auto guard = ProcessGuard::start(options);
+        std::ofstream(options.shown) << "light";
+        guard->announced(17);
+        deeds(*guard);
+        ::kill(::getpid(), SIGKILL);
+    }
+    ::waitpid(host, nullptr, 0);
+}
+
+double now_s() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// What the next host hears of light 17; the guard of the last one may still be writing.
+std::optional<double> heard(const ProcessGuard::Options& options) {
+    auto guard = ProcessGuard::start(options);
+    REQUIRE(guard);
+    std::optional<double> on_s;
+    for (int i = 0; i < 500 && !on_s; ++i, ::usleep(10000)) on_s = guard->lit_s(17);
+    CHECK_FALSE(guard->lit_s(18));
+    return on_s;
+}
+
+}  // namespace
+
+TEST_CASE("when the host is killed in the light, the guard makes dark and says how long it was on") {
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
+    const double before_s = now_s();
+    die(options, [](ProcessGuard& guard) {
+        guard.lit(now_s());
+        ::usleep(200000);
+    });
+    const auto on_s = heard(options);
+    CHECK_FALSE(std::filesystem::exists(options.shown));
+    REQUIRE(on_s);
+    CHECK(*on_s > 0.19);
+    CHECK(*on_s <= now_s() - before_s);
+}
+
+TEST_CASE("a host that is killed between its note and the light has given none") {
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
+    die(options, [](ProcessGuard&) {});
+    CHECK(heard(options) == 0);
+    CHECK(std::filesystem::exists(options.shown));
+}
+
+TEST_CASE("a host that is killed between the end of the light and its note: it was on until then") {
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
+    die(options, [&](ProcessGuard& guard) {
+        guard.lit(100);
+        guard.dark(102.5);
+    });
+    const auto on_s = heard(options);
+    REQUIRE(on_s);
+    CHECK(*on_s == near(2.5, {.relative = 1e-12}));
+}
+
+TEST_CASE("a host that ends in peace leaves no witness") {
+    const pliant::test::Folder folder;
+    const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
+    {
+        auto guard = ProcessGuard::start(options);
+        REQUIRE(guard);
+        guard->announced(3);
+        guard->lit(1);
+        guard->dark(2);
+    }
+    CHECK_FALSE(std::filesystem::exists(options.witness));
+}
+
+TEST_CASE("the guard keeps nothing open that the program had open") {
+    const pliant::test::Folder folder;
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    auto guard = ProcessGuard::start({folder.path() / "witness", folder.path() / "shown.png", 1});
+    REQUIRE(guard);
+    ::close(ends[1]);
+    char byte = 0;
+    CHECK(::read(ends[0], &byte, 1) == 0);  // would wait for good if the guard held the other end
+    ::close(ends[0]);
+}

@@ -1,0 +1,36 @@
+// A job that has been proved: what stands between a job file and everything that prints it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/plan/plan.hpp"
+
+namespace pliant::operate {
+
+struct ProvedJob {
+    job::Archive archive;
+    machine::Printer printer;  ///< from the job's own printer.toml, or the other one
+    plan::Plan plan;
+    std::string gcode;
+    std::vector<std::string> warnings;  ///< what could not be proved
+};
+
+/// How closely images are looked at.
+enum class Pixels {
+    fingerprints,  ///< every byte is that of the manifest's fingerprint; of a job without any, as `areas`
+    areas          ///< each is decoded too: it has the manifest's area, and no two light the same pixel
+};
+
+/// Opens a job and proves it: every entry against its fingerprint, the images as `pixels` says, the program against
+/// manifest and printer (plan::prove_program). Nothing is printed that has not come through here. Errors: one line that
+/// names file, entry or G-code line, and layer. A job of format 1 has no fingerprints: that is a warning. With an
+/// `other` printer the program must print the job on that one.
+[[nodiscard]] Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels = Pixels::fingerprints,
+                                          const machine::Printer* other = nullptr);
+
+}  // namespace pliant::operate

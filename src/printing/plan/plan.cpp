@@ -1,0 +1,196 @@
+#include "printing/plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "printing/machine/working_curve.hpp"
+#include "printing/plan/assign.hpp"
+#include "printing/plan/least_cost.hpp"
+#include "printing/plan/print_sequence.hpp"
+#include "printing/plan/solution_use.hpp"
+#include "printing/plan/swap.hpp"
+
+namespace pliant::plan {
+namespace {
+
+using machine::Printer;
+
+Status check_projector(const job::Manifest& job, const machine::Projector& projector) {
+    const bool same = job.width_px == projector.width_px && job.height_px == projector.height_px &&
+                      std::abs(job.pixel_um - projector.pixel_um) <= 1e-6 * projector.pixel_um;
+    if (same) return {};
+    return input_error(
+        "{} was sliced for {} x {} pixels of {:.6g} um, the projector has {} x {} of {:.6g} um; slice it again",
+        job.name, job.width_px, job.height_px, job.pixel_um, projector.width_px, projector.height_px,
+        projector.pixel_um);
+}
+
+Status check_materials(const job::Manifest& job) {
+    for (const job::Material& m : job.materials) {
+        const bool good = m.exposure_s > 0 && m.exposure_s <= 3600 && m.bottom_exposure_s <= 3600 &&
+                          (m.bottom_exposure_s > 0 || job.bottom_layers == 0);
+        if (!good) return input_error("{}: material \"{}\" needs exposures from 0 to 3600 s", job.name, m.name);
+    }
+    return {};
+}
+
+Status check_image(const job::Manifest& job, std::size_t layer, const job::LayerImage& image) {
+    if (image.material < 0 || image.material >= static_cast<int>(job.materials.size())) {
+        return input_error("{}: layer {} prints material {}, there are {}", job.name, layer, image.material,
+                           job.materials.size());
+    }
+    const bool printable = std::all_of(image.file.begin(), image.file.end(), [](char c) { return c >= ' '; });
+    if (image.file.empty() || !printable || image.file.front() == ' ' || image.file.back() == ' ') {
+        return input_error("{}: layer {} has an image without a usable name", job.name, layer);
+    }
+    if (!(image.area_mm2 >= 0) || !std::isfinite(image.area_mm2)) {
+        return input_error("{}: layer {} has an image with an impossible area", job.name, layer);
+    }
+    return {};
+}
+
+Status check_layers(const job::Manifest& job, const Printer& printer) {
+    int below_um = 0;
+    for (std::size_t i = 0; i < job.layers.size(); ++i) {
+        const job::Layer& layer = job.layers[i];
+        if (layer.z_um <= below_um || layer.thickness_um <= 0) {
+            return input_error("{}: layer {} at {} um does not lie above {} um", job.name, i, layer.z_um, below_um);
+        }
+        below_um = layer.z_um;
+        for (const job::LayerImage& image : layer.images) {
+            if (Status status = check_image(job, i, image); !status) return status;
+        }
+    }
+    if (below_um <= printer.platform.build_height_um) return {};
+    return input_error("{} is {:.2f} mm tall, {} builds {:.2f} mm", job.name, below_um / 1000.0, printer.name,
+                       printer.platform.build_height_um / 1000.0);
+}
+
+Status check_job(const job::Manifest& job, const Printer& printer) {
+    if (Status status = check_projector(job, printer.projector); !status) return status;
+    if (Status status = check_materials(job); !status) return status;
+    return check_layers(job, printer);
+}
+
+/// The distinct vats of each layer, in the order of its materials.
+std::vector<VatList> vats_by_layer(const std::vector<std::vector<int>>& vat_of_image) {
+    std::vector<VatList> layers;
+    for (const std::vector<int>& images : vat_of_image) {
+        VatList vats;
+        for (const int vat : images) {
+            if (std::find(vats.begin(), vats.end(), vat) == vats.end()) vats.push_back(vat);
+        }
+        layers.push_back(std::move(vats));
+    }
+    return layers;
+}
+
+/// Seconds of every change between vats that the job uses, with what avoiding a pair is worth.
+ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
+    ChangeCosts costs(static_cast<int>(printer.vats.size()));
+    for (const VatUse& from : plan.vats) {
+        Sequence s = standing_at(printer, from.slot);
+        store_vat(s, from.slot);
+        costs.store[static_cast<std::size_t>(from.vat)] = s.seconds().total;
+        costs.load[static_cast<std::size_t>(from.vat)] = load_seconds(printer, from.slot).total;
+        for (const VatUse& to : plan.vats) {
+            if (to.vat == from.vat) continue;
+            costs.swap[costs.at(from.vat, to.vat)] =
+                swap_seconds(printer, from.slot, to.slot).total + printer.penalty_s(from.vat, to.vat);
+        }
+    }
+    return costs;
+}
+
+/// The printer with the resins that the plan fills in: cleaning goes by pairs of them.
+Printer with_resins(const Plan& plan, Printer printer) {
+    for (const VatUse& use : plan.vats) printer.vats[static_cast<std::size_t>(use.vat)].resin = use.resin;
+    return printer;
+}
+
+void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer& printer, OrderRule rule) {
+    const ChangeCosts costs = change_costs(plan, printer);
+    const LeastCost least = least_cost_order(layers, costs);
+    if (!least.exact)
+        plan.warnings.emplace_back("layers of more than 12 vats: their order is near the best, not proved");
+    for (const OrderRule each : {OrderRule::naive, OrderRule::thesis, OrderRule::least_cost}) {
+        std::vector<VatList> order = each == OrderRule::least_cost ? least.order : order_vats(layers, each);
+        plan.compared.push_back({each, count_swaps(order), change_cost(order, costs)});
+        if (each == rule) plan.order = std::move(order);
+    }
+    if (rule == OrderRule::fewest_swaps) plan.order = order_vats(layers, rule);
+    plan.rule = rule;
+    plan.least_change_s = least.cost;
+    plan.swaps = count_swaps(plan.order);
+    plan.swap_lower_bound = fewest_swaps(layers);
+}
+
+/// A blank layer below a printed one leaves a gap that the light must bridge.
+void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) {
+    int below_um = 0;
+    int gaps = 0;
+    for (const job::Layer& layer : job.layers) {
+        if (layer.images.empty()) continue;
+        for (const job::LayerImage& image : layer.images) {
+            const auto* resin = printer.find_resin(job.materials[static_cast<std::size_t>(image.material)].resin);
+            if (resin == nullptr || layer.z_um - below_um <= resin->cure_depth_um) continue;
+            ++gaps;
+            break;
+        }
+        below_um = layer.z_um;
+    }
+    if (gaps == 0) return;
+    plan.warnings.push_back(fmt::format("{} layers lie higher above the one below than their resin cures", gaps));
+}
+
+}  // namespace
+
+Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRule rule) {
+    if (Status status = check_job(job, printer); !status) return tl::unexpected(status.error());
+    auto assignment = assign_vats(job, printer);
+    if (!assignment) return tl::unexpected(assignment.error());
+    Plan plan;
+    plan.job = job.name;
+    plan.printer = printer.name;
+    plan.layers = static_cast<int>(job.layers.size());
+    plan.vats = std::move(assignment->vats);
+    plan.vat_of_material = std::move(assignment->vat_of_material);
+    plan.refills = std::move(assignment->refills);
+    plan.warnings = std::move(assignment->warnings);
+    plan.vat_of_image = std::move(assignment->vat_of_image);
+    choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
+    warn_of_gaps(job, printer, plan);
+    PrintTimes times = print_times(plan, job, with_resins(plan, printer));
+    plan.seconds = times.all;
+    plan.layer_seconds = std::move(times.layers);
+    reckon_solution(plan, job, with_resins(plan, printer));
+    return plan;
+}
+
+std::string write_gcode(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const Printer filled = with_resins(plan, printer);
+    return print_sequence(plan, job, filled).text();
+}
+
+Seconds program_seconds(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const Printer filled = with_resins(plan, printer);
+    return print_sequence(plan, job, filled).seconds();
+}
+
+machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, Printer printer) {
+    printer = with_resins(plan, std::move(printer));
+    for (const VatUse& use : plan.vats) {
+        if (printer.find_resin(use.resin) != nullptr) continue;
+        const job::Material& m = job.materials[static_cast<std::size_t>(use.materials.front())];
+        // A resin like most: its light cures two layers, and two depths of penetration.
+        const int cure_depth_um = 2 * printer.layer_um;
+        const double critical_J_m2 = machine::irradiance_W_m2(printer) * m.exposure_s * std::exp(-2);
+        printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job.bottom_layers, cure_depth_um, 0.8,
+                                  cure_depth_um / 2.0, critical_J_m2});
+    }
+    return printer;
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,219 @@
+#include "printing/plan/plan.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "printing/machine/working_curve.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/test_jobs.hpp"
+
+using namespace pliant;
+using namespace pliant::plan;
+using pliant::test::holds;
+
+namespace {
+
+const std::vector<std::string> two = {"semi-flex", "rigid-flex"};
+
+std::vector<std::vector<int>> repeated(const std::vector<int>& layer, std::size_t times) {
+    return std::vector<std::vector<int>>(times, layer);
+}
+
+Plan planned(const job::Manifest& job, const machine::Printer& printer) {
+    auto plan = make_plan(job, printer);
+    REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
+    return *plan;
+}
+
+std::string error_of(const job::Manifest& job, const machine::Printer& printer) {
+    const auto plan = make_plan(job, printer);
+    return plan ? "" : plan.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job(repeated({0, 1}, 200), two);
+    const Plan plan = planned(job, printer);
+    CHECK(plan.layers == 200);
+    CHECK(plan.swaps == 200);
+    CHECK(plan.swap_lower_bound == 200);
+    CHECK(plan.order[0] == VatList{0, 1});
+    CHECK(plan.order[1] == VatList{1, 0});
+    CHECK(plan.warnings.empty());
+    // 3 layers of 2 x 12 s, 197 of 2 x 2.5 s.
+    CHECK(plan.seconds.expose == near(3 * 24 + 197 * 5, {.relative = 1e-12}));
+    // 200 swaps and the final cleaning, 15 s each.
+    CHECK(plan.seconds.clean == near(201 * 15, {.relative = 1e-3}));
+    CHECK(plan.seconds.total ==
+          near(plan.seconds.swap + plan.seconds.clean + plan.seconds.expose + plan.seconds.move, {.relative = 1e-12}));
+    // 200 layers of 100 mm^2 x 50 um.
+    REQUIRE(plan.vats.size() == 2);
+    CHECK(plan.vats[0].resin_ml == near(1, {.relative = 1e-12}));
+    CHECK(plan.vats[1].resin_ml == near(1, {.relative = 1e-12}));
+}
+
+TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
+    machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1, 2}}, {"rubber", "semi-flex", "wax"});
+    Plan plan = planned(job, printer);
+    CHECK(plan.vat_of_material == std::vector<int>{1, 0, 2});
+    REQUIRE(plan.warnings.size() == 2);
+    CHECK(
+        holds(plan.warnings[0], "no vat holds \"rubber\": fill it into the vat of slot 2, which holds \"rigid-flex\""));
+    CHECK(plan.vats[1].refill);
+    CHECK_FALSE(plan.vats[0].refill);
+    printer.vats[3].resin = "";
+    plan = planned(job, printer);
+    CHECK(plan.vat_of_material == std::vector<int>{3, 0, 1});
+    CHECK(filled_printer(plan, job, printer).vats[3].resin == "rubber");
+    const machine::Printer filled = filled_printer(plan, job, printer);
+    CHECK(filled.find_resin("rubber")->exposure_s == 2.5);
+    // Its light is taken to cure two layers, and twice as deep as it comes before it is e times weaker.
+    const machine::WorkingCurve curve = machine::working_curve(filled, *filled.find_resin("rubber"));
+    CHECK(curve.depth_um(2.5 * machine::irradiance_W_m2(filled)) == near(2 * printer.layer_um, {.relative = 1e-12}));
+    CHECK(curve.penetration_um == printer.layer_um);
+}
+
+TEST_CASE("materials of one resin share a vat and need no swap") {
+    const Plan plan = planned(plan::test::make_job(repeated({0, 1}, 4), {"tough", "tough"}), plan::test::tower());
+    CHECK(plan.swaps == 0);
+    CHECK(plan.vats.size() == 1);
+    CHECK(plan.vats[0].materials == std::vector<int>{0, 1});
+    CHECK(plan.order[0] == VatList{2});
+}
+
+TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, no exposure: errors") {
+    const machine::Printer printer = plan::test::tower();
+    CHECK(
+        holds(error_of(plan::test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
+    job::Manifest job = plan::test::make_job(repeated({0}, 3), two);
+    job.width_px = 100;
+    CHECK(holds(error_of(job, printer), "slice it again"));
+    job = plan::test::make_job(repeated({0}, 3), two);
+    job.layers[2].z_um = 304801;
+    CHECK(holds(error_of(job, printer), "builds 304.80 mm"));
+    job.layers[2].z_um = 50;
+    CHECK(holds(error_of(job, printer), "layer 2 at 50 um does not lie above 100 um"));
+    job = plan::test::make_job(repeated({0}, 3), two);
+    job.layers[1].images[0].material = 2;
+    CHECK(holds(error_of(job, printer), "prints material 2, there are 2"));
+    job.layers[1].images[0] = {0, "a\nG28", 1};
+    CHECK(holds(error_of(job, printer), "without a usable name"));
+    job = plan::test::make_job(repeated({0}, 3), two);
+    job.materials[0].exposure_s = 0;
+    CHECK(holds(error_of(job, printer), "needs exposures"));
+}
+
+TEST_CASE("blank layers and resin that runs out are noticed") {
+    machine::Printer printer = plan::test::tower();
+    printer.vats[0].fill_ml = 60.01;  // of which 60 must stay
+    const Plan plan = planned(plan::test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
+    REQUIRE(plan.warnings.size() == 3);
+    CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
+    CHECK(
+        holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
+    CHECK(holds(plan.warnings[2], "1 layers lie higher"));
+}
+
+TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image once behind a fence") {
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job =
+        plan::test::make_job({{0, 1, 2}, {0, 2}, {}, {1}, {0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
+    const Plan plan = planned(job, printer);
+    const std::string text = write_gcode(plan, job, printer);
+    const Status checked = check_gcode(text, printer);
+    CHECK_MESSAGE(checked, (checked ? "" : checked.error().message));
+    CHECK_FALSE(holds(text, "G91"));
+    CHECK_FALSE(holds(text, "G92"));
+    std::size_t fences = 0;
+    for (std::size_t at = text.find(";@expose"); at != std::string::npos; at = text.find(";@expose", at + 1)) {
+        CHECK(text.substr(at - 5, 5) == "M400\n");
+        ++fences;
+    }
+    CHECK(fences == 9);
+    CHECK(holds(text, ";@expose layer=0 material=0 seconds=12.000 image=layers/0_m0.png"));
+    CHECK(holds(text, ";@expose layer=3 material=1 seconds=2.500 image=layers/3_m1.png"));
+    CHECK(holds(text, ";@stop M107 P1"));
+}
+
+TEST_CASE("an empty job homes and does nothing") {
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({}, two);
+    const Plan plan = planned(job, printer);
+    CHECK(plan.swaps == 0);
+    CHECK(plan.seconds.swap == 0);
+    CHECK(check_gcode(write_gcode(plan, job, printer), printer));
+}
+
+TEST_CASE("the plan as JSON has the keys that programs read") {
+    const Plan plan = planned(plan::test::make_job(repeated({0, 1}, 2), {"semi-flex", "wax"}), plan::test::tower());
+    const auto json = nlohmann::json::parse(plan_json(plan));
+    CHECK(json["layers"] == 2);
+    CHECK(json["swaps"] == 2);
+    CHECK(json["swap_lower_bound"] == 2);
+    CHECK(json["order"] == nlohmann::json::parse("[[1, 2], [2, 1]]"));
+    CHECK(json["resin_ml"]["2"].get<double>() == near(0.01, {.relative = 1e-12}));
+    CHECK(json["warnings"].size() == 1);
+    for (const char* key : {"total", "swap", "clean", "expose", "move"}) CHECK(json["seconds"][key].is_number());
+}
+
+TEST_CASE("the plan as text shows times as h:mm:ss") {
+    CHECK(clock_text(3723.4) == "1:02:03");
+    CHECK(clock_text(0) == "0:00:00");
+    const std::string text = plan_text(planned(plan::test::make_job(repeated({0, 1}, 2), two), plan::test::tower()));
+    CHECK(holds(text, "no order needs fewer than 2"));
+    CHECK(holds(text, "slot 2"));
+}
+
+TEST_CASE("the models of known swap counts: naive and best, as their table gives them") {
+    const machine::Printer printer = machine::load_printer("examples/printers/tower8.toml").value();
+    std::vector<std::string> resins;
+    for (const machine::Vat& vat : printer.vats) resins.push_back(vat.resin);
+    const auto counts = [&](const std::vector<std::vector<int>>& layers) {
+        const Plan plan = planned(plan::test::make_job(layers, resins), printer);
+        CHECK(plan.swap_lower_bound == plan.compared.back().swaps);
+        return std::pair(plan.compared.front().swaps, plan.swaps);
+    };
+    std::vector<std::vector<int>> stack, bands;
+    for (int m = 0; m < 4; ++m) stack.insert(stack.end(), 40, {m});
+    for (int band = 0; band < 10; ++band) bands.insert(bands.end(), 20, {band % 2});
+    CHECK(counts(repeated({0, 1}, 200)) == std::pair(399, 200));                      // two_halves
+    CHECK(counts(stack) == std::pair(3, 3));                                          // stack4
+    CHECK(counts(bands) == std::pair(9, 9));                                          // alternating_bands
+    CHECK(counts(repeated({0, 1, 2, 3, 4, 5, 6, 7}, 200)) == std::pair(1599, 1400));  // checker8
+}
+
+TEST_CASE("a resin that no vat holds is an error with the name that was meant, unless any vat will do") {
+    const machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"semiflex", "rigid-flex"});
+    CHECK(make_plan(job, printer).has_value());
+    job.any_vat = false;
+    const auto refused = make_plan(job, printer);
+    REQUIRE(!refused.has_value());
+    CHECK(refused.error().cause == Cause::input);
+    CHECK(refused.error().message ==
+          "no vat of tower prototype holds the resin \"semiflex\" of \"m0\": did you mean \"semi-flex\"? Slice with "
+          "--resin MATERIAL=RESIN, or with --any-vat to fill it into a free vat");
+    job.materials[0].resin = "zzz";
+    CHECK(make_plan(job, printer)
+              .error()
+              .message.find("they hold semi-flex, rigid-flex, tough and elastomer. Slice with") != std::string::npos);
+    job.materials[0].resin = "";
+    CHECK(!make_plan(job, printer).has_value());
+    job.layers = {};  // a material that prints nothing needs no vat
+    CHECK(make_plan(job, printer).has_value());
+}
+
+TEST_CASE("the vats are listed for whoever fills them") {
+    job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"glue", "rigid-flex"});
+    const Plan plan = make_plan(job, plan::test::tower()).value();
+    CHECK(vat_lines(plan) ==
+          std::vector<std::string>{
+              "slot 1: glue, 0.0 ml, to be filled in: the printer file has another resin there, or none",
+              "slot 2: rigid-flex, 0.0 ml"});
+}

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "printing/plan/plan.hpp"
+
+namespace pliant::plan {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Thousandths are enough for seconds and millilitres, and keep the text the same everywhere.
+double rounded(double value) {
+    return std::round(value * 1000) / 1000;
+}
+
+int slot_of(const Plan& plan, int vat) {
+    for (const VatUse& use : plan.vats) {
+        if (use.vat == vat) return use.slot;
+    }
+    return 0;
+}
+
+Json seconds_json(const Seconds& s) {
+    return {{"total", rounded(s.total)},
+            {"swap", rounded(s.swap)},
+            {"clean", rounded(s.clean)},
+            {"expose", rounded(s.expose)},
+            {"move", rounded(s.move)}};
+}
+
+Json order_json(const Plan& plan) {
+    Json order = Json::array();
+    for (const VatList& layer : plan.order) {
+        Json slots = Json::array();
+        for (const int vat : layer) slots.push_back(slot_of(plan, vat));
+        order.push_back(std::move(slots));
+    }
+    return order;
+}
+
+Json orders_json(const Plan& plan) {
+    Json orders = Json::object();
+    for (const OrderCost& c : plan.compared) {
+        orders[std::string(rule_name(c.rule))] = {{"swaps", c.swaps}, {"change_s", rounded(c.change_s)}};
+    }
+    return orders;
+}
+
+Json layers_json(const Plan& plan) {
+    Json total = Json::array(), swap = Json::array(), clean = Json::array(), expose = Json::array(),
+         move = Json::array();
+    for (const Seconds& s : plan.layer_seconds) {
+        total.push_back(rounded(s.total));
+        swap.push_back(rounded(s.swap));
+        clean.push_back(rounded(s.clean));
+        expose.push_back(rounded(s.expose));
+        move.push_back(rounded(s.move));
+    }
+    return {{"total", std::move(total)},
+            {"swap", std::move(swap)},
+            {"clean", std::move(clean)},
+            {"expose", std::move(expose)},
+            {"move", std::move(move)}};
+}
+
+Json vat_json(const VatUse& use) {
+    return {{"slot", use.slot},
+            {"resin", use.resin},
+            {"materials", use.materials},
+            {"refill", use.refill},
+            {"first_layer", use.first_layer},
+            {"last_layer", use.last_layer},
+            {"waste_ml", rounded(use.waste_ml)},
+            {"brushed_ml", rounded(use.brushed_ml)}};
+}
+
+Json solution_json(const SolutionUse& s) {
+    Json care = Json::array();
+    for (const CareBefore& c : s.care)
+        care.push_back({{"layer", c.layer}, {"text", std::string(machine::care_text(c.care))}});
+    return {{"goes_round", s.goes_round},
+            {"pumped_ml", rounded(s.pumped_ml)},
+            {"used_ml", rounded(s.used_ml)},
+            {"liquid_ml", rounded(s.liquid_ml)},
+            {"resin_share", std::round(s.resin_share * 1e6) / 1e6},
+            {"filter_ml", rounded(s.filter_ml)},
+            {"care", std::move(care)}};
+}
+
+/// What becomes of the solution, and when somebody must look after it.
+std::string solution_text(const SolutionUse& s) {
+    if (s.pumped_ml <= 0) return "";
+    if (!s.goes_round) return fmt::format("  {:<10}{:>7.0f} ml\n", "solution", s.used_ml);
+    std::string text = fmt::format(
+        "  {:<10}{:>7.0f} ml   used up, of {:.0f} ml pumped; at the end {:.0f} ml with {:.2f} % of resin (spent at "
+        "{:g} %)\n",
+        "solution", s.used_ml, s.pumped_ml, s.liquid_ml, 100 * s.resin_share, 100 * s.spent_share);
+    constexpr std::size_t most = 5;
+    for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)
+        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer),
+                            machine::care_text(s.care[i].care));
+    if (s.care.size() > most) text += fmt::format("  and {} times more\n", s.care.size() - most);
+    return text;
+}
+
+std::string orders_text(const Plan& plan) {
+    std::string text;
+    for (const OrderCost& c : plan.compared) {
+        const bool chosen = c.rule == plan.rule;
+        text += fmt::format("  {:<14}{:>6} {:<5}{:>12} of changing vats{}\n", rule_name(c.rule), c.swaps,
+                            c.swaps == 1 ? "swap" : "swaps", clock_text(c.change_s), chosen ? "   (planned)" : "");
+    }
+    return text;
+}
+
+/// ", 2.4 ml brushed back and 3.6 ml washed off"
+std::string waste_text(const VatUse& use) {
+    if (use.brushed_ml <= 0)
+        return use.waste_ml > 0 ? fmt::format(", and {:.1f} ml washed off", use.waste_ml) : std::string();
+    return fmt::format(", {:.1f} ml brushed back and {:.1f} ml washed off", use.brushed_ml, use.waste_ml);
+}
+
+}  // namespace
+
+std::string plan_json(const Plan& plan) {
+    Json resin = Json::object();
+    Json vats = Json::array();
+    for (const VatUse& use : plan.vats) {
+        resin[std::to_string(use.slot)] = rounded(use.resin_ml);
+        vats.push_back(vat_json(use));
+    }
+    const Json json = {{"job", plan.job},
+                       {"printer", plan.printer},
+                       {"layers", plan.layers},
+                       {"swaps", plan.swaps},
+                       {"swap_lower_bound", plan.swap_lower_bound},
+                       {"order_rule", std::string(rule_name(plan.rule))},
+                       {"orders", orders_json(plan)},
+                       {"seconds", seconds_json(plan.seconds)},
+                       {"layer_seconds", layers_json(plan)},
+                       {"resin_ml", std::move(resin)},
+                       {"waste_ml", rounded(plan.waste_ml)},
+                       {"brushed_ml", rounded(plan.brushed_ml)},
+                       {"solvent_ml", rounded(plan.solvent_ml)},
+                       {"solution", solution_json(plan.solution)},
+                       {"vats", std::move(vats)},
+                       {"order", order_json(plan)},
+                       {"warnings", plan.warnings}};
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> vat_lines(const Plan& plan) {
+    std::vector<std::string> lines;
+    for (const VatUse& use : plan.vats) {
+        std::string line = fmt::format("slot {}: {}, {:.1f} ml", use.slot, use.resin, use.resin_ml);
+        if (use.refill) line += ", to be filled in: the printer file has another resin there, or none";
+        const auto refills = std::count_if(plan.refills.begin(), plan.refills.end(),
+                                           [&](const RefillBefore& refill) { return refill.slot == use.slot; });
+        if (refills > 0) line += fmt::format(", refilled {} times on the way", refills);
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+std::string clock_text(double seconds) {
+    const auto whole = static_cast<long long>(std::llround(seconds));
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string plan_text(const Plan& plan) {
+    std::string text = fmt::format("{} on {}\n", plan.job, plan.printer);
+    text += fmt::format("  {:<10}{:>10}\n", "layers", plan.layers);
+    text += fmt::format("  {:<10}{:>10}   no order needs fewer than {}\n", "swaps", plan.swaps, plan.swap_lower_bound);
+    text += orders_text(plan);
+    const Seconds& s = plan.seconds;
+    for (const auto& [name, value] :
+         {std::pair{"time", s.total}, std::pair{" swap", s.swap}, std::pair{" clean", s.clean},
+          std::pair{" expose", s.expose}, std::pair{" move", s.move}}) {
+        text += fmt::format("  {:<10}{:>10}\n", name, clock_text(value));
+    }
+    for (const VatUse& use : plan.vats) {
+        text += fmt::format("  {:<10}{:>7.1f} ml   {}{}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin,
+                            waste_text(use));
+    }
+    text += solution_text(plan.solution);
+    for (const std::string& warning : plan.warnings) text += fmt::format("  warning: {}\n", warning);
+    return text;
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,320 @@
+#include "printing/plan/proof.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "printing/machine/gcode.hpp"
+#include "printing/plan/check.hpp"
+#include "printing/plan/passage.hpp"
+
+namespace pliant::plan {
+namespace {
+
+using machine::Axis;
+using machine::Expose;
+using machine::Printer;
+
+constexpr double light_tolerance_s = 1e-3;  // lights are written in whole milliseconds
+
+Status in_layer(std::size_t layer, const Status& status) {
+    if (status) return status;
+    return tl::unexpected(Error{status.error().cause, fmt::format("layer {}: {}", layer, status.error().message)});
+}
+
+/// What is left in every vat, as the plan's refills fill them.
+class Fillings {
+public:
+    Fillings(const Plan& plan, const job::Manifest& job, const Printer& printer) : job_(job), printer_(printer) {
+        for (const machine::Vat& vat : printer.vats) left_ml_.push_back(usable_ml(vat));
+        for (const RefillBefore& refill : plan.refills) refills_.emplace(refill.layer, refill.slot);
+    }
+
+    /// Image `k` of the layer is printed from the vat.
+    Status draw(std::size_t layer, std::size_t k, std::size_t vat) {
+        const machine::Vat& from = printer_.vats[vat];
+        double& left_ml = left_ml_[vat];
+        if (refills_.erase({static_cast<int>(layer), from.slot}) > 0)
+            left_ml = std::max(usable_ml(from), resin_ml(layer, from.resin));
+        left_ml -= image_ml(layer, job_.layers[layer].images[k]);
+        if (left_ml >= -1e-6 * (1 + usable_ml(from))) return {};
+        return input_error("the vat of slot {} has run dry: it gives {:.1f} ml of \"{}\"", from.slot, usable_ml(from),
+                           from.resin);
+    }
+
+private:
+    [[nodiscard]] double usable_ml(const machine::Vat& vat) const {
+        return std::max(0.0, vat.fill_ml - printer_.vat_shape.least_ml);
+    }
+    [[nodiscard]] double image_ml(std::size_t layer, const job::LayerImage& image) const {
+        return image.area_mm2 * job_.layers[layer].thickness_um / 1e6;
+    }
+    [[nodiscard]] double resin_ml(std::size_t layer, const std::string& resin) const {
+        double ml = 0;
+        for (const job::LayerImage& image : job_.layers[layer].images) {
+            if (job_.materials[static_cast<std::size_t>(image.material)].resin == resin) ml += image_ml(layer, image);
+        }
+        return ml;
+    }
+
+    const job::Manifest& job_;
+    const Printer& printer_;
+    std::vector<double> left_ml_;
+    std::set<std::pair<int, int>> refills_;  ///< layer and slot
+};
+
+/// The light before the one that comes.
+struct LastLight {
+    std::size_t layer = 0;
+    int vat = 0;
+};
+
+/// Follows a program from light to light. `printer` holds the resins that the plan fills in.
+class Proof {
+public:
+    Proof(const Plan& plan, const job::Manifest& job, const Printer& printer)
+        : job_(job), printer_(printer), fillings_(plan, job, printer), passage_(printer) {}
+
+    Status step(const Step& step) {
+        passage_.add(step);
+        if (step.command != nullptr) {
+            note_motors(*step.command);
+            return check_switch(*step.command);
+        }
+        if (step.directive->stop_command) return add_stop(*step.directive->stop_command);
+        if (!step.directive->expose) return {};
+        const Expose& light = *step.directive->expose;
+        const auto layer = static_cast<std::size_t>(light.layer);
+        if (Status status = check_image(light); !status) return in_layer(layer, status);
+        if (Status status = check_turn(light); !status) return status;
+        if (Status status = check_place(light, *step.machine); !status) return in_layer(layer, status);
+        if (Status status = check_rest(); !status) return in_layer(layer, status);
+        if (Status status = check_way(light, *step.machine); !status) return status;
+        last_ = LastLight{layer, *step.machine->hooked_vat()};
+        passage_.restart(job_.layers[layer].z_um);
+        return {};
+    }
+
+    /// After the last line.
+    Status finish(const machine::Interlock& end) {
+        if (Status status = check_complete(job_.layers.size()); !status) return status;
+        if (last_) {
+            if (Status status = passage_.check_peel(job_.layers[last_->layer].z_um); !status)
+                return in_layer(last_->layer, status);
+            if (printer_.store() != machine::Store::none) {
+                if (Status status = passage_.check_brush(); !status) return status;
+                if (Status status = passage_.check_cleaning(printer_.cleaning.spray_s); !status) return status;
+            }
+        }
+        return check_end(end);
+    }
+
+private:
+    [[nodiscard]] const job::Layer& layer_of(const Expose& light) const {
+        return job_.layers[static_cast<std::size_t>(light.layer)];
+    }
+    [[nodiscard]] const std::string& material_name(int material) const {
+        return job_.materials[static_cast<std::size_t>(material)].name;
+    }
+
+    /// Where in its layer the material's image is; as many as the layer has if it has none.
+    [[nodiscard]] static std::size_t index_of(const job::Layer& layer, int material) {
+        const auto found = std::find_if(layer.images.begin(), layer.images.end(),
+                                        [&](const job::LayerImage& image) { return image.material == material; });
+        return static_cast<std::size_t>(found - layer.images.begin());
+    }
+
+    /// The manifest has such a light.
+    [[nodiscard]] Status check_image(const Expose& light) const {
+        if (static_cast<std::size_t>(light.layer) >= job_.layers.size())
+            return input_error("the job has {} layers, counted from 0", job_.layers.size());
+        const job::Layer& layer = layer_of(light);
+        const std::size_t k = index_of(layer, light.material);
+        if (k == layer.images.size()) {
+            const bool known = static_cast<std::size_t>(light.material) < job_.materials.size();
+            return input_error("nothing of {} is in this layer",
+                               known ? fmt::format("\"{}\"", material_name(light.material))
+                                     : fmt::format("material {}", light.material));
+        }
+        const std::string& name = material_name(light.material);
+        if (layer.images[k].file != light.image)
+            return input_error("light of \"{}\": shows {}, the manifest has {}", name, light.image,
+                               layer.images[k].file);
+        const double asked_s = job::exposure_s(job_, static_cast<std::size_t>(light.layer), k);
+        if (std::abs(light.seconds - asked_s) > light_tolerance_s)
+            return input_error("light of \"{}\": lasts {:g} s, the manifest says {:g} s", name, light.seconds, asked_s);
+        return {};
+    }
+
+    /// It comes once, and after all of the layers below.
+    Status check_turn(const Expose& light) {
+        const auto layer = static_cast<std::size_t>(light.layer);
+        const std::string& name = material_name(light.material);
+        if (layer < open_layer_)
+            return input_error("layer {}: light of \"{}\" after layer {}", layer, name, open_layer_);
+        if (layer > open_layer_) {
+            if (Status status = check_complete(layer); !status) return status;
+            open_layer_ = layer;
+            lit_.clear();
+        }
+        if (!lit_.insert(light.material).second)
+            return input_error("layer {}: light of \"{}\" a second time", layer, name);
+        return {};
+    }
+
+    /// All lights from the open layer to the one before `end` have been given.
+    [[nodiscard]] Status check_complete(std::size_t end) const {
+        for (std::size_t layer = open_layer_; layer < end; ++layer) {
+            for (const job::LayerImage& image : job_.layers[layer].images) {
+                if (layer != open_layer_ || !lit_.contains(image.material))
+                    return input_error("layer {}: the light of \"{}\" is missing", layer,
+                                       material_name(image.material));
+            }
+        }
+        return {};
+    }
+
+    /// The platform's height and the vat below it.
+    Status check_place(const Expose& light, const machine::Interlock& machine) {
+        const job::Layer& layer = layer_of(light);
+        const std::string& name = material_name(light.material);
+        const int at_um = machine.position()[Axis::platform];
+        if (at_um != layer.z_um)
+            return input_error("light of \"{}\": the platform stands at {:.3f} mm, the layer's height is {:.3f} mm",
+                               name, at_um / 1000.0, layer.z_um / 1000.0);
+        const auto vat = static_cast<std::size_t>(*machine.hooked_vat());
+        const std::string& asked = job_.materials[static_cast<std::size_t>(light.material)].resin;
+        const machine::Vat& used = printer_.vats[vat];
+        if (used.resin != asked)
+            return input_error("light of \"{}\": over the vat of slot {} with \"{}\", its resin is \"{}\"", name,
+                               used.slot, used.resin, asked);
+        return fillings_.draw(static_cast<std::size_t>(light.layer), index_of(layer, light.material), vat);
+    }
+
+    void note_motors(const machine::Command& command) {
+        if ((command.is('M', 84) || command.is('M', 18)) && command.has('S'))
+            motors_stay_ = command.value('S').value_or(0) == 0;
+    }
+
+    /// What must not happen during a light: idle motors would let the platform sink, a fan would move the resin.
+    [[nodiscard]] Status check_rest() const {
+        if (!motors_stay_) return input_error("motors may let go during the light: M84 S0 before it is missing");
+        if (passage_.fans_run()) return input_error("a fan runs during the light");
+        return {};
+    }
+
+    /// What the machine has done since the light before.
+    [[nodiscard]] Status check_way(const Expose& light, const machine::Interlock& machine) const {
+        const auto layer = static_cast<std::size_t>(light.layer);
+        const int vat = *machine.hooked_vat();
+        if (last_ && last_->layer == layer && last_->vat == vat) return {};
+        if (last_) {
+            if (Status status = passage_.check_peel(job_.layers[last_->layer].z_um); !status)
+                return in_layer(last_->layer, status);
+            if (last_->vat != vat) {
+                if (Status status = passage_.check_brush(); !status) return in_layer(layer, status);
+                if (Status status = passage_.check_cleaning(printer_.cleaning_s(last_->vat, vat)); !status)
+                    return in_layer(layer, status);
+            }
+        }
+        return in_layer(layer, passage_.check_approach(job_.layers[layer].z_um));
+    }
+
+    [[nodiscard]] std::vector<machine::Switch> switches() const {
+        std::vector<machine::Switch> all = printer_.fans;
+        all.push_back(printer_.pump);
+        return all;
+    }
+
+    /// A device that is switched on gets what the printer file says.
+    [[nodiscard]] static Status check_value(const machine::Switch& device, const machine::Command& command) {
+        const auto own = machine::parse_command(device.on);
+        constexpr double full = 255;  // where no value is given
+        if (!own || own->value('S').value_or(full) == command.value('S').value_or(full)) return {};
+        return input_error("a switch is not set as the printer file says, {}", device.on);
+    }
+
+    /// What runs can be stopped, and runs as hard as the printer file says.
+    [[nodiscard]] Status check_switch(const machine::Command& command) const {
+        for (const machine::Switch& device : {printer_.hooks.magnet.coil, printer_.wall.fork}) {
+            if (machine::switched(device, command) != true) continue;
+            if (Status status = check_value(device, command); !status) return status;
+        }
+        for (const machine::Switch& device : switches()) {
+            if (machine::switched(device, command) != true) continue;
+            if (Status status = check_value(device, command); !status) return status;
+            if (!stops(device)) return input_error("{} has no line \";@stop {}\" before it", device.on, device.off);
+        }
+        return {};
+    }
+
+    [[nodiscard]] bool stops(const machine::Switch& device) const {
+        return std::any_of(stops_.begin(), stops_.end(), [&](const machine::Command& command) {
+            return machine::switched(device, command) == false;
+        });
+    }
+
+    /// What the host does when it must stop may only switch something off.
+    Status add_stop(const std::string& text) {
+        const auto command = machine::parse_command(text);
+        if (!command) return tl::unexpected(command.error());
+        const std::vector<machine::Switch> all = switches();
+        const bool off = std::any_of(all.begin(), all.end(), [&](const machine::Switch& device) {
+            return machine::switched(device, *command) == false;
+        });
+        if (!off) return input_error(";@stop {}: switches nothing of {} off", text, printer_.name);
+        stops_.push_back(*command);
+        return {};
+    }
+
+    [[nodiscard]] Status check_end(const machine::Interlock& end) const {
+        if (end.pump_runs()) return input_error("the program ends with the pump running");
+        if (passage_.fans_run()) return input_error("the program ends with a fan running");
+        if (printer_.has_carriage()) {
+            for (std::size_t v = 0; v < printer_.vats.size(); ++v) {
+                const int slot = printer_.vats[v].slot;
+                if (end.vat_in_slot(slot) != static_cast<int>(v))
+                    return input_error("the program ends with the vat of slot {} out of its place", slot);
+            }
+        }
+        const int clear_um = printer_.clear_um(end.part_height_um());
+        if (last_ && end.position()[Axis::platform] < clear_um)
+            return input_error("the program ends with the platform at {:.3f} mm, the part is clear from {:.3f} mm",
+                               end.position()[Axis::platform] / 1000.0, clear_um / 1000.0);
+        return {};
+    }
+
+    const job::Manifest& job_;
+    const Printer& printer_;
+    Fillings fillings_;
+    Passage passage_;
+    std::optional<LastLight> last_;
+    bool motors_stay_ = false;  ///< M84 S0: also when they idle
+    std::size_t open_layer_ = 0;
+    std::set<int> lit_;  ///< materials of the open layer
+    std::vector<machine::Command> stops_;
+};
+
+}  // namespace
+
+Status prove_program(std::string_view gcode, const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    const Printer filled = filled_printer(plan, job, printer);
+    Proof proof(plan, job, filled);
+    int last_line = 0;
+    const auto watch = [&](const Step& step) {
+        last_line = step.line;
+        return proof.step(step);
+    };
+    const auto end = replay_gcode(gcode, filled, std::numeric_limits<int>::max(), watch);
+    if (!end) return tl::unexpected(end.error());
+    const Status finished = proof.finish(*end);
+    if (finished) return {};
+    return tl::unexpected(Error{finished.error().cause,
+                                fmt::format("G-code line {}, the last: {}", last_line, finished.error().message)});
+}
+
+}  // namespace pliant::plan

@@ -1,0 +1,84 @@
+// Writes the machine's commands one after the other and keeps the books: where the axes are and what time is spent on
+// what. The planner's times and its G-code come from the same calls and cannot disagree.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "printing/machine/gcode.hpp"
+#include "printing/machine/printer.hpp"
+#include "printing/plan/timeline.hpp"
+
+namespace pliant::plan {
+
+/// What a stretch of time counts as. Cleaning is the time that the pump runs; the rest of a change of vats is `swap`.
+enum class Activity { swap, clean, expose, move };
+
+struct Seconds {
+    double total = 0, swap = 0, clean = 0, expose = 0, move = 0;
+
+    Seconds& operator+=(const Seconds& other);
+    [[nodiscard]] Seconds operator-(const Seconds& other) const;
+};
+
+/// The printer must outlive it.
+class Sequence {
+public:
+    explicit Sequence(const machine::Printer& printer) : printer_(&printer) {}
+
+    /// Writes no text: for times alone.
+    void mute() { muted_ = true; }
+    /// As if something had brought the axes here that took no time.
+    void stand_at(const machine::Position& position) { position_ = position; }
+
+    /// From here on every stretch of work of a device is appended to `stretches`, which must outlive the recording;
+    /// nullptr: no more.
+    void record(std::vector<Stretch>* stretches);
+
+    void activity(Activity activity) { activity_ = activity; }
+    void comment(std::string_view text);
+    void command(std::string_view line);  ///< one that takes no time; nothing if empty
+    /// Time as if from the far end of the travel: where the axes are is not known yet.
+    void home(machine::Axis axis);
+    void move(machine::Axis axis, int um, double feed_mm_s = 0);  ///< feed 0: as fast as the axis goes
+    void move_to(const machine::Position& to, double feed_mm_s = 0);
+    void dwell(double seconds);
+    void fence();  ///< everything before is done
+    /// Switches the pump behind a fence: a switch travels with the move queue otherwise.
+    void pump(bool on);
+    /// Switches all fans of the machine, in the same way.
+    void fans(bool on);
+    /// Switches the magnet, if there is one, and waits until it holds or lets go.
+    void magnet(bool holds);
+    /// Puts the fork of a wall's retriever out, or back; who calls must wait `Wall::fork_s` before the next way.
+    void fork(bool out);
+    void expose(const machine::Expose& expose);
+
+    [[nodiscard]] const machine::Printer& printer() const { return *printer_; }
+    [[nodiscard]] const machine::Position& position() const { return position_; }
+    [[nodiscard]] const Seconds& seconds() const { return seconds_; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+    /// Of a device that has no command of its own, while others are recorded: it works from `begin_s` to `end_s`.
+    void note(Device device, double begin_s, double end_s);
+
+private:
+    void spend(double seconds);
+    void note_switch(Device device, bool on, double& on_s);
+
+    const machine::Printer* printer_;
+    bool muted_ = false;
+    machine::Position position_;
+    Activity activity_ = Activity::move;
+    Seconds seconds_;
+    std::string text_;
+    std::vector<Stretch>* stretches_ = nullptr;
+    std::array<std::size_t, device_count> last_stretch_{};  ///< of each device; SIZE_MAX: none
+    double pump_on_s_ = -1;                                 ///< since when; below 0: off
+    double fans_on_s_ = -1;
+};
+
+}  // namespace pliant::plan

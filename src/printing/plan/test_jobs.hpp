@@ -1,0 +1,63 @@
+// Jobs made in memory, for tests: which materials print on which layer is all that a plan depends on.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "printing/job/job.hpp"
+#include "printing/machine/printer.hpp"
+
+namespace pliant::plan::test {
+
+/// 50 um layers; material m is called "m0", "m1", ... and printed in the resin that `resins` gives it.
+/// Every image covers 100 mm^2.
+inline job::Manifest make_job(const std::vector<std::vector<int>>& layers, const std::vector<std::string>& resins) {
+    job::Manifest job;
+    job.name = "job";
+    job.width_px = 1920;
+    job.height_px = 1080;
+    job.pixel_um = 158.75;
+    job.bottom_layers = 3;
+    job.any_vat = true;  // most tests care for orders and times, not for names of resins
+    for (std::size_t m = 0; m < resins.size(); ++m) {
+        job.materials.push_back({fmt::format("m{}", m), resins[m], 0, 0, 2.5, 12});
+    }
+    for (const auto& materials : layers) {
+        job::Layer layer;
+        layer.z_um = 50 * static_cast<int>(job.layers.size() + 1);
+        layer.thickness_um = 50;
+        for (const int m : materials) {
+            layer.images.push_back({m, fmt::format("layers/{}_m{}.png", job.layers.size(), m), 100});
+        }
+        job.layers.push_back(std::move(layer));
+    }
+    return job;
+}
+
+/// For the projector of that machine.
+inline job::Manifest make_job_for(const machine::Printer& printer, const std::vector<std::vector<int>>& layers,
+                                  const std::vector<std::string>& resins) {
+    job::Manifest job = make_job(layers, resins);
+    job.width_px = printer.projector.width_px;
+    job.height_px = printer.projector.height_px;
+    job.pixel_um = printer.projector.pixel_um;
+    return job;
+}
+
+/// Every machine that is shipped.
+inline std::vector<machine::Printer> machines() {
+    std::vector<machine::Printer> all;
+    for (const char* name :
+         {"tower", "tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear", "single"}) {
+        all.push_back(machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value());
+    }
+    return all;
+}
+
+inline machine::Printer tower() {
+    return machine::load_printer("examples/printers/tower.toml").value();
+}
+
+}  // namespace pliant::plan::test

@@ -1,0 +1,130 @@
+// Where the part stands, and what stands under it.
+#include "printing/slice/arrange.hpp"
+
+#include <tuple>
+
+#include "printing/prepare/option_text.hpp"
+#include "printing/prepare/settings.hpp"
+#include "printing/slice/adaptive.hpp"
+#include "printing/slice/hollow.hpp"
+#include "printing/slice/place.hpp"
+#include "printing/slice/supports.hpp"
+
+namespace pliant::prepare {
+namespace {
+
+Status read_lengths(std::initializer_list<std::tuple<const char*, const std::string*, double*>> wanted) {
+    for (const auto& [option, text, um] : wanted) {
+        const Result<double> length = length_um(option, *text, *um);
+        if (!length) return tl::unexpected(length.error());
+        *um = *length;
+    }
+    return {};
+}
+
+Result<slice::SupportSettings> support_settings(const Order& order) {
+    slice::SupportSettings s;
+    s.material = order.support;
+    if (!order.support_angle.empty()) {
+        const Result<double> angle = plain_degrees("--support-angle", order.support_angle);
+        if (!angle) return tl::unexpected(angle.error());
+        s.angle_deg = *angle;
+    }
+    Status status = read_lengths({{"--support-spacing", &order.support_spacing, &s.spacing_um},
+                                  {"--support-tip", &order.support_tip, &s.tip_um},
+                                  {"--support-pillar", &order.support_pillar, &s.pillar_um},
+                                  {"--raft", &order.raft, &s.raft_um}});
+    if (status) status = slice::check(s);
+    if (!status) return tl::unexpected(status.error());
+    return s;
+}
+
+Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) {
+    if (!order.turn.empty()) {
+        const Vec3 degrees{order.turn[0], order.turn[1], order.turn[2]};
+        if (Status status = slice::turn(drawing.bodies, degrees); !status) return status;
+    }
+    double spacing_um = 0;
+    if (Status status = read_lengths({{"--spacing", &order.spacing, &spacing_um}}); !status) return status;
+    if (Status status = slice::repeat(drawing.bodies, order.copies, spacing_um, raster); !status) return status;
+    const Result<std::vector<std::string>> warnings = slice::place_on_platform(drawing.bodies, raster);
+    if (!warnings) return tl::unexpected(warnings.error());
+    drawing.warnings.insert(drawing.warnings.end(), warnings->begin(), warnings->end());
+    return {};
+}
+
+/// With a raft the part must be off it, or there is nothing to break away.
+Status lift(const Order& order, double raft_um, Drawing& drawing) {
+    constexpr double usual_um = 5000, most_um = 100000;
+    double lift_um = raft_um > 0 ? raft_um + usual_um : 0;
+    if (Status status = read_lengths({{"--lift", &order.lift, &lift_um}}); !status) return status;
+    if (!(lift_um >= 0 && lift_um <= most_um)) return input_error("--lift {}: must be 0 to 100 mm", order.lift);
+    if (raft_um > 0 && lift_um < raft_um + 500)
+        return input_error("--lift {}: must be at least half a millimetre more than the raft of {:.6g} mm", order.lift,
+                           raft_um / 1000);
+    for (slice::Body& body : drawing.bodies) slice::move(body, {0, 0, lift_um});
+    return {};
+}
+
+Status set_heights(const Order& order, const Drawing& drawing, slice::Settings& slicing) {
+    if (order.least_layer.empty()) return {};
+    const Result<int> least_um = layer_height_um("--least-layer", order.least_layer);
+    if (!least_um) return tl::unexpected(least_um.error());
+    auto tops = slice::adaptive_tops(drawing.bodies, {*least_um, slicing.layer_um});
+    if (!tops) return input_error("--least-layer: {}", tops.error().message);
+    slicing.tops_um = std::move(*tops);
+    return {};
+}
+
+Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
+                   Progress& progress) {
+    if (order.hollow.empty()) {
+        if (!order.drain.empty()) return input_error("--drain: needs --hollow");
+        return {};
+    }
+    slice::HollowSettings hollow;
+    Status status =
+        read_lengths({{"--hollow", &order.hollow, &hollow.wall_um}, {"--drain", &order.drain, &hollow.drain_um}});
+    if (!status) return status;
+    auto made = slice::hollow_out(drawing.bodies, settings.slicing, hollow, progress);
+    if (!made) return tl::unexpected(made.error());
+    settings.slicing.removed = made->removed;
+    drawing.warnings.insert(drawing.warnings.end(), made->warnings.begin(), made->warnings.end());
+    notes.push_back(
+        fmt::format("hollow: {} cavities of {:.1f} mm^3, {} drains", made->cavities, made->volume_mm3, made->drains));
+    return {};
+}
+
+}  // namespace
+
+Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
+               Progress& progress) {
+    if (!drawing.stacks.empty()) return {};
+    const bool supported = !order.support.empty();
+    for (const auto& [option, text] : {std::pair{"--raft", &order.raft}, std::pair{"--lift", &order.lift}}) {
+        if (!supported && !text->empty()) return input_error("{}: needs --support MATERIAL", option);
+    }
+    if (Status status = place(order, settings.slicing.raster, drawing); !status) return status;
+    slice::SupportSettings wanted;
+    if (supported) {
+        Result<slice::SupportSettings> read = support_settings(order);
+        if (!read) return tl::unexpected(read.error());
+        wanted = std::move(*read);
+        if (Status status = lift(order, wanted.raft_um, drawing); !status) return status;
+    }
+    if (Status status = set_heights(order, drawing, settings.slicing); !status) return status;
+    if (Status status = hollow_part(order, settings, drawing, notes, progress); !status) return status;
+    if (!supported) return {};
+    auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
+    if (!supports) return tl::unexpected(supports.error());
+    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {} struts, {:.1f} mm^3",
+                                supports->tips, supports->on_part, supports->struts, supports->volume_mm3));
+    if (supports->islands_left > 0)
+        drawing.warnings.push_back(
+            fmt::format("{} islands are left that supports do not reach", supports->islands_left));
+    drawing.bodies.insert(drawing.bodies.begin(), std::make_move_iterator(supports->bodies.begin()),
+                          std::make_move_iterator(supports->bodies.end()));
+    return {};
+}
+
+}  // namespace pliant::prepare

@@ -1,0 +1,189 @@
+#include "printing/prepare/drawing.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/core/text.hpp"
+#include "geometry/mesher/mesher.hpp"
+#include "geometry/mesher/step_file.hpp"
+#include "geometry/open/open_geometry.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+
+namespace pliant::prepare {
+namespace {
+
+constexpr double um_per_mm = 1e3;
+constexpr double printable_um = 10;  // chords may leave a curve by a fraction of a pixel
+
+void add_resin(Drawing& drawing, const std::string& material, const std::string& resin) {
+    const auto known = [&](const auto& pair) { return pair.first == material; };
+    if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
+        drawing.resin_of_material.emplace_back(material, resin);
+}
+
+const robot::BodySpec& body_named(const robot::Robot& robot, const std::string& name) {
+    return *std::find_if(robot.bodies.begin(), robot.bodies.end(),
+                         [&](const robot::BodySpec& body) { return body.name == name; });
+}
+
+/// Squares of a length become whole pixels once the printer is known.
+slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend) {
+    const double um = robot.unit_m * 1e6;
+    slice::Blend result{robot.materials[static_cast<std::size_t>(blend.material)].name, um * blend.from, um * blend.to,
+                        blend.shares, 1};
+    result.cell_um = um * blend.cell;
+    return result;
+}
+
+std::vector<slice::OutlineSlice> in_um(const std::vector<threemf::Slice>& slices) {
+    std::vector<slice::OutlineSlice> result;
+    for (const threemf::Slice& s : slices) {
+        result.push_back({s.bottom_mm * um_per_mm, s.top_mm * um_per_mm, s.contours});
+        for (auto& outline : result.back().outlines_um) {
+            for (auto& [x, y] : outline) {
+                x *= um_per_mm;
+                y *= um_per_mm;
+            }
+        }
+    }
+    return result;
+}
+
+/// `material`: of all bodies; where empty, the file's own.
+Status add_3mf(threemf::ThreeMf file, const std::string& material, Drawing& drawing) {
+    drawing.warnings.insert(drawing.warnings.end(), file.warnings.begin(), file.warnings.end());
+    for (threemf::Body& body : file.bodies)
+        drawing.bodies.push_back({material.empty() ? body.material : material,
+                                  mesh::scaled(std::move(body.mesh_mm), um_per_mm), body.name, in_um(body.slices)});
+    return {};
+}
+
+Status add_tets(const mesh::TetMesh& tets, const std::string& material, Drawing& drawing) {
+    for (std::size_t r = 0; r < tets.region_names.size(); ++r) {
+        mesh::TriMesh surface = mesh::region_surface(tets, static_cast<int>(r));
+        if (surface.triangles.empty()) continue;
+        const std::string& region = tets.region_names[r];
+        drawing.bodies.push_back(
+            {material.empty() ? region : material, mesh::scaled(std::move(surface), um_per_mm), region});
+    }
+    return {};
+}
+
+Status add_surface(mesh::SurfaceFile surface, const std::filesystem::path& path, const std::string& material,
+                   Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    drawing.warnings.insert(drawing.warnings.end(), surface.warnings.begin(), surface.warnings.end());
+    drawing.bodies.push_back({material, mesh::scaled(std::move(surface.mesh), um_per_mm), path.stem().string()});
+    return {};
+}
+
+Status add_step(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: has no materials of its own: write MATERIAL={}", path.string(), path.string());
+    const Result<mesh::Solid> solids = mesh::read_step(path, "", um_per_mm);
+    if (!solids) return tl::unexpected(solids.error());
+    Result<mesh::TriMesh> surface = mesh::tessellate(*solids, printable_um);
+    if (!surface) return input_error("{}: {}", path.string(), surface.error().message);
+    drawing.bodies.push_back({material, std::move(*surface), path.stem().string()});
+    return {};
+}
+
+Status add_stack(const std::filesystem::path& path, const std::string& material, Drawing& drawing) {
+    if (material.empty())
+        return input_error("{}: layer images have no material of their own: write MATERIAL={}", path.string(),
+                           path.string());
+    const auto same = [&](const job::MaterialStack& s) { return s.material == material; };
+    if (std::any_of(drawing.stacks.begin(), drawing.stacks.end(), same))
+        return input_error("{}: material \"{}\" has layer images already", path.string(), material);
+    Result<job::ImageStack> stack = job::ImageStack::open(path);
+    if (!stack) return tl::unexpected(stack.error());
+    drawing.stacks.push_back({material, std::move(*stack)});
+    add_resin(drawing, material, material);
+    return {};
+}
+
+Status add_file(const std::string& input, Drawing& drawing) {
+    const std::size_t equals = input.find('=');
+    if (equals == 0) return input_error("{}: write MATERIAL=FILE with a material in front", input);
+    const bool whole = equals == std::string::npos || std::filesystem::exists(input);
+    const std::string material = whole ? "" : input.substr(0, equals);
+    const std::filesystem::path path = whole ? input : input.substr(equals + 1);
+    if (drawing.name.empty()) drawing.name = path.stem().string();
+    if (job::is_image_stack(path)) return add_stack(path, material, drawing);
+    Result<mesh::Geometry> geometry = mesh::open_geometry(path);
+    if (!geometry) return tl::unexpected(geometry.error());
+    if (auto* plate = std::get_if<threemf::ThreeMf>(&*geometry)) return add_3mf(std::move(*plate), material, drawing);
+    if (std::holds_alternative<mesh::StepPath>(*geometry)) return add_step(path, material, drawing);
+    if (const auto* tets = std::get_if<mesh::TetMesh>(&*geometry)) return add_tets(*tets, material, drawing);
+    return add_surface(std::get<mesh::SurfaceFile>(std::move(*geometry)), path, material, drawing);
+}
+
+}  // namespace
+
+Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
+    Result<std::vector<robot::BodySurface>> surfaces = robot::body_surfaces(robot, progress);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    Drawing drawing;
+    drawing.name = robot.name;
+    for (robot::BodySurface& body : *surfaces) {
+        const robot::MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
+        const robot::BodySpec& spec = body_named(robot, body.body);
+        std::string name = material.name;
+        // A body with light of its own is a material of its own in the same resin.
+        if (spec.exposure_s > 0) {
+            name += " of " + spec.name;
+            add_resin(drawing, name, material.resin);
+            drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
+        }
+        drawing.warnings.insert(drawing.warnings.end(), body.notes.begin(), body.notes.end());
+        drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);
+    }
+    for (const robot::MaterialSpec& material : robot.materials) {
+        add_resin(drawing, material.name, material.resin);
+        if (material.exposure_s > 0 || material.bottom_exposure_s > 0)
+            drawing.exposure_of_material[material.name] = {material.exposure_s, material.bottom_exposure_s};
+    }
+    return drawing;
+}
+
+Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::vector<std::string>& assignments,
+                             Progress& progress) {
+    if (inputs.size() == 1 && std::filesystem::path(inputs.front()).extension() == ".toml") {
+        const Result<robot::Robot> robot = robot::load_robot(inputs.front(), assignments);
+        if (!robot) return tl::unexpected(robot.error());
+        return drawing_of(*robot, progress);
+    }
+    Drawing drawing;
+    for (const std::string& input : inputs) {
+        if (std::filesystem::path(input).extension() == ".toml")
+            return input_error("{}: a robot file stands alone; for other files write MATERIAL=FILE", input);
+        if (auto status = add_file(input, drawing); !status) return tl::unexpected(status.error());
+    }
+    if (!drawing.stacks.empty() && !drawing.bodies.empty())
+        return input_error("layer images and bodies cannot be printed together: slice the bodies first");
+    for (const slice::Body& body : drawing.bodies) add_resin(drawing, body.material, body.material);
+    return drawing;
+}
+
+Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
+    for (const std::string& choice : choices) {
+        const std::size_t equals = choice.find('=');
+        const std::string material = choice.substr(0, equals);
+        const auto found = std::find_if(drawing.resin_of_material.begin(), drawing.resin_of_material.end(),
+                                        [&](const auto& pair) { return pair.first == material; });
+        if (equals == std::string::npos || equals + 1 == choice.size())
+            return input_error("--resin {}: write MATERIAL=RESIN", choice);
+        if (found == drawing.resin_of_material.end()) {
+            std::vector<std::string> names;
+            for (const auto& pair : drawing.resin_of_material) names.push_back(pair.first);
+            return input_error("--resin {}: there is no material \"{}\", only {}", choice, material, join_names(names));
+        }
+        found->second = choice.substr(equals + 1);
+    }
+    return {};
+}
+
+}  // namespace pliant::prepare

@@ -1,0 +1,390 @@
+#include "printing/prepare/make_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "base/core/parallel.hpp"
+#include "base/core/text.hpp"
+#include "printing/prepare/finding_pictures.hpp"
+#include "printing/prepare/printed_together.hpp"
+#include "printing/prepare/thumbnail.hpp"
+#include "printing/slice/inspect.hpp"
+#include "printing/slice/thin.hpp"
+
+namespace pliant::job {
+namespace {
+
+/// One layer on its way from the slicer to the archive.
+struct Prepared {
+    slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
+    std::vector<EncodedImage> images;  ///< parallel to sliced.images
+    slice::LayerShape shape;
+    std::vector<slice::ThinSpot> thin;
+    std::vector<Thumbnail::Spot> seen;       ///< in the thumbnail
+    std::map<int, std::int64_t> drawn_sums;  ///< of pixel values, by drawn material
+};
+
+/// Where layers come from, with an image per drawn material. `layer` is called from any thread; layers in [0, count).
+struct LayerSource {
+    int count = 0;
+    std::function<Result<slice::SlicedLayer>(int)> layer;
+    std::vector<int> printed_as;  ///< (drawn materials), index into the job's
+    bool parallel = true;
+};
+
+Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, const Thumbnail& thumbnail,
+                               int k) {
+    auto sliced = source.layer(k);
+    if (!sliced) return tl::unexpected(sliced.error());
+    Prepared prepared{std::move(*sliced), {}, {}, {}, {}, {}};
+    for (const slice::MaterialImage& m : prepared.sliced.images) prepared.drawn_sums[m.material] = m.value_sum;
+    put_together(prepared.sliced, source.printed_as);
+    prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
+    prepared.thin = thin_spots(prepared.sliced, k, settings.least_feature_um, settings.slicing.raster);
+    prepared.seen = thumbnail.row(prepared.sliced);
+    for (slice::MaterialImage& m : prepared.sliced.images) {
+        prepared.images.push_back(encode(settings.light.none() ? m.image : corrected(m.image, settings.light)));
+        m.image = {};
+    }
+    return prepared;
+}
+
+Result<std::vector<Material>> used_materials(const slice::Slicer& slicer, const std::vector<Material>& known) {
+    std::vector<Material> used;
+    for (const std::string& name : slicer.materials()) {
+        const auto found = std::find_if(known.begin(), known.end(), [&](const Material& m) { return m.name == name; });
+        if (found == known.end()) return input_error("material '{}' has no resin and exposure", name);
+        used.push_back(*found);
+        used.back().model_volume_mm3 = used.back().model_area_mm2 = 0;
+    }
+    return used;
+}
+
+/// Adds to a material, and to the part of it that was drawn under this name.
+void add_drawn(const std::string& name, double volume_mm3, double area_mm2, std::vector<Material>& materials) {
+    for (Material& m : materials) {
+        const auto part =
+            std::find_if(m.parts.begin(), m.parts.end(), [&](const MaterialPart& p) { return p.name == name; });
+        if (m.parts.empty() ? m.name != name : part == m.parts.end()) continue;
+        m.model_volume_mm3 += volume_mm3;
+        m.model_area_mm2 += area_mm2;
+        if (part == m.parts.end()) continue;
+        part->model_volume_mm3 += volume_mm3;
+        part->model_area_mm2 += area_mm2;
+    }
+}
+
+/// What was drawn of each material: volumes less what other bodies keep, those of a blend as it was dealt out.
+void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, const slice::Summary& summary,
+             std::vector<Material>& materials) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const slice::Measures& drawn = slicer.measures()[b];
+        const double volume_mm3 = std::max(0.0, drawn.volume_mm3 - summary.lost_mm3[b] - summary.doubled_mm3[b]);
+        const double second = summary.second_share[b];
+        add_drawn(bodies[b].material, volume_mm3 * (1 - second), drawn.area_mm2, materials);
+        if (bodies[b].blend) add_drawn(bodies[b].blend->second, volume_mm3 * second, drawn.area_mm2, materials);
+    }
+}
+
+/// What the materials are called in file names: different even where only odd characters tell them apart.
+std::vector<std::string> file_words(const std::vector<Material>& materials) {
+    std::vector<std::string> words;
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        std::string word = materials[i].name;
+        for (std::size_t n = i; !taken.insert(image_file_name(0, word)).second; ++n)
+            word = fmt::format("{}_{}", materials[i].name.substr(0, 80), n);
+        words.push_back(word);
+    }
+    return words;
+}
+
+/// What an image is lit for, where that is not what its material says of all layers; else 0.
+double own_exposure_s(const JobSettings& settings, const Material& material, int k, int thickness_um) {
+    const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
+    if (rule == settings.exposures.end()) return 0;
+    const double seconds = exposure_s(material, rule->second, k, thickness_um);
+    const double usual = k < settings.bottom_layers ? material.bottom_exposure_s : material.exposure_s;
+    return seconds == usual ? 0 : seconds;
+}
+
+Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const std::vector<std::string>& words,
+                    const JobSettings& settings, const slice::Layers& layers, Writer& writer) {
+    const double value_mm2 = manifest.pixel_um * manifest.pixel_um / 1e6 / 255;
+    Layer layer{layers.top_um(k), layers.thickness_um(k), {}};
+    for (std::size_t i = 0; i < prepared.images.size(); ++i) {
+        const slice::MaterialImage& m = prepared.sliced.images[i];
+        const std::string file = image_file_name(k, words[m.material]);
+        if (auto status = writer.add_image(file, std::move(prepared.images[i])); !status)
+            return tl::unexpected(status.error());
+        layer.images.push_back({m.material, file, static_cast<double>(m.value_sum) * value_mm2,
+                                own_exposure_s(settings, manifest.materials[m.material], k, layer.thickness_um),
+                                static_cast<double>(m.shared_sum) * value_mm2});
+    }
+    return layer;
+}
+
+/// One layer of several stacks. A pixel goes whole to the material that lights it most, the later one on a tie.
+Result<slice::SlicedLayer> stacked_layer(std::span<const MaterialStack> stacks, int k) {
+    std::vector<slice::Image> images(stacks.size());
+    slice::SlicedLayer layer;
+    layer.lost_px.assign(stacks.size(), 0.0);
+    for (std::size_t i = 0; i < stacks.size(); ++i) {
+        if (k >= stacks[i].stack.layer_count()) continue;
+        auto image = stacks[i].stack.image(k);
+        if (!image) return tl::unexpected(image.error());
+        images[i] = std::move(*image);
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        for (std::size_t j = i + 1; j < images.size(); ++j) {
+            auto &a = images[i].pixels, &b = images[j].pixels;
+            for (std::size_t p = 0; p < std::min(a.size(), b.size()); ++p) {
+                if (a[p] == 0 || b[p] == 0) continue;
+                const int both = a[p] + b[p];
+                const bool later = b[p] >= a[p];
+                layer.lost_px[later ? i : j] += std::max(0, both - 255) / 255.0;
+                (later ? b[p] : a[p]) = static_cast<std::uint8_t>(std::min(255, both));
+                (later ? a[p] : b[p]) = 0;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (images[i].pixels.empty()) continue;
+        slice::RunImage runs = slice::RunImage::from_image(images[i]);
+        const std::int64_t sum = runs.value_sum();
+        if (sum > 0) layer.images.push_back({static_cast<int>(i), std::move(runs), sum, 0});
+    }
+    return layer;
+}
+
+std::vector<std::size_t> layers_of(const Manifest& manifest, int material) {
+    std::vector<std::size_t> layers;
+    for (std::size_t k = 0; k < manifest.layers.size(); ++k) {
+        for (const LayerImage& image : manifest.layers[k].images) {
+            if (image.material == material) layers.push_back(k);
+        }
+    }
+    return layers;
+}
+
+/// Materials that cost swaps for next to nothing.
+void note_rare_materials(Manifest& manifest) {
+    constexpr std::size_t few = 3;
+    for (std::size_t m = 0; manifest.materials.size() > 1 && m < manifest.materials.size(); ++m) {
+        const std::vector<std::size_t> layers = layers_of(manifest, static_cast<int>(m));
+        if (!layers.empty() && layers.size() <= few && manifest.layers.size() > 10 * few)
+            manifest.warnings.push_back(
+                fmt::format("material \"{}\" occurs in {} of {} layers only, the first is layer {}",
+                            manifest.materials[m].name, layers.size(), manifest.layers.size(), layers.front()));
+    }
+}
+
+/// The images must hold the volume that was drawn, unless outlines were moved on purpose.
+void note_volume(Manifest& manifest) {
+    if (manifest.compensated) return;
+    double drawn = 0, lit = 0;
+    for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
+    for (const Layer& layer : manifest.layers) {
+        for (const LayerImage& image : layer.images) lit += image.area_mm2 * layer.thickness_um / 1000;
+    }
+    constexpr double tolerance = 1e-3;
+    if (std::fabs(lit - drawn) > tolerance * drawn)
+        manifest.warnings.push_back(fmt::format("the images hold {:.6g} mm^3, the bodies {:.6g} mm^3: {:+.2f} %", lit,
+                                                drawn, 100 * (lit / drawn - 1)));
+}
+
+void note_thin(const std::vector<slice::ThinSpot>& thin, const JobSettings& settings, Manifest& manifest) {
+    std::vector<std::string> names;
+    for (const Material& m : manifest.materials) names.push_back(m.name);
+    for (std::string& line : describe(thin, names, settings.least_feature_um, settings.slicing.raster))
+        manifest.warnings.push_back(std::move(line));
+}
+
+void note_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
+                   const JobSettings& settings, Manifest& manifest) {
+    note_thin(thin, settings, manifest);
+    for (std::string& line : describe(findings, settings.slicing.raster)) manifest.warnings.push_back(std::move(line));
+    if (static_cast<int>(findings.pieces.size()) > settings.copies)
+        manifest.warnings.push_back(
+            fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
+    note_rare_materials(manifest);
+    note_volume(manifest);
+}
+
+/// Findings as warnings, and with their pictures.
+Status keep_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
+                     const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer) {
+    note_findings(findings, thin, settings, manifest);
+    const slice::Raster& raster = settings.slicing.raster;
+    manifest.findings = listed(findings, thin, raster);
+    return add_pictures(manifest.findings, raster, source.layer, writer);
+}
+
+Manifest empty_manifest(const JobSettings& settings, std::vector<Material> materials) {
+    const slice::Settings& slicing = settings.slicing;
+    const slice::Raster& raster = slicing.raster;
+    return {settings.name,
+            settings.pliant_version,
+            raster.width_px,
+            raster.height_px,
+            raster.pixel_um,
+            settings.bottom_layers,
+            std::move(materials),
+            {},
+            {},
+            !slicing.compensation.empty() || !slicing.bonds.empty() || slicing.removed,
+            {},
+            settings.any_vat};
+}
+
+/// What becomes of layers once they are made, in order: told to `note`, stored, listed in the manifest.
+class LayerKeeper {
+public:
+    using Note = std::function<void(int, Prepared&)>;
+    LayerKeeper(const JobSettings& settings, Manifest& manifest, Writer& writer, const Note& note)
+        : settings_(settings),
+          heights_(settings.slicing.layers()),
+          words_(file_words(manifest.materials)),
+          thumbnail_(manifest.width_px),
+          manifest_(manifest),
+          writer_(writer),
+          note_(note) {}
+
+    [[nodiscard]] const Thumbnail& thumbnail() const { return thumbnail_; }
+
+    Status keep(std::vector<Result<Prepared>>& layers) {
+        for (Result<Prepared>& made : layers) {
+            if (!made) return tl::unexpected(made.error());
+            const int k = static_cast<int>(manifest_.layers.size());
+            note_(k, *made);
+            thumbnail_.add(made->seen);
+            auto layer = store(*made, k, manifest_, words_, settings_, heights_, writer_);
+            if (!layer) return tl::unexpected(layer.error());
+            manifest_.layers.push_back(std::move(*layer));
+        }
+        return {};
+    }
+
+    Status finish() { return writer_.add_image(thumbnail_file, thumbnail_.picture(heights_, manifest_.pixel_um)); }
+
+private:
+    const JobSettings& settings_;
+    slice::Layers heights_;
+    std::vector<std::string> words_;
+    Thumbnail thumbnail_;
+    Manifest& manifest_;
+    Writer& writer_;
+    const Note& note_;
+};
+
+/// Makes layers in parallel batches and keeps them in order. One core keeps a batch while the others make the next.
+Status make_layers(const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer,
+                   Progress& progress, const LayerKeeper::Note& note) {
+    for (const auto& [name, rule] : settings.exposures) {
+        if (auto status = check(rule, "material '" + name + "'"); !status) return status;
+    }
+    LayerKeeper keeper(settings, manifest, writer, note);
+    constexpr int batch = slice::layers_at_once;
+    std::vector<Result<Prepared>> made;
+    for (int first = 0; first < source.count; first += batch) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("slice", static_cast<double>(first) / source.count);
+        const auto size = static_cast<std::size_t>(std::min(batch, source.count - first));
+        std::vector<Result<Prepared>> next(size);
+        Status kept;
+        parallel_for(size + 1, source.parallel ? 1 : size + 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i == 0) {
+                    kept = keeper.keep(made);
+                } else {
+                    next[i - 1] = prepare_layer(source, settings, keeper.thumbnail(), first + static_cast<int>(i) - 1);
+                }
+            }
+        });
+        if (!kept) return kept;
+        made = std::move(next);
+    }
+    if (auto kept = keeper.keep(made); !kept) return kept;
+    progress.advance("slice", 1);
+    return keeper.finish();
+}
+
+}  // namespace
+
+Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings, Writer& writer,
+                             Progress& progress) {
+    const auto slicer = slice::Slicer::prepare(bodies, settings.slicing);
+    if (!slicer) return tl::unexpected(slicer.error());
+    const auto materials = used_materials(*slicer, settings.materials);
+    if (!materials) return tl::unexpected(materials.error());
+    PrintedTogether printed = printed_together(*materials, settings);
+    MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
+    slice::Tally tally(*slicer);
+    slice::Inspector inspector(settings.slicing.layers());
+    std::vector<slice::ThinSpot> thin;
+    const LayerSource source{slicer->layer_count(),
+                             [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); },
+                             std::move(printed.printed_as)};
+    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
+        tally.add(k, prepared.sliced);
+        inspector.add(std::move(prepared.shape));
+        thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
+    });
+    if (!made) return tl::unexpected(made.error());
+    job.summary = tally.summary();
+    measure(bodies, *slicer, job.summary, job.manifest.materials);
+    job.manifest.warnings = job.summary.warnings;
+    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
+        return tl::unexpected(status.error());
+    return job;
+}
+
+Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSettings& settings, Writer& writer,
+                              Progress& progress) {
+    std::vector<Material> materials;
+    LayerSource source{0, {}, {}, false};
+    for (const MaterialStack& s : stacks) {
+        const auto known = std::find_if(settings.materials.begin(), settings.materials.end(),
+                                        [&](const Material& m) { return m.name == s.material; });
+        if (known == settings.materials.end())
+            return input_error("material '{}' has no resin and exposure", s.material);
+        const slice::Raster& raster = settings.slicing.raster;
+        if (s.stack.width_px() != raster.width_px || s.stack.height_px() != raster.height_px)
+            return input_error("images of '{}' have {} x {} pixels, the projector {} x {}", s.material,
+                               s.stack.width_px(), s.stack.height_px(), raster.width_px, raster.height_px);
+        materials.push_back(*known);
+        source.count = std::max(source.count, s.stack.layer_count());
+    }
+    source.layer = [&](int k) { return stacked_layer(stacks, k); };
+    PrintedTogether printed = printed_together(materials, settings);
+    source.printed_as = std::move(printed.printed_as);
+    MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
+    slice::Inspector inspector(settings.slicing.layers());
+    std::vector<slice::ThinSpot> thin;
+    std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
+    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int, Prepared& prepared) {
+        inspector.add(std::move(prepared.shape));
+        thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
+        for (std::size_t i = 0; i < lost_px.size(); ++i) lost_px[i] += prepared.sliced.lost_px[i];
+        for (const auto& [drawn, sum] : prepared.drawn_sums) lit[drawn] += static_cast<double>(sum) / 255;
+    });
+    if (!made) return tl::unexpected(made.error());
+    const double pixel_um = settings.slicing.raster.pixel_um;
+    const double voxel_mm3 = pixel_um * pixel_um * settings.slicing.layer_um / 1e9;
+    for (std::size_t i = 0; i < stacks.size(); ++i) {
+        add_drawn(stacks[i].material, lit[i] * voxel_mm3, 0, job.manifest.materials);
+        if (lost_px[i] * voxel_mm3 > voxel_mm3)
+            job.manifest.warnings.push_back(
+                fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, "
+                            "which keep them",
+                            stacks[i].material, lost_px[i] * voxel_mm3));
+    }
+    job.summary.layer_count = source.count;
+    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
+        return tl::unexpected(status.error());
+    return job;
+}
+
+}  // namespace pliant::job

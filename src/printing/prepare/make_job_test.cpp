@@ -1,0 +1,154 @@
+#include "printing/prepare/make_job.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "printing/job/verify.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::job;
+using slice::test::box;
+namespace fs = std::filesystem;
+
+namespace {
+
+JobSettings settings() {
+    return {"halves",
+            "0.1.0",
+            2,
+            {{64, 48, 100}, 50, {}},
+            {{"soft one", "flex", -1, -1, 3, 9}, {"soft/one", "hard", 0, 0, 4, 12}, {"unused", "x", 0, 0, 1, 1}}};
+}
+
+const std::vector<slice::Body> halves{{"soft one", box({-1000, -1000, 0}, {50, 1000, 500}), ""},
+                                      {"soft/one", box({50, -1000, 0}, {1000, 1000, 1000}), ""},
+                                      {"soft one", box({-1000, -1000, 500}, {-500, 1000, 700}), ""}};
+
+}  // namespace
+
+TEST_CASE("two materials become a job with the right layers, areas and volumes") {
+    const pliant::test::Folder folder("job");
+    const fs::path path = folder / "job.zip";
+    auto writer = Writer::create(path);
+    REQUIRE(writer.has_value());
+    Progress progress;
+    const auto made = slice_to_job(halves, settings(), *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->add_file("plan.json", "{}").has_value());
+    REQUIRE(writer->finish(made->manifest).has_value());
+
+    const auto archive = Archive::open(path);
+    REQUIRE_MESSAGE(archive.has_value(), (archive ? "" : archive.error().message));
+    const Manifest& m = archive->manifest();
+    CHECK(m.name == "halves");
+    CHECK(m.bottom_layers == 2);
+    REQUIRE(m.materials.size() == 2);
+    CHECK(m.materials[0].resin == "flex");
+    CHECK(m.materials[1].bottom_exposure_s == 12);
+    CHECK(m.materials[0].model_volume_mm3 == near(1.05 * 2 * 0.5 + 0.5 * 2 * 0.2, {.relative = 1e-12}));
+    CHECK(m.materials[0].model_area_mm2 ==
+          near(2 * (1.05 * 2 + 1.05 * 0.5 + 2 * 0.5) + 2 * (0.5 * 2 + 0.5 * 0.2 + 2 * 0.2), {.relative = 1e-12}));
+    CHECK(m.materials[1].model_volume_mm3 == near(0.95 * 2 * 1, {.relative = 1e-12}));
+    REQUIRE(m.layers.size() == 20);
+    CHECK(m.layers[19].z_um == 1000);
+    CHECK(m.layers[0].images.size() == 2);
+    CHECK(m.layers[13].images.size() == 2);
+    CHECK(m.layers[14].images.size() == 1);
+    // The interface runs through the middle of a column, which goes whole to the later material.
+    CHECK(m.layers[0].images[0].area_mm2 == near(2.0, {.relative = 1e-12}));
+    CHECK(m.layers[0].images[1].area_mm2 == near(2.0, {.relative = 1e-12}));
+    CHECK(m.layers[12].images[0].area_mm2 == near(1.0, {.relative = 1e-12}));
+    CHECK(m.layers[0].images[0].file == "layers/00000_soft_one.png");
+    CHECK(m.layers[0].images[0].file != m.layers[0].images[1].file);
+    const Image image = archive->image(m.layers[12].images[0].file).value();
+    CHECK(int{image.at(24, 22)} == 255);
+    CHECK(int{image.at(24, 26)} == 255);
+    CHECK(int{image.at(24, 27)} == 0);
+}
+
+TEST_CASE("the archive is the same every time") {
+    const pliant::test::Folder folder("job");
+    std::vector<std::string> bytes;
+    for (const char* name : {"a.zip", "b.zip"}) {
+        auto writer = Writer::create(folder / name);
+        Progress progress;
+        const auto made = slice_to_job(halves, settings(), *writer, progress);
+        REQUIRE(made.has_value());
+        REQUIRE(writer->finish(made->manifest).has_value());
+        bytes.push_back(read_file(folder / name).value());
+    }
+    CHECK(bytes[0] == bytes[1]);
+}
+
+TEST_CASE("a material without settings, a bad body and cancellation stop the job") {
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "a.zip");
+    Progress progress;
+    JobSettings incomplete = settings();
+    incomplete.materials.resize(1);
+    CHECK(slice_to_job(halves, incomplete, *writer, progress).error().message ==
+          "material 'soft/one' has no resin and exposure");
+    CHECK(!slice_to_job({}, settings(), *writer, progress).has_value());
+    struct Cancel : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } cancel;
+    CHECK(slice_to_job(halves, settings(), *writer, cancel).error().cause == Cause::cancelled);
+}
+
+TEST_CASE("features narrower than asked for are named with material, layers and place") {
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "job.zip");
+    REQUIRE(writer.has_value());
+    JobSettings asked = settings();
+    asked.least_feature_um = 600;
+    const std::vector<slice::Body> fin{{"soft one", box({-1000, -1000, 0}, {1000, 1000, 500}), ""},
+                                       {"soft one", box({-100, -1000, 500}, {100, 1000, 700}), ""}};
+    Progress progress;
+    const auto made = slice_to_job(fin, asked, *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(made->manifest.warnings.size() == 1);
+    CHECK(made->manifest.warnings.front() ==
+          "material \"soft one\": features narrower than 0.6 mm in 4 layers from 10 to 13; most, 0.4 mm^2, in layer 10 "
+          "from row 14, column 31 on");
+}
+
+TEST_CASE("exposures of layers, heights, shared light and findings reach the manifest") {
+    const pliant::test::Folder folder("job");
+    const fs::path path = folder / "job.zip";
+    auto writer = Writer::create(path);
+    REQUIRE(writer.has_value());
+    Progress progress;
+    JobSettings s = settings();
+    s.exposures["soft one"] = {2, 1, 0, 50, {{4, 4, 7}}};
+    s.slicing.tops_um = {50, 100, 200, 250, 300};
+    s.slicing.bonds = {{"soft one", "soft/one", 2, 0}};
+    std::vector<slice::Body> bodies = halves;
+    bodies.push_back({"soft/one", box({1500, 0, 300}, {2000, 500, 700}), ""});
+    const auto made = slice_to_job(bodies, s, *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    REQUIRE(writer->finish(made->manifest).has_value());
+    const auto archive = Archive::open(path);
+    REQUIRE_MESSAGE(archive.has_value(), (archive ? "" : archive.error().message));
+    const Manifest& m = archive->manifest();
+    CHECK(m.compensated);
+    CHECK(m.layers[2].thickness_um == 100);
+    CHECK(m.layers[2].z_um == 200);
+    CHECK(m.layers[6].z_um == 400);
+    const double wanted[] = {9, 9, 6, 3, 7, 3};
+    for (std::size_t k = 0; k < 6; ++k) CHECK(exposure_s(m, k, 0) == near(wanted[k], {.relative = 1e-12}));
+    CHECK(exposure_s(m, 2, 1) == 4);
+    // Two columns of 20 pixels of 0.01 mm^2.
+    CHECK(m.layers[0].images[0].shared_mm2 == near(0.4, {.relative = 1e-12}));
+    CHECK(m.layers[0].images[1].shared_mm2 == 0);
+    REQUIRE(m.findings.size() == 1);
+    CHECK(m.findings[0].kind == "island");
+    CHECK(m.findings[0].first_layer == 5);
+    CHECK(m.findings[0].area_mm2 == near(0.25, {.relative = 1e-12}));
+    CHECK(archive->has_file(m.findings[0].picture));
+    CHECK(verify_images(*archive, false, "job.zip").has_value());
+}

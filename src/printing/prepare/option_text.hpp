@@ -1,0 +1,26 @@
+// What options of a slice say, as numbers.
+#pragma once
+
+#include <string>
+
+#include "base/core/error.hpp"
+
+namespace pliant::prepare {
+
+/// A length with its unit, in micrometres; `otherwise` where the text is empty. Errors name the option.
+[[nodiscard]] Result<double> length_um(const char* option, const std::string& text, double otherwise);
+
+/// The same, from `least_um` to `most_um`.
+[[nodiscard]] Result<double> length_um(const char* option, const std::string& text, double otherwise, double least_um,
+                                       double most_um);
+
+/// A whole number of micrometres from 1 to 1000.
+[[nodiscard]] Result<int> layer_height_um(const char* option, const std::string& text);
+
+/// A whole number from 0 on without anything around it; -1 for anything else.
+[[nodiscard]] int plain_number(const std::string& text);
+
+/// A number without anything around it. Errors: anything else, infinity included.
+[[nodiscard]] Result<double> plain_degrees(const char* option, const std::string& text);
+
+}  // namespace pliant::prepare

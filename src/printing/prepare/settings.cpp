@@ -1,0 +1,367 @@
+#include "printing/prepare/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/core/text.hpp"
+#include "base/core/units.hpp"
+#include "printing/machine/working_curve.hpp"
+#include "printing/plan/assign.hpp"
+#include "printing/prepare/option_text.hpp"
+
+namespace pliant::prepare {
+namespace {
+
+/// A material with what the printer file says of its resin; for one that it does not know, the longest exposures that
+/// it has are taken.
+job::Material with_exposure(const std::string& name, const std::string& resin, const machine::Printer& printer,
+                            std::vector<std::string>& warnings) {
+    job::Material entry;
+    entry.name = name;
+    entry.resin = resin;
+    if (const machine::Resin* known = printer.find_resin(resin)) {
+        entry.exposure_s = known->exposure_s;
+        entry.bottom_exposure_s = known->bottom_exposure_s;
+        return entry;
+    }
+    for (const machine::Resin& other : printer.resins) {
+        entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
+        entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
+    }
+    warnings.push_back(
+        fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed",
+                    resin, entry.exposure_s, entry.bottom_exposure_s));
+    return entry;
+}
+
+std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Printer& printer) {
+    std::vector<job::Material> materials;
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        const auto same_name = [&name = material](const job::Material& known) { return known.name == name; };
+        if (std::any_of(materials.begin(), materials.end(), same_name)) continue;
+        job::Material entry = with_exposure(material, resin, printer, drawing.warnings);
+        if (const auto own = drawing.exposure_of_material.find(material); own != drawing.exposure_of_material.end()) {
+            if (own->second.first > 0) entry.exposure_s = own->second.first;
+            entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, entry.exposure_s);
+            if (own->second.second > 0) entry.bottom_exposure_s = own->second.second;
+        }
+        materials.push_back(std::move(entry));
+    }
+    return materials;
+}
+
+/// Of every material, as the resin that it is printed in asks for.
+std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
+    std::map<std::string, slice::Compensation> result;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr) continue;
+        const slice::Compensation c{static_cast<double>(resin->xy_compensation_um),
+                                    static_cast<double>(resin->elephant_foot_um), resin->elephant_foot_layers,
+                                    static_cast<double>(resin->bleed_compensation_um)};
+        if (c.grow_um != 0 || c.foot_um != 0 || c.bleed_um != 0) result[material] = c;
+    }
+    return result;
+}
+
+/// How layers of each material are lit where they are not all alike.
+std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, const machine::Printer& printer,
+                                                        int bottom_layers, bool many_heights) {
+    std::map<std::string, job::ExposureRule> rules;
+    for (const auto& [material, name] : drawing.resin_of_material) {
+        const machine::Resin* resin = printer.find_resin(name);
+        if (resin == nullptr) continue;
+        job::ExposureRule rule{bottom_layers, resin->transition_layers, 0, printer.layer_um, {}};
+        if (many_heights) rule.penetration_um = machine::working_curve(printer, *resin).penetration_um;
+        if (rule.transition_layers > 0 || rule.penetration_um > 0) rules[material] = rule;
+    }
+    return rules;
+}
+
+struct Pair {
+    std::string first, second;
+    int pixels = 0, layers = 0;
+};
+
+/// FIRST+SECOND=PIXELS or FIRST+SECOND=PIXELS,LAYERS.
+Result<Pair> read_pair(const char* option, const std::string& text, int default_layers) {
+    const std::size_t equals = text.rfind('='), plus = text.find('+');
+    if (equals == std::string::npos || plus == std::string::npos || plus > equals)
+        return input_error("{} {}: write MATERIAL+MATERIAL=PIXELS or MATERIAL+MATERIAL=PIXELS,LAYERS", option, text);
+    const std::string numbers = text.substr(equals + 1);
+    const std::size_t comma = std::min(numbers.find(','), numbers.size());
+    Pair pair{text.substr(0, plus), text.substr(plus + 1, equals - plus - 1), 0, default_layers};
+    pair.pixels = plain_number(numbers.substr(0, comma));
+    if (comma < numbers.size()) pair.layers = plain_number(numbers.substr(comma + 1));
+    if (pair.pixels < 0 || pair.layers < 0)
+        return input_error("{} {}: \"{}\" must be whole numbers, as in 4 or 4,2", option, text, numbers);
+    return pair;
+}
+
+Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& slicing) {
+    if (!drawing.stacks.empty() && !(order.interlocks.empty() && order.overlaps.empty()))
+        return input_error("--interlock, --overlap: layer images are printed as they are");
+    for (const std::string& text : order.interlocks) {
+        const Result<Pair> pair = read_pair("--interlock", text, 1);
+        if (!pair) return tl::unexpected(pair.error());
+        slicing.teeth.push_back({pair->first, pair->second, pair->pixels, pair->layers});
+    }
+    for (const std::string& text : order.overlaps) {
+        const Result<Pair> pair = read_pair("--overlap", text, 0);
+        if (!pair) return tl::unexpected(pair.error());
+        slicing.bonds.push_back({pair->first, pair->second, pair->pixels, pair->layers});
+    }
+    return {};
+}
+
+Result<double> seconds_of(const std::string& option, const std::string& text) {
+    const Result<double> seconds = parse_quantity(text, Dimension::time);
+    if (!seconds) return input_error("--exposure {}: {}", option, seconds.error().message);
+    if (!(*seconds > 0 && *seconds <= 3600))
+        return input_error("--exposure {}: must be above 0 s and at most an hour", option);
+    return *seconds;
+}
+
+/// An exposure that is far from what the printer file gives the resin is more often a slip than a wish.
+void note_far_exposure(const std::string& option, double seconds, double usual_s, const machine::Printer& printer,
+                       const machine::Resin& resin, double layer_um, std::vector<std::string>& warnings) {
+    constexpr double far = 2;
+    if (usual_s <= 0 || (seconds * far >= usual_s && seconds <= usual_s * far)) return;
+    std::string text = fmt::format(
+        "--exposure {}: {:.4g} s is {:.3g} times the {:.4g} s that the printer file gives resin "
+        "\"{}\"",
+        option, seconds, seconds / usual_s, usual_s, resin.name);
+    if (resin.penetration_um > 0 || (resin.cure_depth_um > 0 && resin.critical_share > 0))
+        text += fmt::format(
+            "; it cures {:.3g} um deep, layers are {:.4g} um",
+            machine::working_curve(printer, resin).depth_um(machine::irradiance_W_m2(printer) * seconds), layer_um);
+    warnings.push_back(text);
+}
+
+/// MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME.
+Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
+                    std::vector<std::string>& warnings) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+        return input_error("--exposure {}: write MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME",
+                           text);
+    std::string name = text.substr(0, equals);
+    const std::string times = text.substr(equals + 1);
+    const std::size_t colon = name.rfind(':'), comma = std::min(times.find(','), times.size());
+    std::optional<job::ExposureSpan> span;
+    if (colon != std::string::npos) {
+        const std::string layers = name.substr(colon + 1);
+        const std::size_t dash = std::min(layers.find('-'), layers.size());
+        span = job::ExposureSpan{plain_number(layers.substr(0, dash)), 0, 0};
+        span->last = dash < layers.size() ? plain_number(layers.substr(dash + 1)) : span->first;
+        if (span->first < 0 || span->last < span->first || comma < times.size())
+            return input_error("--exposure {}: layers are FIRST-LAST, counted from 0, and have one time", text);
+        name.resize(colon);
+    }
+    const auto material = std::find_if(settings.materials.begin(), settings.materials.end(),
+                                       [&](const job::Material& m) { return m.name == name; });
+    if (material == settings.materials.end())
+        return input_error("--exposure {}: there is no material \"{}\"", text, name);
+    const Result<double> seconds = seconds_of(text, times.substr(0, comma));
+    if (!seconds) return tl::unexpected(seconds.error());
+    const machine::Resin* resin = printer.find_resin(material->resin);
+    const auto note = [&](double given_s, double machine::Resin::*usual) {
+        if (resin == nullptr) return;
+        note_far_exposure(text, given_s, resin->*usual, printer, *resin, settings.slicing.layer_um, warnings);
+    };
+    note(*seconds, &machine::Resin::exposure_s);
+    if (span) {
+        span->seconds = *seconds;
+        auto [rule, added] = settings.exposures.try_emplace(name);
+        if (added) rule->second.bottom_layers = settings.bottom_layers;
+        rule->second.spans.push_back(*span);
+        return {};
+    }
+    material->exposure_s = *seconds;
+    material->bottom_exposure_s = std::max(material->bottom_exposure_s, *seconds);
+    if (comma == times.size()) return {};
+    const Result<double> bottom = seconds_of(text, times.substr(comma + 1));
+    if (!bottom) return tl::unexpected(bottom.error());
+    note(*bottom, &machine::Resin::bottom_exposure_s);
+    material->bottom_exposure_s = *bottom;
+    return {};
+}
+
+/// A misspelt resin is told before anything is sliced: of the materials that something is made of.
+Status check_resins(const Drawing& drawing, const std::vector<job::Material>& materials,
+                    const machine::Printer& printer) {
+    std::vector<job::Material> used;
+    for (const job::Material& m : materials) {
+        const auto is_made_of = [&](const slice::Body& b) {
+            return b.material == m.name || (b.blend && b.blend->second == m.name);
+        };
+        const auto shows = [&](const job::MaterialStack& s) { return s.material == m.name; };
+        if (std::any_of(drawing.bodies.begin(), drawing.bodies.end(), is_made_of) ||
+            std::any_of(drawing.stacks.begin(), drawing.stacks.end(), shows))
+            used.push_back(m);
+    }
+    return plan::check_resins(used, printer);
+}
+
+int bottom_layers(const machine::Printer& printer) {
+    int layers = 0;
+    for (const machine::Resin& resin : printer.resins) layers = std::max(layers, resin.bottom_layers);
+    return layers;
+}
+
+slice::Raster raster_of(const machine::Projector& p) {
+    return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
+}
+
+/// The material of supports, in the resin of its name, or of --resin, where no body has it.
+Status add_support_material(const Order& order, const machine::Printer& printer, Drawing& drawing) {
+    if (order.support.empty()) return {};
+    const auto known = [&](const auto& pair) { return pair.first == order.support; };
+    if (std::none_of(drawing.resin_of_material.begin(), drawing.resin_of_material.end(), known))
+        drawing.resin_of_material.emplace_back(order.support, order.support);
+    else
+        return {};
+    const auto given = [&](const std::string& choice) { return choice.starts_with(order.support + "="); };
+    if (printer.find_resin(order.support) != nullptr || std::any_of(order.resins.begin(), order.resins.end(), given))
+        return {};
+    std::vector<std::string> names;
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        if (material != order.support) names.push_back(material);
+    }
+    for (const machine::Resin& resin : printer.resins) {
+        if (std::find(names.begin(), names.end(), resin.name) == names.end()) names.push_back(resin.name);
+    }
+    return input_error(
+        "--support {0}: is neither a material of the part nor a resin of the printer ({1}); or say "
+        "--resin {0}=RESIN",
+        order.support, join_names(names));
+}
+
+/// What layer images cannot be asked for.
+Status check_stacks(const Order& order, const Drawing& drawing) {
+    if (drawing.stacks.empty()) return {};
+    const std::pair<const char*, bool> given[] = {{"--copies", order.copies != 1},
+                                                  {"--turn", !order.turn.empty()},
+                                                  {"--least-layer", !order.least_layer.empty()},
+                                                  {"--support", !order.support.empty()},
+                                                  {"--hollow", !order.hollow.empty()}};
+    for (const auto& [option, is_given] : given) {
+        if (is_given) return input_error("{}: layer images are printed as they are", option);
+    }
+    return {};
+}
+
+std::string um_text(double um) {
+    return fmt::format("{:g} um", um);
+}
+
+/// What the stacks say of their layers' height, if they do; all must say the same.
+Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
+    constexpr double same_um = 1e-3;
+    const job::MaterialStack* first = nullptr;
+    for (const job::MaterialStack& s : drawing.stacks) {
+        if (!s.stack.layer_um()) continue;
+        if (first == nullptr) first = &s;
+        if (std::fabs(*s.stack.layer_um() - *first->stack.layer_um()) > same_um)
+            return input_error("images of \"{}\" are for layers of {}, those of \"{}\" for {}: slice them alike",
+                               first->material, um_text(*first->stack.layer_um()), s.material,
+                               um_text(*s.stack.layer_um()));
+    }
+    if (first == nullptr) return std::nullopt;
+    return first->stack.layer_um();
+}
+
+/// --layer, else the height that layer images were made for, else the printer's. Images printed in layers of another
+/// height would give a part that is too high or too low.
+Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawing& drawing) {
+    const Result<std::optional<double>> stacked = stacked_layer_um(drawing);
+    if (!stacked) return tl::unexpected(stacked.error());
+    const Result<int> asked = order.layer.empty() ? printer.layer_um : layer_height_um("--layer", order.layer);
+    if (!asked) return asked;
+    if (!*stacked) {
+        if (!drawing.stacks.empty() && order.layer.empty())
+            drawing.warnings.push_back(fmt::format(
+                "layer images do not say how high their layers are: {} of the printer file are assumed; --layer says "
+                "otherwise",
+                um_text(*asked)));
+        return asked;
+    }
+    const double um = std::round(**stacked);
+    if (std::fabs(um - **stacked) > 1e-3 || um > 1000)
+        return input_error("layer images are for layers of {}: a whole number of micrometres from 1 to 1000 is needed",
+                           um_text(**stacked));
+    if (!order.layer.empty() && *asked != static_cast<int>(um))
+        return input_error(
+            "--layer {}: the layer images are for layers of {}, the part would come out {:.3g} times as high: leave "
+            "--layer out, or slice anew",
+            order.layer, um_text(um), *asked / um);
+    return static_cast<int>(um);
+}
+
+}  // namespace
+
+Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
+                                      std::optional<job::Image> mask, Drawing& drawing) {
+    if (Status status = check_stacks(order, drawing); !status) return tl::unexpected(status.error());
+    if (Status status = add_support_material(order, printer, drawing); !status) return tl::unexpected(status.error());
+    if (Status status = set_resins(order.resins, drawing); !status) return tl::unexpected(status.error());
+    job::JobSettings settings;
+    settings.name = drawing.name;
+    settings.pliant_version = order.version;
+    settings.bottom_layers = bottom_layers(printer);
+    settings.slicing.raster = raster_of(printer.projector);
+    if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
+    settings.light.mask = std::move(mask);
+    settings.copies = order.copies;
+    settings.any_vat = order.any_vat;
+    const Result<int> layer_um = layer_of(order, printer, drawing);
+    if (!layer_um) return tl::unexpected(layer_um.error());
+    settings.slicing.layer_um = *layer_um;
+    settings.materials = with_exposures(drawing, printer);
+    if (!order.any_vat) {
+        if (Status status = check_resins(drawing, settings.materials, printer); !status)
+            return tl::unexpected(status.error());
+    }
+    settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
+    for (const std::string& text : order.exposures) {
+        if (Status status = set_exposure(text, printer, settings, drawing.warnings); !status)
+            return tl::unexpected(status.error());
+    }
+    settings.slicing.compensation = compensations(drawing, printer);
+    if (!drawing.stacks.empty() && !settings.slicing.compensation.empty()) {
+        settings.slicing.compensation.clear();
+        drawing.warnings.emplace_back(
+            "xy_compensation, elephant_foot and bleed_compensation: layer images are printed as they are");
+    }
+    if (Status status = set_pairs(order, drawing, settings.slicing); !status) return tl::unexpected(status.error());
+    const Result<double> least = length_um("--least-feature", order.least_feature, 0, 1e-3, 10000);
+    if (!least) return tl::unexpected(least.error());
+    settings.least_feature_um = *least;
+    settings.slicing.rules.anti_alias = !order.no_anti_alias;
+    settings.slicing.rules.threshold = order.threshold;
+    return settings;
+}
+
+job::Request request_of(const Order& order, const job::JobSettings& settings) {
+    job::Request request{order.inputs, order.assignments, order.turn, order.spacing};
+    if (!settings.slicing.tops_um.empty()) {
+        const Result<int> least = layer_height_um("--least-layer", order.least_layer);
+        request.least_layer_um = least.value_or(0);
+    }
+    const std::pair<const char*, const std::string*> texts[] = {{"support", &order.support},
+                                                                {"support_angle", &order.support_angle},
+                                                                {"support_spacing", &order.support_spacing},
+                                                                {"support_tip", &order.support_tip},
+                                                                {"support_pillar", &order.support_pillar},
+                                                                {"lift", &order.lift},
+                                                                {"raft", &order.raft},
+                                                                {"hollow", &order.hollow},
+                                                                {"drain", &order.drain}};
+    for (const auto& [key, text] : texts) {
+        if (!text->empty()) request.supports.emplace_back(key, *text);
+    }
+    return request;
+}
+
+}  // namespace pliant::prepare

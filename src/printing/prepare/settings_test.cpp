@@ -1,0 +1,282 @@
+#include "printing/prepare/settings.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <functional>
+#include <utility>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "printing/job/png.hpp"
+#include "printing/prepare/test_order.hpp"
+
+using namespace pliant;
+using namespace pliant::prepare;
+using namespace pliant::prepare::test;
+
+namespace {
+
+using Change = std::function<void(Order&)>;
+
+job::JobSettings settings_of(const Change& change, Drawing drawing = two_blocks()) {
+    Order order;
+    change(order);
+    const auto settings = job_settings(order, printer(), {}, drawing);
+    REQUIRE_MESSAGE(settings.has_value(), (settings ? "" : settings.error().message));
+    return *settings;
+}
+
+std::string refused(const Change& change) {
+    Order order;
+    change(order);
+    Drawing drawing = two_blocks();
+    const auto settings = job_settings(order, printer(), {}, drawing);
+    REQUIRE(!settings.has_value());
+    CHECK(settings.error().cause == Cause::input);
+    return settings.error().message;
+}
+
+/// Two dark images in a folder, with what stands beside them in a .sl1 that was sliced so high ("": nothing).
+void write_stack(const std::filesystem::path& folder, const std::string& layer_height_mm) {
+    std::filesystem::create_directories(folder);
+    const std::string png = job::encode_png(slice::RunImage(200, 100));
+    for (const char* name : {"part00000.png", "part00001.png"}) REQUIRE(write_file(folder / name, png).has_value());
+    if (!layer_height_mm.empty())
+        REQUIRE(write_file(folder / "config.ini", "layerHeight = " + layer_height_mm + "\n").has_value());
+}
+
+/// The drawing of a stack of each material, sliced at these heights.
+Drawing stacks(const pliant::test::Folder& folder, const std::string& soft_mm, const std::string& firm_mm = "none") {
+    std::vector<std::string> inputs;
+    for (const auto& [name, height_mm] : {std::pair("soft", soft_mm), std::pair("firm", firm_mm)}) {
+        if (height_mm == "none") continue;
+        const std::filesystem::path at = folder / (std::string(name) + "_" + height_mm);
+        write_stack(at, height_mm);
+        inputs.push_back(std::string(name) + "=" + at.string());
+    }
+    Progress silent;
+    auto drawing = read_drawing(inputs, {}, silent);
+    REQUIRE_MESSAGE(drawing, (drawing ? "" : drawing.error().message));
+    return std::move(*drawing);
+}
+
+/// The layers' height, or what is said against it.
+std::string layer_or_error(const std::string& layer, Drawing drawing) {
+    Order order;
+    order.layer = layer;
+    const auto settings = job_settings(order, printer(), {}, drawing);
+    if (!settings) return settings.error().message;
+    return fmt::format("{}{}", settings->slicing.layer_um, drawing.warnings.empty() ? "" : " assumed");
+}
+
+}  // namespace
+
+TEST_CASE("layer images are printed as high as they were sliced") {
+    const pliant::test::Folder folder("stacks");
+    CHECK(layer_or_error("", stacks(folder, "0.1")) == "100");  // not the printer's 50
+    CHECK(layer_or_error("100 um", stacks(folder, "0.1")) == "100");
+    CHECK(layer_or_error("0.1 mm", stacks(folder, "0.1", "0.100")) == "100");
+    CHECK(layer_or_error("", stacks(folder, "", "0.025")) == "25");  // one of them says it
+    CHECK(layer_or_error("50 um", stacks(folder, "0.1")) ==
+          "--layer 50 um: the layer images are for layers of 100 um, the part would come out 0.5 times as high: leave "
+          "--layer out, or slice anew");
+    CHECK(layer_or_error("", stacks(folder, "0.1", "0.05")) ==
+          "images of \"soft\" are for layers of 100 um, those of \"firm\" for 50 um: slice them alike");
+    CHECK(layer_or_error("", stacks(folder, "0.0125")).find("layer images are for layers of 12.5 um") == 0);
+    CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
+}
+
+TEST_CASE("images that do not say how high their layers are take --layer, or the printer's with a warning") {
+    const pliant::test::Folder folder("stacks");
+    CHECK(layer_or_error("100 um", stacks(folder, "")) == "100");
+    CHECK(layer_or_error("", stacks(folder, "")) == "50 assumed");
+}
+
+TEST_CASE("what is not asked for is the printer's") {
+    const job::JobSettings s = settings_of([](Order&) {});
+    CHECK(s.name == "blocks");
+    CHECK(s.slicing.layer_um == 50);
+    CHECK(s.slicing.raster.width_px == 200);
+    CHECK(s.slicing.raster.pixel_um == 100);
+    CHECK(s.slicing.rules.anti_alias);
+    CHECK(s.bottom_layers == 3);
+    CHECK(s.least_feature_um == 0);
+    CHECK(s.copies == 1);
+    REQUIRE(s.materials.size() == 2);
+    CHECK(s.materials[0].exposure_s == 2);
+    CHECK(s.materials[0].bottom_exposure_s == 9);
+    CHECK(s.materials[1].exposure_s == 4);
+    CHECK(s.slicing.teeth.empty());
+    CHECK(s.slicing.bonds.empty());
+    CHECK(s.exposures.empty());
+}
+
+TEST_CASE("--layer and --least-feature") {
+    CHECK(settings_of([](Order& o) { o.layer = "25 um"; }).slicing.layer_um == 25);
+    CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == near(300, {.relative = 1e-12}));
+    CHECK(settings_of([](Order& o) { o.least_feature = "10 mm"; }).least_feature_um ==
+          near(10000, {.relative = 1e-12}));
+    CHECK(refused([](Order& o) { o.layer = "0.5 um"; }).find("--layer 0.5 um: a whole number") == 0);
+    CHECK(refused([](Order& o) { o.layer = "50"; }).find("--layer: ") == 0);
+    CHECK(refused([](Order& o) { o.least_feature = "10.1 mm"; }) == "--least-feature 10.1 mm: must be 1e-06 to 10 mm");
+    CHECK(refused([](Order& o) { o.least_feature = "0 mm"; }).find("--least-feature 0 mm: must be") == 0);
+}
+
+TEST_CASE("--interlock and --overlap name two materials, pixels and layers") {
+    const auto s = settings_of([](Order& o) {
+        o.interlocks = {"soft+firm=4", "firm+soft=3,2"};
+        o.overlaps = {"soft+firm=2", "soft+firm=0,1"};
+    });
+    REQUIRE(s.slicing.teeth.size() == 2);
+    CHECK(s.slicing.teeth[0].first == "soft");
+    CHECK(s.slicing.teeth[0].second == "firm");
+    CHECK(s.slicing.teeth[0].depth_px == 4);
+    CHECK(s.slicing.teeth[0].layers == 1);
+    CHECK(s.slicing.teeth[1].layers == 2);
+    REQUIRE(s.slicing.bonds.size() == 2);
+    CHECK(s.slicing.bonds[0].depth_px == 2);
+    CHECK(s.slicing.bonds[0].layers == 0);
+    CHECK(s.slicing.bonds[1].depth_px == 0);
+    CHECK(s.slicing.bonds[1].layers == 1);
+    for (const char* wrong : {"soft=4", "soft+firm", "soft=4+firm", ""})
+        CHECK(refused([&](Order& o) { o.interlocks = {wrong}; }).find("write MATERIAL+MATERIAL=PIXELS") !=
+              std::string::npos);
+    for (const char* wrong : {"soft+firm=", "soft+firm=-1", "soft+firm=2,", "soft+firm=2,x", "soft+firm=1.5"})
+        CHECK(refused([&](Order& o) { o.overlaps = {wrong}; }).find("must be whole numbers") != std::string::npos);
+}
+
+TEST_CASE("--exposure: of a material, of its first layers, of some layers") {
+    auto s = settings_of([](Order& o) { o.exposures = {"soft=3 s"}; });
+    CHECK(s.materials[0].exposure_s == 3);
+    CHECK(s.materials[0].bottom_exposure_s == 9);  // still the longer one
+    CHECK(s.materials[1].exposure_s == 4);
+    s = settings_of([](Order& o) { o.exposures = {"soft=20 s"}; });
+    CHECK(s.materials[0].bottom_exposure_s == 20);
+    s = settings_of([](Order& o) { o.exposures = {"soft=20 s,5 s"}; });
+    CHECK(s.materials[0].bottom_exposure_s == 5);
+    s = settings_of([](Order& o) { o.exposures = {"firm:2-5=6 s", "firm:7=1 s"}; });
+    REQUIRE(s.exposures.contains("firm"));
+    const auto& spans = s.exposures.at("firm").spans;
+    REQUIRE(spans.size() == 2);
+    CHECK(spans[0].first == 2);
+    CHECK(spans[0].last == 5);
+    CHECK(spans[0].seconds == 6);
+    CHECK(spans[1].first == 7);
+    CHECK(spans[1].last == 7);
+    CHECK(s.materials[1].exposure_s == 4);
+    CHECK(settings_of([](Order& o) { o.exposures = {"soft=1 h"}; }).materials[0].exposure_s == 3600);
+    for (const char* wrong : {"soft", "=3 s", ""})
+        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("write MATERIAL=TIME") != std::string::npos);
+    for (const char* wrong : {"soft=0 s", "soft=-1 s", "soft=3601 s", "soft=2 s,0 s"})
+        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("must be above 0 s and at most an hour") !=
+              std::string::npos);
+    for (const char* wrong : {"soft:5-2=3 s", "soft:-1-2=3 s", "soft:=3 s", "soft:1-=3 s", "soft:1-2=3 s,4 s"})
+        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("layers are FIRST-LAST") != std::string::npos);
+    CHECK(refused([](Order& o) { o.exposures = {"hard=3 s"}; }).find("there is no material \"hard\"") !=
+          std::string::npos);
+    CHECK(refused([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
+}
+
+TEST_CASE("an exposure far from the printer file's is told, with how deep it cures") {
+    machine::Printer p = printer();
+    p.resins[0].cure_depth_um = 150;
+    p.resins[0].critical_share = 0.2;
+    const auto warnings = [&](const char* exposure) {
+        Drawing drawing = two_blocks();
+        Order order;
+        order.exposures = {exposure};
+        REQUIRE(job_settings(order, p, {}, drawing).has_value());
+        return drawing.warnings;
+    };
+    CHECK(warnings("soft=1 s").empty());
+    CHECK(warnings("soft=4 s").empty());
+    REQUIRE(warnings("soft=0.3 s").size() == 1);
+    CHECK(warnings("soft=0.3 s")[0].starts_with(
+        "--exposure soft=0.3 s: 0.3 s is 0.15 times the 2 s that the printer file "
+        "gives resin \"soft\"; it cures 32.1 um deep, layers are 50 um"));
+    CHECK(warnings("soft=20 s").size() == 1);
+    CHECK(warnings("soft=2 s,100 s").size() == 1);
+    CHECK(warnings("soft:2-4=20 s").size() == 1);
+    CHECK(warnings("firm=20 s") == std::vector<std::string>{"--exposure firm=20 s: 20 s is 5 times the 4 s that the "
+                                                            "printer file gives resin \"firm\""});
+}
+
+TEST_CASE("--resin: another resin with its exposures; one that no vat holds is an error unless any vat will do") {
+    Drawing drawing = two_blocks();
+    Order order;
+    order.resins = {"soft=firm"};
+    auto s = job_settings(order, printer(), {}, drawing);
+    REQUIRE(s.has_value());
+    CHECK(s->materials[0].resin == "firm");
+    CHECK(s->materials[0].exposure_s == 4);
+    CHECK(drawing.warnings.empty());
+    CHECK(refused([](Order& o) { o.resins = {"soft=frim"}; }).find("did you mean \"firm\"?") != std::string::npos);
+    const std::string unknown = refused([](Order& o) { o.resins = {"soft=glue"}; });
+    CHECK(unknown.find("no vat of  holds the resin \"glue\" of \"soft\": they hold soft and firm.") == 0);
+    CHECK(unknown.find("--any-vat") != std::string::npos);
+    drawing = two_blocks();
+    order.resins = {"soft=glue"};
+    order.any_vat = true;
+    s = job_settings(order, printer(), {}, drawing);
+    REQUIRE(s.has_value());
+    CHECK(s->any_vat);
+    CHECK(s->materials[0].exposure_s == 4);  // the longest that is known
+    CHECK(s->materials[0].bottom_exposure_s == 9);
+    REQUIRE(drawing.warnings.size() == 1);
+    CHECK(drawing.warnings[0].find("resin \"glue\" is not in the printer file") == 0);
+    CHECK(refused([](Order& o) { o.resins = {"hard=firm"}; }).find("hard") != std::string::npos);
+    CHECK(!refused([](Order& o) { o.resins = {"soft"}; }).empty());
+}
+
+TEST_CASE("what the resins of the printer ask for reaches their materials") {
+    machine::Printer p = printer();
+    p.resins[1].xy_compensation_um = -40;
+    p.resins[0].transition_layers = 5;
+    p.projector.grey = {0, 0.5, 1};
+    Drawing drawing = two_blocks();
+    const auto s = job_settings({}, p, {}, drawing);
+    REQUIRE(s.has_value());
+    REQUIRE(s->slicing.compensation.size() == 1);
+    CHECK(s->slicing.compensation.at("firm").grow_um == -40);
+    REQUIRE(s->exposures.size() == 1);
+    CHECK(s->exposures.at("soft").transition_layers == 5);
+    CHECK(s->exposures.at("soft").bottom_layers == 3);
+    CHECK(!s->light.none());
+}
+
+TEST_CASE("--support with a material that no body has takes the resin of its name; the record keeps what was asked") {
+    Order order;
+    order.support = "firm";
+    Drawing drawing = two_blocks();
+    REQUIRE(job_settings(order, printer(), {}, drawing).has_value());
+    CHECK(drawing.resin_of_material.size() == 2);
+    order.support = "brittle";
+    order.raft = "1 mm";
+    drawing = two_blocks();
+    const auto unknown = job_settings(order, printer(), {}, drawing);
+    REQUIRE(!unknown.has_value());
+    CHECK(unknown.error().message ==
+          "--support brittle: is neither a material of the part nor a resin of the printer (soft and firm); or say "
+          "--resin brittle=RESIN");
+    drawing = two_blocks();
+    order.resins = {"brittle=firm"};
+    const auto s = job_settings(order, printer(), {}, drawing);
+    REQUIRE(s.has_value());
+    CHECK(s->materials.size() == 3);
+    CHECK(s->materials[2].resin == "firm");
+    const job::Request request = request_of(order, *s);
+    REQUIRE(request.supports.size() == 2);
+    CHECK(request.supports[0] == std::pair<std::string, std::string>{"support", "brittle"});
+    CHECK(request.supports[1] == std::pair<std::string, std::string>{"raft", "1 mm"});
+}
+
+TEST_CASE("--no-anti-alias and --threshold reach the rules") {
+    const auto s = settings_of([](Order& o) {
+        o.no_anti_alias = true;
+        o.threshold = 0.3;
+    });
+    CHECK(!s.slicing.rules.anti_alias);
+    CHECK(s.slicing.rules.threshold == 0.3);
+}

@@ -1,0 +1,47 @@
+// Images decoded one exposure ahead: while the light of one is on, or the vats change, a thread fetches the next.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+
+namespace pliant::host {
+
+/// Asks `source` for what it is asked for, and then, in a thread, for what comes next in `order`. `source` is called by
+/// one thread at a time; it must outlive this. Any other order works too, without the gain.
+class ImageAhead {
+public:
+    using Source = std::function<Result<job::Image>(int layer, int material)>;
+    using Order = std::vector<std::pair<int, int>>;  ///< layer and material of each exposure
+
+    ImageAhead(Source source, Order order);
+    ~ImageAhead();
+    ImageAhead(const ImageAhead&) = delete;
+    ImageAhead& operator=(const ImageAhead&) = delete;
+
+    [[nodiscard]] Result<job::Image> get(int layer, int material);
+    [[nodiscard]] int fetched_ahead() const { return fetched_ahead_; }  ///< images that were there when asked for
+
+private:
+    void begin(std::size_t place);
+    void begin_next(int layer, int material);
+
+    Source source_;
+    Order order_;
+    std::size_t next_ = 0;  ///< in order_, after what was asked for last
+    std::pair<int, int> coming_{};
+    std::future<void> fetching_;
+    std::optional<Result<job::Image>> image_;  ///< of `coming_`, once fetched
+    int fetched_ahead_ = 0;
+};
+
+/// The exposures of a job's G-code, in order; lines that are no `;@expose` are passed over.
+[[nodiscard]] ImageAhead::Order order_of_exposures(std::string_view gcode);
+
+}  // namespace pliant::host

@@ -1,0 +1,33 @@
+// Keeps frames apart where nothing else does.
+#pragma once
+
+#include <algorithm>
+
+#include "printing/wire/steady_clock.hpp"
+
+namespace pliant::host {
+
+class Pacer {
+public:
+    explicit Pacer(double frame_s) : frame_s_(frame_s) {}
+    /// Waits until the next frame may be begun, so that it lands a frame after the last one.
+    void wait() {
+        clock_.sleep(last_s_ + frame_s_ - quickest_s_ - clock_.now());
+        begun_s_ = clock_.now();
+    }
+    /// The frame is there: the time of that, from which the next one counts.
+    double mark() {
+        last_s_ = clock_.now();
+        quickest_s_ = std::min(quickest_s_, last_s_ - begun_s_);
+        return last_s_;
+    }
+
+private:
+    double frame_s_;
+    double last_s_ = 0;
+    double begun_s_ = 0;
+    double quickest_s_ = frame_s_;  ///< from begin to landing: no frame lands earlier than that
+    SteadyClock clock_;
+};
+
+}  // namespace pliant::host

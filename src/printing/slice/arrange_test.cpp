@@ -1,0 +1,49 @@
+#include "printing/slice/arrange.hpp"
+
+#include <doctest/doctest.h>
+
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+
+TEST_CASE("a part is turned about x, then y, then z") {
+    std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1000, 2000, 3000}), "a"}};
+    REQUIRE(turn(bodies, {90, 0, 90}).has_value());  // y to z, z to -y; then x to y, -y to x
+    const Box3 box = mesh::bounds(bodies[0].surface_um);
+    CHECK(box.low == Vec3{0, 0, 0});
+    CHECK(box.high == Vec3{3000, 1000, 2000});
+    std::vector<Body> slices{{"soft", {}, "s", {{0, 50, {{{0, 0}, {100, 0}, {0, 100}}}}}}};
+    REQUIRE(turn(slices, {0, 0, 90}).has_value());
+    CHECK(slices[0].slices[0].outlines_um[0][1] == std::array<double, 2>{0, 100});
+    CHECK(turn(slices, {90, 0, 0}).error().message ==
+          "body 's' (soft): consists of slices, which can be turned about z only");
+}
+
+TEST_CASE("copies fill rows, and too many are refused with the number that fits") {
+    const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
+    std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1800, 1000, 100}), "a"}};
+    const std::vector<Body> one = bodies;
+    REQUIRE(repeat(bodies, 5, 500, raster).has_value());  // three in a row: 3 * 1.8 + 2 * 0.5 = 6.4
+    REQUIRE(bodies.size() == 5);
+    CHECK(bodies[4].name == "a #5");
+    CHECK(mesh::bounds(bodies[2].surface_um).high == Vec3{6400, 1000, 100});
+    CHECK(mesh::bounds(bodies[4].surface_um).low == Vec3{2300, 1500, 0});
+    bodies = one;
+    CHECK(repeat(bodies, 10, 500, raster).error().message ==
+          "10 copies of 1.800 x 1.000 mm, 0.500 mm apart, do not fit an image of 6.400 x 4.800 mm: 9 do");
+    CHECK(bodies.size() == 1);
+    CHECK(!repeat(bodies, 0, 500, raster).has_value());
+    CHECK(!repeat(bodies, 2, -1, raster).has_value());
+}
+
+TEST_CASE("copies of what is flat, and with no room between them") {
+    const Raster raster{64, 48, 100};
+    mesh::TriMesh flat;
+    add_triangle(flat, {0, 0, 0}, {0, 1000, 0}, {0, 0, 1000});
+    std::vector<Body> bodies{{"soft", flat, "a"}};
+    REQUIRE(repeat(bodies, 100, 0, raster).has_value());
+    CHECK(bodies.size() == 100);
+    CHECK(bodies[99].surface_um.points[0] == Vec3{0, 0, 0});
+}

@@ -1,0 +1,84 @@
+#include "printing/slice/bond.hpp"
+
+#include <doctest/doctest.h>
+
+#include "printing/slice/inspect.hpp"
+#include "printing/slice/slicer.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+
+namespace {
+
+const Raster raster{64, 48, 100};
+
+Settings with_bond(const Bond& bond) {
+    Settings settings{raster, 50, {}};
+    settings.bonds = {bond};
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("a bond lights a strip of the neighbour twice and changes no owner") {
+    const std::vector<Body> halves{{"soft", box({-2000, -1000, 0}, {0, 1000, 200}), ""},
+                                   {"firm", box({0, -1000, 0}, {2000, 1000, 200}), ""}};
+    const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
+    REQUIRE(slicer.has_value());
+    const SlicedLayer layer = slicer->layer(1);
+    REQUIRE(layer.images.size() == 2);
+    CHECK(layer.images[0].value_sum == 255 * (400 + 60));
+    CHECK(layer.images[0].shared_sum == 255 * 60);
+    CHECK(layer.images[1].value_sum == 255 * 400);
+    CHECK(layer.images[1].shared_sum == 0);
+    CHECK(layer.images[0].image.at(24, 34) == 255);
+    CHECK(layer.images[0].image.at(24, 35) == 0);
+}
+
+TEST_CASE("checks see a pixel that is lit twice once") {
+    const std::vector<Body> halves{{"soft", box({-2000, -1000, 0}, {0, 1000, 200}), ""},
+                                   {"firm", box({0, -1000, 0}, {2000, 1000, 200}), ""}};
+    const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
+    REQUIRE(slicer.has_value());
+    Inspector inspector;
+    for (int k = 0; k < 4; ++k) inspector.add(shape_of(slicer->layer(k), raster.width_px));
+    const Findings findings = inspector.finish();
+    CHECK(findings.islands.empty());
+    CHECK(findings.cavities.empty());
+    REQUIRE(findings.pieces.size() == 1);
+    CHECK(findings.pieces[0].voxels == 4 * 800);
+}
+
+TEST_CASE("a bond over layers lights what lies right above and below") {
+    const std::vector<Body> stacked{{"soft", box({-1000, -1000, 0}, {1000, 1000, 200}), ""},
+                                    {"firm", box({-500, -500, 200}, {500, 500, 400}), ""}};
+    const auto slicer = Slicer::prepare(stacked, with_bond({"soft", "firm", 0, 2}));
+    REQUIRE(slicer.has_value());
+    for (int k = 0; k < 8; ++k) {
+        std::int64_t shared = 0;
+        for (const MaterialImage& m : slicer->layer(k).images) shared += m.shared_sum;
+        CHECK(shared == (k == 4 || k == 5 ? 255 * 100 : 0));
+    }
+    const auto refused = Slicer::prepare(stacked, with_bond({"soft", "fim", 1, 0}));
+    REQUIRE(!refused.has_value());
+    CHECK(refused.error().message == "overlap 'soft' with 'fim': there is no material 'fim', only soft and firm");
+    CHECK(!Slicer::prepare(stacked, with_bond({"soft", "firm", 0, 0})).has_value());
+}
+
+TEST_CASE("bleed compensation leaves out the lowest layers of undersides, and nothing else") {
+    // A table: two legs and a plate from 200 to 500 um.
+    const std::vector<Body> table{{"soft", box({-2000, -500, 0}, {-1000, 500, 500}), ""},
+                                  {"soft", box({1000, -500, 0}, {2000, 500, 500}), ""},
+                                  {"soft", box({-1000, -500, 200}, {1000, 500, 500}), ""}};
+    Settings settings{raster, 50, {}};
+    settings.compensation["soft"].bleed_um = 100;
+    const auto slicer = Slicer::prepare(table, settings);
+    REQUIRE(slicer.has_value());
+    for (int k = 0; k < 10; ++k) {
+        std::int64_t sum = 0;
+        for (const MaterialImage& m : slicer->layer(k).images) sum += m.value_sum;
+        CHECK(sum == 255 * (k < 6 ? 200 : 400));
+    }
+}

@@ -1,0 +1,106 @@
+#include "printing/slice/hollow.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "printing/slice/distance_field.hpp"
+#include "printing/slice/inspect.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+
+namespace {
+
+const Settings settings{{240, 200, 100}, 100, {}};  // 24 x 20 mm
+
+struct Outcome {
+    double volume_mm3 = 0;
+    Findings findings;
+    Hollowing hollowing;
+};
+
+Outcome hollowed(const std::vector<Body>& part, const HollowSettings& wanted) {
+    Progress progress;
+    auto made = hollow_out(part, settings, wanted, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    Settings with = settings;
+    with.removed = made->removed;
+    const auto slicer = Slicer::prepare(part, with);
+    REQUIRE(slicer.has_value());
+    Outcome outcome{0, {}, std::move(*made)};
+    Inspector inspector(slicer->layers());
+    for (int k = 0; k < slicer->layer_count(); ++k) {
+        const SlicedLayer layer = slicer->layer(k);
+        for (const MaterialImage& m : layer.images)
+            outcome.volume_mm3 += static_cast<double>(m.value_sum) / 255 * 0.001;
+        inspector.add(shape_of(layer, settings.raster.width_px));
+    }
+    outcome.findings = inspector.finish();
+    return outcome;
+}
+
+const std::vector<Body> block{{"soft", box({-8000, -6000, 0}, {8000, 6000, 10000}), ""}};
+
+}  // namespace
+
+TEST_CASE("distances are those that a search finds") {
+    const CellGrid grid{13, 9, 7};
+    std::vector<std::uint8_t> solid(grid.size(), 1);
+    for (const auto& [x, y, z] : {std::array{3, 2, 1}, std::array{9, 7, 5}, std::array{6, 4, 3}})
+        solid[grid.at(x, y, z)] = 0;
+    const double height = 1.5;
+    const std::vector<float> found = squared_distances(grid, solid, height);
+    for (int z = 0; z < grid.nz; ++z) {
+        for (int y = 0; y < grid.ny; ++y) {
+            for (int x = 0; x < grid.nx; ++x) {
+                double least = 1e30;
+                for (int k = -1; k <= grid.nz; ++k) {
+                    for (int j = -1; j <= grid.ny; ++j) {
+                        for (int i = -1; i <= grid.nx; ++i) {
+                            if (grid.has(i, j, k) && solid[grid.at(i, j, k)] != 0) continue;
+                            least = std::min(least,
+                                             std::pow(i - x, 2) + std::pow(j - y, 2) + std::pow(height * (k - z), 2));
+                        }
+                    }
+                }
+                CHECK(found[grid.at(x, y, z)] == near(least, {.relative = 1e-12}));
+            }
+        }
+    }
+}
+
+TEST_CASE("a block becomes a closed box whose walls are at least as thick as asked for") {
+    const Outcome o = hollowed(block, {2000, 0});
+    CHECK(o.hollowing.cavities == 1);
+    REQUIRE(o.findings.cavities.size() == 1);
+    const Cavity& cavity = o.findings.cavities[0];
+    CHECK(cavity.end == Cavity::End::closed);
+    CHECK(cavity.first_layer >= 20);
+    CHECK(cavity.last_layer <= 79);
+    const double most = 12 * 8 * 6, least = 11 * 7 * 5;  // walls of 2 mm, and of 2.5
+    CHECK(16 * 12 * 10 - o.volume_mm3 <= most);
+    CHECK(16 * 12 * 10 - o.volume_mm3 >= least);
+    CHECK(16 * 12 * 10 - o.volume_mm3 == near(o.hollowing.volume_mm3, {.relative = 1e-9}));
+}
+
+TEST_CASE("drains open the box: no trap is left, and holes are as large as their cylinders") {
+    const Outcome closed = hollowed(block, {2000, 0}), open = hollowed(block, {2000, 1500});
+    CHECK(open.hollowing.drains == 2);
+    for (const Cavity& c : open.findings.cavities) CHECK(c.end != Cavity::End::closed);
+    const double wall = 2.1, hole = 3.14159 * 0.75 * 0.75 * wall;
+    const double drilled = closed.volume_mm3 - open.volume_mm3;
+    CHECK(drilled > 2 * hole * 0.9);
+    CHECK(drilled < 2 * hole * 1.3);
+}
+
+TEST_CASE("what is nowhere thick enough is refused") {
+    Progress progress;
+    const auto made = hollow_out(block, settings, {6000, 0}, progress);
+    REQUIRE(!made.has_value());
+    CHECK(made.error().message == "hollow: nothing of the part lies 6 mm deep inside of it");
+    CHECK(!hollow_out(block, settings, {0, 0}, progress).has_value());
+}

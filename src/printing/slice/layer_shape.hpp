@@ -1,0 +1,41 @@
+// A layer as connected pieces of solid and of void, whatever the material.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "printing/slice/compose.hpp"
+
+namespace pliant::slice {
+
+/// Pixels [begin, end) of a row that belong to one piece.
+struct Stretch {
+    std::uint16_t begin = 0, end = 0;
+    std::uint32_t piece = 0;
+};
+
+/// Stretches of all rows in [first_row, first_row + rows()), from left to right.
+struct PieceMap {
+    int first_row = 0;
+    std::vector<std::uint32_t> starts;  ///< (rows + 1)
+    std::vector<Stretch> stretches;
+    std::vector<std::int64_t> pixels;  ///< per piece
+
+    [[nodiscard]] int rows() const { return starts.empty() ? 0 : static_cast<int>(starts.size()) - 1; }
+    [[nodiscard]] std::span<const Stretch> row(int row) const;
+};
+
+/// Pixels of at least half light are solid, all others void. Pieces hang together through the sides of pixels.
+struct LayerShape {
+    PieceMap solid;
+    PieceMap voids;  ///< in the rows of `solid`; piece 0 is the outside, to which all other rows belong
+    std::vector<int> solid_row, solid_column;  ///< per piece of solid: its first pixel
+    std::vector<int> void_row, void_column;    ///< the same of voids
+    bool faint = false;                        ///< there is light, but no pixel is solid
+};
+
+/// Cost: the runs of the images.
+[[nodiscard]] LayerShape shape_of(const ComposedLayer& layer, int width_px);
+
+}  // namespace pliant::slice

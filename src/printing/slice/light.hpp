@@ -1,0 +1,27 @@
+// What a projector must show so that every pixel gets the light that its coverage asks for.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "printing/slice/run_image.hpp"
+
+namespace pliant::slice {
+
+struct LightCorrection {
+    std::optional<std::array<std::uint8_t, 256>> grey;  ///< value to show for each grey value; 0 stays 0
+    std::optional<Image> mask;  ///< share of light that each pixel may get, in 1/255; of the images' size
+
+    [[nodiscard]] bool none() const { return !grey && !mask; }
+};
+
+/// Values for 0 to 255 from the light at evenly spaced coverages (shares of full light, two or more, rising from 0),
+/// with straight lines between them.
+[[nodiscard]] std::array<std::uint8_t, 256> grey_values(std::span<const double> light);
+
+/// First the grey values, then the mask. Cost: the runs, and with a mask every lit pixel. Precondition: the mask has
+/// the image's size.
+[[nodiscard]] RunImage corrected(const RunImage& image, const LightCorrection& correction);
+
+}  // namespace pliant::slice

@@ -1,0 +1,16 @@
+// Parts of images, and images put together.
+#pragma once
+
+#include "printing/slice/run_image.hpp"
+#include "printing/slice/run_set.hpp"
+
+namespace pliant::slice {
+
+/// The pixels of an image that lie inside a set, or outside of it. Precondition: both of the same size.
+[[nodiscard]] RunImage inside(const RunImage& image, const RunSet& set);
+[[nodiscard]] RunImage outside(const RunImage& image, const RunSet& set);
+
+/// Both images. Precondition: no pixel is lit in both.
+[[nodiscard]] RunImage together(const RunImage& a, const RunImage& b);
+
+}  // namespace pliant::slice

@@ -1,0 +1,178 @@
+#include "printing/slice/overlap.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace pliant::slice {
+namespace {
+
+/// A piece of outline from its lower end to its upper one.
+struct Edge {
+    double y0, y1, x0, x1;
+    int body, winding;  ///< `winding`: what passing it from left to right adds
+
+    [[nodiscard]] double at(double y) const {
+        return y <= y0 ? x0 : y >= y1 ? x1 : x0 + (x1 - x0) * (y - y0) / (y1 - y0);
+    }
+};
+
+std::vector<Edge> edges_of(std::span<const std::vector<Segment>> outlines) {
+    std::vector<Edge> edges;
+    for (std::size_t b = 0; b < outlines.size(); ++b) {
+        const int body = static_cast<int>(b);
+        for (const Segment& s : outlines[b]) {
+            if (s.y0 < s.y1) edges.push_back({s.y0, s.y1, s.x0, s.x1, body, 1});
+            if (s.y1 < s.y0) edges.push_back({s.y1, s.y0, s.x1, s.x0, body, -1});
+        }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& l, const Edge& r) { return l.y0 < r.y0; });
+    return edges;
+}
+
+std::vector<double> heights_of(const std::vector<Edge>& edges) {
+    std::vector<double> heights;
+    for (const Edge& e : edges) {
+        heights.push_back(e.y0);
+        heights.push_back(e.y1);
+    }
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    return heights;
+}
+
+/// An edge with the bodies to its sides from a height on; -1: none.
+struct Border {
+    double from, to;
+    int left, right;
+};
+
+class Sweep {
+public:
+    Sweep(const std::vector<Edge>& edges, std::span<const int> material_of)
+        : edges_(edges),
+          material_of_(material_of),
+          borders_(edges.size(), {0, 0, -1, -1}),
+          layer_{std::vector<Overlap>(material_of.size()), std::vector<std::vector<Segment>>(material_of.size())} {}
+
+    DividedLayer over() {
+        const std::vector<double> heights = heights_of(edges_);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+            std::erase_if(active_, [&](std::size_t e) { return edges_[e].y1 <= heights[i]; });
+            for (; next < edges_.size() && edges_[next].y0 <= heights[i]; ++next) active_.push_back(next);
+            band(heights[i], heights[i + 1]);
+        }
+        for (std::size_t e = 0; e < edges_.size(); ++e) finish(e);
+        return std::move(layer_);
+    }
+
+private:
+    struct Passing {
+        double low, high;  ///< x at the band's bottom and top
+        std::size_t edge;
+    };
+
+    /// Cuts the band where edges cross.
+    void band(double bottom, double top) {
+        passing_.clear();
+        for (const std::size_t e : active_) passing_.push_back({edges_[e].at(bottom), edges_[e].at(top), e});
+        std::sort(passing_.begin(), passing_.end(), [](const Passing& l, const Passing& r) {
+            return std::pair(l.low, l.high) < std::pair(r.low, r.high);
+        });
+        cuts_.assign(1, bottom);
+        // Sorting by the other end, each exchange is a crossing.
+        for (std::size_t i = 1; i < passing_.size(); ++i) {
+            const Passing p = passing_[i];
+            std::size_t j = i;
+            for (; j > 0 && p.high < passing_[j - 1].high; --j) {
+                const double before = p.low - passing_[j - 1].low, after = passing_[j - 1].high - p.high;
+                cuts_.push_back(bottom + (top - bottom) * before / (before + after));
+                passing_[j] = passing_[j - 1];
+            }
+            passing_[j] = p;
+        }
+        std::sort(cuts_.begin(), cuts_.end());
+        cuts_.push_back(top);
+        for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
+            if (cuts_[i + 1] > cuts_[i]) add(cuts_[i], cuts_[i + 1]);
+        }
+    }
+
+    /// A band without crossings: trapezoids between neighbours, as wide as in their middle.
+    void add(double bottom, double top) {
+        const double middle = (bottom + top) / 2, height = top - bottom;
+        crossed_.clear();
+        for (const std::size_t e : active_) crossed_.emplace_back(edges_[e].at(middle), e);
+        std::sort(crossed_.begin(), crossed_.end());
+        inside_.clear();
+        int left = -1;
+        for (std::size_t i = 0; i < crossed_.size(); ++i) {
+            const std::size_t e = crossed_[i].second;
+            pass(edges_[e]);
+            const int right = inside_.empty() ? -1 : inside_.back().first;
+            if (left != right) border(e, {bottom, top, left, right});
+            left = right;
+            if (i + 1 < crossed_.size()) claim((crossed_[i + 1].first - crossed_[i].first) * height);
+        }
+    }
+
+    void pass(const Edge& edge) {
+        const auto place = std::lower_bound(inside_.begin(), inside_.end(), edge.body,
+                                            [](const auto& entry, int body) { return entry.first < body; });
+        if (place == inside_.end() || place->first != edge.body) {
+            inside_.insert(place, {edge.body, edge.winding});
+        } else if ((place->second += edge.winding) == 0) {
+            inside_.erase(place);
+        }
+    }
+
+    void claim(double area) {
+        if (inside_.empty()) return;
+        const int owner = material_of_[static_cast<std::size_t>(inside_.back().first)];
+        for (const auto& [body, winding] : inside_) {
+            Overlap& areas = layer_.areas[static_cast<std::size_t>(body)];
+            areas.own += (std::abs(winding) - 1) * area;
+            if (body == inside_.back().first) continue;
+            (material_of_[static_cast<std::size_t>(body)] == owner ? areas.own : areas.others) += area;
+        }
+    }
+
+    /// Pieces of an edge that divide the same bodies are one, so that a line stays a line.
+    void border(std::size_t edge, const Border& piece) {
+        Border& known = borders_[edge];
+        if (known.to == piece.from && known.left == piece.left && known.right == piece.right) {
+            known.to = piece.to;
+            return;
+        }
+        finish(edge);
+        known = piece;
+    }
+
+    void finish(std::size_t edge) {
+        const auto& [from, to, left, right] = borders_[edge];
+        if (left == right) return;
+        const double x0 = edges_[edge].at(from), x1 = edges_[edge].at(to);
+        if (left >= 0) layer_.kept[static_cast<std::size_t>(left)].push_back({x1, to, x0, from});
+        if (right >= 0) layer_.kept[static_cast<std::size_t>(right)].push_back({x0, from, x1, to});
+    }
+
+    const std::vector<Edge>& edges_;
+    std::span<const int> material_of_;
+    std::vector<Border> borders_;  ///< per edge, what of it is not in `layer_` yet
+    DividedLayer layer_;
+    std::vector<std::size_t> active_;
+    std::vector<Passing> passing_;
+    std::vector<double> cuts_;
+    std::vector<std::pair<double, std::size_t>> crossed_;
+    std::vector<std::pair<int, int>> inside_;  ///< bodies, with their winding, which is not zero
+};
+
+}  // namespace
+
+DividedLayer divided(std::span<const std::vector<Segment>> outlines, std::span<const int> material_of) {
+    const std::vector<Edge> edges = edges_of(outlines);
+    return Sweep(edges, material_of).over();
+}
+
+}  // namespace pliant::slice

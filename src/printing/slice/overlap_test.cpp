@@ -1,0 +1,139 @@
+#include "printing/slice/overlap.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/core/near.hpp"
+#include "printing/slice/slicer.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+using pliant::near;
+
+namespace {
+
+std::vector<Segment> closed(const std::vector<Point2>& outline) {
+    std::vector<Segment> segments;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Point2 &p = outline[i], &q = outline[(i + 1) % outline.size()];
+        segments.push_back({p.x, p.y, q.x, q.y});
+    }
+    return segments;
+}
+
+std::vector<Segment> rectangle(double x0, double y0, double x1, double y1) {
+    return closed({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+}
+
+}  // namespace
+
+TEST_CASE("two turned squares share a regular octagon") {
+    const double r = std::sqrt(2.0);  // squares of side 2
+    const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(4, r, std::numbers::pi / 4)),
+                                                     closed(regular_polygon(4, r))};
+    const std::vector<int> materials{0, 1};
+    const auto areas = divided(outlines, materials).areas;
+    CHECK(areas[0].others == near(8 * (std::sqrt(2.0) - 1), {.relative = 1e-12}));  // apothem 1
+    CHECK(areas[0].own == 0);
+    CHECK(areas[1].others == 0);
+}
+
+TEST_CASE("two circles of 200 corners share nearly a lens") {
+    constexpr int corners = 200;
+    auto moved = regular_polygon(corners, 1);
+    for (Point2& p : moved) p.x += 0.7;
+    const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(corners, 1)), closed(moved)};
+    const auto areas = divided(outlines, std::vector<int>{0, 1}).areas;
+    const double lens = 2 * std::acos(0.35) - 0.35 * std::sqrt(4 - 0.49);
+    CHECK(areas[0].others == near(lens, {.relative = 2e-3}));
+    CHECK(areas[0].others < lens);
+}
+
+TEST_CASE("the last body keeps the place; holes and touching borders are no overlap") {
+    auto ring = rectangle(0, 0, 10, 10);
+    for (Segment& s : rectangle(2, 2, 8, 8)) ring.push_back({s.x1, s.y1, s.x0, s.y0});
+    const std::vector<std::vector<Segment>> outlines{ring, rectangle(2, 2, 8, 8), rectangle(10, 0, 12, 10),
+                                                     rectangle(7, 4, 11, 5), rectangle(1, 4, 3, 5)};
+    const auto areas = divided(outlines, std::vector<int>{0, 1, 2, 0, 0}).areas;
+    CHECK(areas[0].own == near(2 + 1, {.relative = 1e-12}));
+    CHECK(areas[0].others == 0);
+    CHECK(areas[1].others == near(1 + 1, {.relative = 1e-12}));
+    CHECK(areas[2].others == near(1, {.relative = 1e-12}));
+    CHECK(areas[3].own == 0);
+}
+
+TEST_CASE("an overlap in pixels that neither body fills counts whole") {
+    // 30 um of a pixel of 100 um, and borders in the middle of pixels all around.
+    const std::vector<Body> bodies{{"soft", box({-950, -450, 0}, {50, 450, 100}), "left"},
+                                   {"firm", box({-250, -350, 0}, {1050, 550, 100}), "right"}};
+    pliant::Progress progress;
+    const auto summary = slice_bodies(
+        bodies, {{64, 48, 100}, 50, {}}, [](int, int, const RunImage&) { return pliant::Status{}; }, progress);
+    REQUIRE(summary.has_value());
+    CHECK(summary->overlap_mm3 == near(0.3 * 0.8 * 0.1, {.relative = 1e-12}));
+    CHECK(summary->lost_mm3[1] == 0);
+}
+
+namespace {
+
+/// Area that the images of a layer light, in square micrometres.
+double lit_um2(const std::vector<Body>& bodies, const Raster& raster, double& overlap_mm3) {
+    double sum = 0;
+    pliant::Progress progress;
+    const auto summary = slice_bodies(
+        bodies, {raster, 50, {}},
+        [&](int layer, int, const RunImage& image) {
+            if (layer == 0) sum += static_cast<double>(image.value_sum()) / 255;
+            return pliant::Status{};
+        },
+        progress);
+    REQUIRE_MESSAGE(summary.has_value(), (summary ? "" : summary.error().message));
+    overlap_mm3 = summary->overlap_mm3;
+    return sum * raster.pixel_um * raster.pixel_um;
+}
+
+}  // namespace
+
+TEST_CASE("pixels that the outlines of overlapping bodies share hold what both cover together, not their sum") {
+    double overlap_mm3 = 0;
+    // All outer borders run at a quarter of a pixel of 100 um, those of both bodies along the same lines.
+    const std::vector<Body> boxes{{"soft", box({-975, -475, 0}, {325, 425, 50}), ""},
+                                  {"firm", box({-275, -475, 0}, {1075, 425, 50}), ""},
+                                  {"hard", box({-75, -475, 0}, {125, 425, 50}), ""}};
+    CHECK(lit_um2(boxes, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
+    CHECK(overlap_mm3 == near((0.6 + 0.2) * 0.9 * 0.05, {.relative = 1e-9}));
+    CHECK(lit_um2(boxes, {64, 48, 100, true, false, 30}, overlap_mm3) == near(2050 * 900, {.relative = 1e-3}));
+    // One material, in two bodies and in one body of two shells.
+    const std::vector<Body> alike{{"soft", boxes[0].surface_um, ""}, {"soft", boxes[1].surface_um, ""}};
+    CHECK(lit_um2(alike, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
+    CHECK(overlap_mm3 == 0);
+    const std::vector<Body> shells{{"soft", together(boxes[0].surface_um, boxes[1].surface_um), ""}};
+    CHECK(lit_um2(shells, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
+    // Two discs of the same 97 corners, one turned by a third of a side: every border pixel belongs to both.
+    const double radius = 1500, turn = 2 * std::numbers::pi / 97;
+    const std::vector<Body> discs{{"soft", prism(regular_polygon(97, radius), 0, 50), ""},
+                                  {"firm", prism(regular_polygon(97, radius, turn / 3), 0, 50), ""}};
+    const double whole = 0.5 * 97 * radius * radius * std::sin(turn);
+    const double lit = lit_um2(discs, {64, 48, 100}, overlap_mm3);
+    CHECK(lit > whole);
+    CHECK(lit < std::numbers::pi * radius * radius);
+    CHECK(lit == near(2 * whole - overlap_mm3 / 0.05 * 1e6, {.relative = 1e-4}));
+}
+
+TEST_CASE("what bodies keep is all there is, each place once") {
+    const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(7, 10)), closed(regular_polygon(5, 9, 0.2)),
+                                                     rectangle(-3, -20, 2, 4), closed(regular_polygon(3, 8, 1))};
+    const auto area = [](const std::vector<Segment>& lines) {
+        double sum = 0;
+        for (const Segment& s : lines) sum += (s.y1 - s.y0) * (s.x0 + s.x1) / 2;
+        return -sum;  // the solid lies to the right of lines that run to higher rows
+    };
+    const DividedLayer layer = divided(outlines, std::vector<int>{0, 1, 2, 0});
+    for (std::size_t b = 0; b < outlines.size(); ++b) {
+        const double drawn = std::fabs(area(outlines[b]));
+        CHECK(area(layer.kept[b]) == near(drawn - layer.areas[b].others - layer.areas[b].own, {.relative = 1e-9}));
+    }
+}

@@ -1,0 +1,160 @@
+#include "printing/slice/repair.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+#include "printing/slice/holes.hpp"
+#include "printing/slice/shells.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+using mesh::TriMesh;
+
+namespace {
+
+double volume_um3(const GridSurface& surface) {
+    return volume_mm3(surface) * 1e9;
+}
+
+bool is_closed(const GridSurface& surface) {
+    GridSurface copy = surface;
+    (void)close_holes(copy);
+    return copy.triangles.size() == surface.triangles.size();
+}
+
+const TriMesh cube = box({0, 0, 0}, {1000, 1000, 1000});
+
+Repaired repaired(const TriMesh& mesh) {
+    auto result = repair(mesh, "body 'b' (soft)", 50);
+    REQUIRE_MESSAGE(result.has_value(), (result ? "" : result.error().message));
+    CHECK(is_closed(result->surface));
+    return std::move(*result);
+}
+
+std::string refused(const TriMesh& mesh) {
+    const auto result = repair(mesh, "body 'b' (soft)", 50);
+    REQUIRE(!result.has_value());
+    CHECK(result.error().cause == Cause::input);
+    return result.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a good cube is welded and otherwise left alone") {
+    const Repaired r = repaired(cube);
+    CHECK(r.surface.points.size() == 8);
+    CHECK(r.surface.triangles.size() == 12);
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
+    CHECK(r.warnings.empty());
+}
+
+TEST_CASE("any missing triangle is put back, with a warning that names body and layers") {
+    for (std::size_t i = 0; i < cube.triangles.size(); ++i) {
+        TriMesh open = cube;
+        open.triangles.erase(open.triangles.begin() + static_cast<long>(i));
+        const Repaired r = repaired(open);
+        CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
+        REQUIRE(r.warnings.size() == 1);
+        CHECK(r.warnings[0].find("body 'b' (soft): 1 hole (3 open edges") == 0);
+    }
+    TriMesh no_side = cube;
+    no_side.triangles.resize(10);  // the last side, both triangles: a square hole from z = 0 to 1000
+    const Repaired r = repaired(no_side);
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-9}));
+    CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 20");
+}
+
+TEST_CASE("a T-junction is closed without a word") {
+    TriMesh mesh = cube;
+    // One of the last side's triangles is split at the middle of its diagonal, which its neighbour does not split.
+    const auto [a, b, c] = mesh.triangles.back();
+    const Vec3 pa = mesh.points[a], pb = mesh.points[b], pc = mesh.points[c];
+    mesh.triangles.pop_back();
+    add_triangle(mesh, pa, (pa + pb) * 0.5, pc);
+    add_triangle(mesh, (pa + pb) * 0.5, pb, pc);
+    const Repaired r = repaired(mesh);
+    CHECK(r.warnings.empty());
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
+}
+
+TEST_CASE("points at open edges that no pixel tells apart are joined, with a note, and thin walls stay") {
+    TriMesh torn = box({0, 0, 0}, {1000, 1000, 20});
+    for (std::size_t i = 0; i < torn.points.size(); i += 3) torn.points[i] += Vec3{3, -2, 1};
+    const auto apart = repair(torn, "body 'b' (soft)", 50);
+    CHECK((!apart || !apart->warnings.empty()));
+    const auto result = repair(torn, "body 'b' (soft)", 50, 5);
+    REQUIRE_MESSAGE(result.has_value(), (result ? "" : result.error().message));
+    CHECK(is_closed(result->surface));
+    CHECK(result->surface.points.size() == 8);
+    CHECK(volume_um3(result->surface) == near(2e7, {.relative = 1e-12}));
+    REQUIRE(result->warnings.size() == 1);
+    CHECK(result->warnings[0].find("point(s) at open edges lay within 5 um of another and were joined") !=
+          std::string::npos);
+    // What is closed is not touched, however thin it is.
+    const auto thin = repair(box({0, 0, 0}, {1000, 1000, 2}), "body 'b' (soft)", 50, 5);
+    REQUIRE(thin);
+    CHECK(volume_um3(thin->surface) == near(2e6, {.relative = 1e-12}));
+    CHECK(thin->warnings.empty());
+}
+
+TEST_CASE("inside out: the whole, one triangle, one of two shells") {
+    const Repaired whole = repaired(turned_inside_out(cube));
+    CHECK(volume_um3(whole.surface) == near(1e9, {.relative = 1e-12}));
+    CHECK(whole.warnings == std::vector<std::string>{"body 'b' (soft): 1 shell inside out turned outwards"});
+
+    TriMesh one = cube;
+    std::swap(one.triangles[3][0], one.triangles[3][1]);
+    const Repaired triangle = repaired(one);
+    CHECK(volume_um3(triangle.surface) == near(1e9, {.relative = 1e-12}));
+    CHECK(triangle.warnings.size() == 1);
+
+    const TriMesh small = box({2000, 0, 0}, {2500, 500, 500});
+    const Repaired two = repaired(together(cube, turned_inside_out(small)));
+    CHECK(volume_um3(two.surface) == near(1.125e9, {.relative = 1e-12}));
+    CHECK(two.warnings.size() == 1);
+}
+
+TEST_CASE("a cavity stays a cavity, whichever way the whole is turned") {
+    const TriMesh hollow = together(cube, turned_inside_out(box({200, 200, 200}, {800, 800, 800})));
+    CHECK(volume_um3(repaired(hollow).surface) == near(0.784e9, {.relative = 1e-12}));
+    CHECK(repaired(hollow).warnings.empty());
+    CHECK(volume_um3(repaired(turned_inside_out(hollow)).surface) == near(0.784e9, {.relative = 1e-12}));
+}
+
+TEST_CASE("repeated and degenerate triangles are harmless") {
+    TriMesh mesh = cube;
+    mesh.triangles.push_back(mesh.triangles[4]);
+    add_triangle(mesh, {0, 0, 0}, {0, 0, 0}, {1000, 0, 0});
+    add_triangle(mesh, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+    add_triangle(mesh, {0, 0, 0}, {1000, 1000, 1000}, {500, 500, 500});
+    const Repaired r = repaired(mesh);
+    CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
+}
+
+TEST_CASE("two cubes that share an edge are two shells") {
+    const Repaired r = repaired(together(cube, box({1000, 1000, 0}, {2000, 2000, 1000})));
+    CHECK(find_shells(r.surface, edge_uses(r.surface.triangles)).count == 2);
+    CHECK(volume_um3(r.surface) == near(2e9, {.relative = 1e-12}));
+}
+
+TEST_CASE("what is no solid is refused with the reason") {
+    TriMesh sheet;
+    add_triangle(sheet, {0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0});
+    add_triangle(sheet, {0, 0, 0}, {1000, 1000, 0}, {0, 1000, 0});
+    CHECK(refused(sheet).find("the surface is open: 1 mm^2 are missing beside 1 mm^2") != std::string::npos);
+    CHECK(refused(together(sheet, turned_inside_out(sheet))).find("encloses no volume") != std::string::npos);
+    CHECK(refused(TriMesh{}).find("no triangle") != std::string::npos);
+
+    TriMesh bad = cube;
+    bad.points[7].y = std::nan("");
+    CHECK(refused(bad).find("point 7 is not finite") != std::string::npos);
+    bad.points[7].y = 1e10;
+    CHECK(refused(bad).find("more than 2 m") != std::string::npos);
+    bad = cube;
+    bad.triangles[5][1] = 999;
+    CHECK(refused(bad) == "body 'b' (soft): triangle 5 names point 999, there are 36");
+    bad.triangles[5][1] = -1;
+    CHECK(refused(bad).find("names point -1") != std::string::npos);
+}

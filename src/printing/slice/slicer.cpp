@@ -1,0 +1,420 @@
+#include "printing/slice/slicer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/core/parallel.hpp"
+#include "base/core/text.hpp"
+#include "printing/slice/blend.hpp"
+#include "printing/slice/mask.hpp"
+#include "printing/slice/overlap.hpp"
+#include "printing/slice/raster_frame.hpp"
+#include "printing/slice/repair.hpp"
+
+namespace pliant::slice {
+namespace {
+
+/// Points of open edges as near as this are one, in pixels: no image shows the difference.
+constexpr double join_px = 0.1;
+
+Status check(const Settings& settings) {
+    if (auto status = check(settings.raster); !status) return status;
+    if (settings.layer_um < 1 || settings.layer_um > 10000)
+        return input_error("layer of {} um: must be 1 to 10000 um", settings.layer_um);
+    int below_um = 0;
+    for (const int top_um : settings.tops_um) {
+        if (top_um <= below_um || top_um - below_um > 10000)
+            return input_error("a layer from {} to {} um: must be 1 to 10000 um thick", below_um, top_um);
+        below_um = top_um;
+    }
+    if (!(settings.rules.threshold > 0 && settings.rules.threshold <= 1))
+        return input_error("threshold {}: must be above 0 and at most 1", settings.rules.threshold);
+    if (!(settings.rules.close_gap_um >= 0))
+        return input_error("gap of {:.6g} um to close: must not be negative", settings.rules.close_gap_um);
+    for (const auto& [material, compensation] : settings.compensation) {
+        if (auto status = check(compensation, "material '" + material + "'"); !status) return status;
+    }
+    return {};
+}
+
+/// Where the body's points lie in the image; only x and y mean anything.
+Box3 image_box(const Body& body, const RasterFrame& frame) {
+    Box3 box;
+    const auto add = [&](double x, double y) { box.add({frame.column(x, y), frame.row(x, y), 0}); };
+    for (const OutlineSlice& slice : body.slices) {
+        for (const auto& outline : slice.outlines_um) {
+            for (const auto& [x, y] : outline) add(x, y);
+        }
+    }
+    if (!body.slices.empty()) return box;
+    for (const auto& triangle : body.surface_um.triangles) {
+        for (const int corner : triangle) add(body.surface_um.points[corner].x, body.surface_um.points[corner].y);
+    }
+    return box;
+}
+
+/// Bodies may pass the raster's border by what rounding does to them, no more.
+Status check_place(const Body& body, const Box3& box, const Raster& raster, const std::string& label) {
+    constexpr double rounding_um = 1;
+    if (box.low.z < -rounding_um)
+        return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
+    const double slack = rounding_um / raster.pixel_um;
+    const Box3 image = image_box(body, RasterFrame(raster, 1));
+    if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
+        image.high.y > raster.height_px + slack)
+        return input_error(
+            "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
+            "{:.3f} mm in y to both sides of the centre",
+            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, raster.width_um() / 2000,
+            raster.height_um() / 2000);
+    return {};
+}
+
+/// All pixels that have any light.
+RunSet lit(const ComposedLayer& layer, const Raster& raster) {
+    RunSet all(raster.width_px, raster.height_px);
+    for (const MaterialImage& m : layer.images) all = united(all, RunSet::lit(m.image));
+    return all;
+}
+
+std::string size_text(const Vec3& size) {
+    return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x / 1000, size.y / 1000, size.z / 1000);
+}
+
+}  // namespace
+
+Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& settings) {
+    if (auto status = check(settings); !status) return tl::unexpected(status.error());
+    Slicer slicer;
+    slicer.settings_ = settings;
+    slicer.layers_ = settings.layers();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (auto status = slicer.add_body(bodies[i], describe(bodies[i], i)); !status)
+            return tl::unexpected(status.error());
+    }
+    if (auto status = slicer.check_pairs(); !status) return tl::unexpected(status.error());
+    if (slicer.layer_count_ == 0)
+        return input_error("nothing to print: no body reaches the middle of a layer of {} um", settings.layer_um);
+    return slicer;
+}
+
+Status Slicer::add_body(const Body& body, const std::string& label) {
+    labels_.push_back(label);
+    fillers_.push_back(body.filler);
+    const auto box = bounds(body, label);
+    if (!body.slices.empty()) {
+        if (!box) return tl::unexpected(box.error());
+        auto stack = OutlineStack::from(body.slices, layers_, label);
+        if (!stack) return tl::unexpected(stack.error());
+        measures_.push_back({stack->volume_mm3(), stack->area_mm2()});
+        shapes_.emplace_back(std::move(*stack));
+    } else {
+        auto repaired = repair(body.surface_um, label, layers_, join_px * settings_.raster.pixel_um);
+        if (!repaired) return tl::unexpected(repaired.error());
+        std::move(repaired->warnings.begin(), repaired->warnings.end(), std::back_inserter(warnings_));
+        measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
+        shapes_.emplace_back(Sectioner(std::move(repaired->surface), layers_));
+    }
+    if (!box) return tl::unexpected(box.error());
+    if (body.blend) {
+        if (auto status = check(*body.blend, label); !status) return status;
+    }
+    if (auto status = check_place(body, *box, settings_.raster, label); !status) return status;
+    add_shape(body, box->size());
+    return {};
+}
+
+/// What is noted of the shape that was added last.
+void Slicer::add_shape(const Body& body, const Vec3& size_um) {
+    material_of_.push_back(add_material(body.material));
+    zone_of_.push_back(add_zone(body));
+    const int layers = std::visit([](const auto& shape) { return shape.layer_count(); }, shapes_.back());
+    layer_count_ = std::max(layer_count_, layers);
+    if (body.filler) return;
+    if (layers == 0) {
+        warnings_.push_back(fmt::format("{}: {} lies between the middles of two layers of {} um and is not printed",
+                                        labels_.back(), size_text(size_um), settings_.layer_um));
+    } else if (std::fmin(size_um.x, size_um.y) < settings_.raster.pixel_um) {
+        warnings_.push_back(fmt::format("{}: {} is narrower than a pixel of {:.6g} um", labels_.back(),
+                                        size_text(size_um), settings_.raster.pixel_um));
+    }
+}
+
+int Slicer::add_material(const std::string& name) {
+    if (material(name) < 0) materials_.push_back(name);
+    return material(name);
+}
+
+int Slicer::add_zone(const Body& body) {
+    Zone zone{material(body.material), -1, static_cast<int>(material_of_.size()) - 1, body.blend};
+    if (zone.blend && zone.blend->cell_um > 0)
+        zone.blend->cell_px =
+            std::clamp(static_cast<int>(std::lround(zone.blend->cell_um / settings_.raster.pixel_um)), 1, 1000);
+    if (body.blend) {
+        zone.second = add_material(body.blend->second);
+    } else {
+        for (std::size_t z = 0; z < zones_.size(); ++z) {
+            if (zones_[z].material == zone.material && !zones_[z].blend) return static_cast<int>(z);
+        }
+    }
+    zones_.push_back(std::move(zone));
+    return static_cast<int>(zones_.size()) - 1;
+}
+
+void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments) const {
+    std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
+}
+
+/// Where bodies overlap, the layer is divided among them before it is seen as pixels: a pixel tells how much of it
+/// outlines cover, not whether they cover the same.
+ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
+    std::vector<std::vector<Segment>> lines(shapes_.size());
+    std::vector<Segment> segments;
+    CellBuffer cells;
+    for (std::size_t b = 0; b < shapes_.size(); ++b) {
+        segments.clear();
+        section(b, k, segments);
+        lines[b] = in_image(segments, raster);
+        cells.add(static_cast<int>(b), lines[b]);
+    }
+    ComposedLayer layer = compose(cells.sorted(), zone_of_, raster, rules);
+    if (!layer.overlapping) return layer;
+    const DividedLayer divided = slice::divided(lines, material_of_);
+    CellBuffer apart;
+    for (std::size_t b = 0; b < shapes_.size(); ++b) apart.add(static_cast<int>(b), divided.kept[b]);
+    layer = compose(apart.sorted(), zone_of_, raster, rules);
+    for (std::size_t b = 0; b < shapes_.size(); ++b) {
+        layer.lost_px[b] = divided.areas[b].others;
+        layer.doubled_px[b] = divided.areas[b].own;
+    }
+    return layer;
+}
+
+/// Per zone; empty where no border of the layer moves.
+std::vector<double> Slicer::offsets_um(int layer) const {
+    std::vector<double> offsets;
+    for (const Zone& zone : zones_) {
+        const auto known = settings_.compensation.find(materials_[zone.material]);
+        offsets.push_back(known == settings_.compensation.end() ? 0 : known->second.offset_um(layer));
+    }
+    if (std::all_of(offsets.begin(), offsets.end(), [](double um) { return um == 0; })) offsets.clear();
+    return offsets;
+}
+
+/// With outer borders moved.
+ComposedLayer Slicer::outlined(int k) const {
+    const std::vector<double> offsets = offsets_um(k);
+    if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
+    const int factor = fine_factor(settings_.raster);
+    const ComposedLayer fine = composed(k, refined(settings_.raster, factor), {false, 0.5, 0});
+    return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
+}
+
+/// From zones to materials.
+void Slicer::deal_out(int k, ComposedLayer& layer) const {
+    std::vector<RunImage> images(materials_.size());
+    const double z_um = layers_.middle2_um(k) / 2.0;
+    for (MaterialImage& m : layer.images) {
+        const Zone& zone = zones_[m.material];
+        RunImage own = std::move(m.image);
+        if (zone.blend) {
+            auto [first, second] = dealt(own, *zone.blend, settings_.raster, z_um, k);
+            layer.dealt.push_back({zone.body, static_cast<double>(first.value_sum()) / 255,
+                                   static_cast<double>(second.value_sum()) / 255});
+            images[zone.second] = slice::together(images[zone.second], second);
+            own = std::move(first);
+        }
+        images[zone.material] = slice::together(images[zone.material], own);
+    }
+    layer.images.clear();
+    for (std::size_t m = 0; m < images.size(); ++m) {
+        if (images[m].blank()) continue;
+        const std::int64_t sum = images[m].value_sum();
+        layer.images.push_back({static_cast<int>(m), std::move(images[m]), sum, 0});
+    }
+}
+
+void Slicer::take_out(int k, ComposedLayer& layer) const {
+    const RunSet removed = settings_.removed->at(k);
+    if (removed.empty()) return;
+    for (MaterialImage& m : layer.images) {
+        m.image = outside(m.image, removed);
+        m.value_sum = m.image.value_sum();
+    }
+    std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
+}
+
+/// Every pixel with one owner, before light is added or left out.
+ComposedLayer Slicer::owned(int k) const {
+    ComposedLayer layer = outlined(k);
+    if (settings_.removed) take_out(k, layer);
+    const bool blends = std::any_of(zones_.begin(), zones_.end(), [](const Zone& z) { return z.blend.has_value(); });
+    if (blends) deal_out(k, layer);
+    for (const Teeth& teeth : settings_.teeth) {
+        int taker = material(teeth.first), giver = material(teeth.second);
+        if (k / teeth.layers % 2 == 1) std::swap(taker, giver);
+        take_teeth(layer, taker, giver, teeth.depth_px);
+    }
+    return layer;
+}
+
+/// How many layers below a layer must be solid where a material is lit: those whose middle light would reach that goes
+/// too deep by the material's bleed.
+int Slicer::bleed_layers(int material, int k) const {
+    const auto known = settings_.compensation.find(materials_[material]);
+    if (known == settings_.compensation.end() || known->second.bleed_um <= 0) return 0;
+    int count = 0;
+    while (count < k && layers_.bottom_um(k) - layers_.middle2_um(k - count - 1) / 2.0 < known->second.bleed_um)
+        ++count;
+    return count;
+}
+
+/// Without the light that would go too deep.
+ComposedLayer Slicer::bled(int k) const {
+    ComposedLayer layer = owned(k);
+    std::vector<RunSet> held;  // by how many layers below are solid
+    for (MaterialImage& m : layer.images) {
+        const auto count = static_cast<std::size_t>(bleed_layers(m.material, k));
+        if (count == 0) continue;
+        while (held.size() < count) {
+            RunSet solid = lit(owned(k - 1 - static_cast<int>(held.size())), settings_.raster);
+            held.push_back(held.empty() ? std::move(solid) : common(held.back(), solid));
+        }
+        m.image = inside(m.image, held[count - 1]);
+        m.value_sum = m.image.value_sum();
+    }
+    std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
+    return layer;
+}
+
+SlicedLayer Slicer::layer(int k) const {
+    SlicedLayer layer = bled(k);
+    if (settings_.bonds.empty()) return layer;
+    const ComposedLayer owned = layer;
+    std::map<int, ComposedLayer> known;
+    for (const Bond& bond : settings_.bonds) {
+        std::vector<ComposedLayer> around;
+        for (int j = std::max(0, k - bond.layers); j <= std::min(layer_count_ - 1, k + bond.layers); ++j) {
+            if (j == k) continue;
+            if (!known.contains(j)) known[j] = bled(j);
+            around.push_back(known[j]);
+        }
+        add_bond(layer, owned, around, material(bond.first), material(bond.second), bond.depth_px);
+    }
+    return layer;
+}
+
+/// Its index; -1 if no body names it.
+int Slicer::material(const std::string& name) const {
+    const auto found = std::find(materials_.begin(), materials_.end(), name);
+    return found == materials_.end() ? -1 : static_cast<int>(found - materials_.begin());
+}
+
+Status Slicer::check_pair(const char* what, const std::string& first, const std::string& second) const {
+    for (const std::string& name : {first, second}) {
+        if (material(name) < 0)
+            return input_error("{} '{}' with '{}': there is no material '{}', only {}", what, first, second, name,
+                               join_names(materials_));
+    }
+    return {};
+}
+
+Status Slicer::check_pairs() const {
+    for (const Teeth& teeth : settings_.teeth) {
+        if (auto status = check(teeth); !status) return status;
+        if (auto status = check_pair("interlock", teeth.first, teeth.second); !status) return status;
+    }
+    for (const Bond& bond : settings_.bonds) {
+        if (auto status = check(bond); !status) return status;
+        if (auto status = check_pair("overlap", bond.first, bond.second); !status) return status;
+    }
+    return {};
+}
+
+Tally::Tally(const Slicer& slicer)
+    : slicer_(slicer),
+      lost_mm3_(slicer.body_labels().size(), 0.0),
+      doubled_mm3_(lost_mm3_),
+      first_mm3_(lost_mm3_),
+      second_mm3_(lost_mm3_) {}
+
+void Tally::add(int k, const SlicedLayer& layer) {
+    const double pixel_um = slicer_.settings().raster.pixel_um;
+    const double voxel_mm3 = pixel_um * pixel_um * slicer_.layers().thickness_um(k) / 1e9;
+    for (std::size_t b = 0; b < lost_mm3_.size(); ++b) {
+        lost_mm3_[b] += layer.lost_px[b] * voxel_mm3;
+        doubled_mm3_[b] += layer.doubled_px[b] * voxel_mm3;
+    }
+    for (const DealtBody& d : layer.dealt) {
+        first_mm3_[static_cast<std::size_t>(d.body)] += d.first_px * voxel_mm3;
+        second_mm3_[static_cast<std::size_t>(d.body)] += d.second_px * voxel_mm3;
+    }
+    closed_gap_pixels_ += layer.closed_gap_pixels;
+    if (layer.images.empty()) {
+        if (pending_empty_++ == 0 && empty_between_ == 0) first_empty_ = k;
+        return;
+    }
+    if (first_filled_ < 0) first_filled_ = k;
+    if (last_filled_ >= 0) empty_between_ += pending_empty_;
+    pending_empty_ = 0;
+    last_filled_ = k;
+}
+
+Summary Tally::summary() const {
+    const Settings& settings = slicer_.settings();
+    Summary summary{slicer_.layer_count(), slicer_.materials(), 0, closed_gap_pixels_, slicer_.warnings(), {}};
+    const double voxel_mm3 =
+        settings.raster.pixel_um * settings.raster.pixel_um * slicer_.layers().thickness_um(0) / 1e9;
+    for (std::size_t b = 0; b < lost_mm3_.size(); ++b) {
+        const double lost_mm3 = lost_mm3_[b];
+        summary.lost_mm3.push_back(lost_mm3);
+        summary.doubled_mm3.push_back(doubled_mm3_[b]);
+        const double all = first_mm3_[b] + second_mm3_[b];
+        summary.second_share.push_back(all > 0 ? second_mm3_[b] / all : 0);
+        if (lost_mm3 < voxel_mm3 || slicer_.fillers()[b]) continue;
+        summary.overlap_mm3 += lost_mm3;
+        summary.warnings.push_back(
+            fmt::format("{}: {:.4g} mm^3 overlap with later bodies of other materials, which keep them",
+                        slicer_.body_labels()[b], lost_mm3));
+    }
+    if (closed_gap_pixels_ > 0)
+        summary.warnings.push_back(fmt::format("gaps of at most {:.6g} um between materials closed in {} pixels",
+                                               settings.rules.close_gap_um, closed_gap_pixels_));
+    if (first_filled_ > 0)
+        summary.warnings.push_back(
+            fmt::format("layers 0 to {} are empty: nothing touches the platform", first_filled_ - 1));
+    if (empty_between_ > 0)
+        summary.warnings.push_back(
+            fmt::format("{} empty layers between printed ones, the first is layer {}: what is above will float",
+                        empty_between_, first_empty_));
+    return summary;
+}
+
+Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
+                             const std::function<Status(int, int, const RunImage&)>& emit, Progress& progress) {
+    auto slicer = Slicer::prepare(bodies, settings);
+    if (!slicer) return tl::unexpected(slicer.error());
+    Tally tally(*slicer);
+    constexpr int batch = layers_at_once;
+    const int count = slicer->layer_count();
+    for (int first = 0; first < count; first += batch) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("slice", static_cast<double>(first) / count);
+        std::vector<SlicedLayer> layers(static_cast<std::size_t>(std::min(batch, count - first)));
+        parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t) {
+            layers[begin] = slicer->layer(first + static_cast<int>(begin));
+        });
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const int k = first + static_cast<int>(i);
+            tally.add(k, layers[i]);
+            for (const MaterialImage& m : layers[i].images) {
+                if (auto status = emit(k, m.material, m.image); !status) return tl::unexpected(status.error());
+            }
+        }
+    }
+    progress.advance("slice", 1);
+    return tally.summary();
+}
+
+}  // namespace pliant::slice

@@ -1,0 +1,154 @@
+// From bodies to per-material layer images.
+//
+//     auto warnings = place_on_platform(bodies, raster);             // centred, lowered to z = 0
+//     auto slicer = Slicer::prepare(bodies, {.raster = raster, .layer_um = 50});
+//     const SlicedLayer layer = slicer->layer(12);                    // from any thread
+//
+// or slice_bodies() for all layers in order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "base/core/progress.hpp"
+#include "printing/slice/body.hpp"
+#include "printing/slice/bond.hpp"
+#include "printing/slice/compensate.hpp"
+#include "printing/slice/compose.hpp"
+#include "printing/slice/layers.hpp"
+#include "printing/slice/outline_stack.hpp"
+#include "printing/slice/removal.hpp"
+#include "printing/slice/run_image.hpp"
+#include "printing/slice/section.hpp"
+#include "printing/slice/teeth.hpp"
+
+namespace pliant::slice {
+
+struct Settings {
+    Raster raster;
+    int layer_um = 50;
+    ComposeRules rules;
+    std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
+    std::vector<Teeth> teeth{};                          ///< cut one after the other, after compensation
+    std::vector<Bond> bonds{};                           ///< after teeth
+    std::vector<int> tops_um{};  ///< of layers that are not alike, rising; where empty, all are `layer_um` thick
+    std::shared_ptr<const Removal> removed{};  ///< from the inside of the part; none: nothing
+
+    [[nodiscard]] Layers layers() const { return tops_um.empty() ? Layers(layer_um) : Layers(tops_um); }
+};
+
+/// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
+using SlicedLayer = ComposedLayer;
+
+/// Of a repaired body as drawn, before it became pixels.
+struct Measures {
+    double volume_mm3 = 0;
+    double area_mm2 = 0;
+};
+
+/// Repaired bodies, ready to be cut; immutable.
+class Slicer {
+public:
+    /// `bodies` in the order of priority: where bodies overlap, the later one keeps the place. Errors name the body:
+    /// what repair() refuses, bodies outside the raster or more than 1 um below the platform, nothing to print.
+    [[nodiscard]] static Result<Slicer> prepare(std::span<const Body> bodies, const Settings& settings);
+
+    [[nodiscard]] int layer_count() const { return layer_count_; }
+    [[nodiscard]] const Settings& settings() const { return settings_; }
+    /// In the order in which the bodies first name them.
+    [[nodiscard]] const std::vector<std::string>& materials() const { return materials_; }
+    /// What was repaired, and bodies too small to appear.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    /// As messages name them, "body 'finger' (soft)".
+    [[nodiscard]] const std::vector<std::string>& body_labels() const { return labels_; }
+
+    /// Per body.
+    [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
+    [[nodiscard]] const std::vector<bool>& fillers() const { return fillers_; }
+
+    [[nodiscard]] const Layers& layers() const { return layers_; }
+
+    /// Layer k is cut in its middle; 0 <= k < layer_count(). Safe to call from several threads. Cost: the pixels that
+    /// outlines pass through; with bleed compensation or bonds over layers, those of the layers around it too.
+    [[nodiscard]] SlicedLayer layer(int k) const;
+
+private:
+    Slicer() = default;
+    Status add_body(const Body& body, const std::string& label);
+    void add_shape(const Body& body, const Vec3& size_um);
+    void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
+    [[nodiscard]] std::vector<double> offsets_um(int layer) const;
+    [[nodiscard]] int material(const std::string& name) const;
+    [[nodiscard]] Status check_pairs() const;
+    [[nodiscard]] Status check_pair(const char* what, const std::string& first, const std::string& second) const;
+    int add_material(const std::string& name);
+    int add_zone(const Body& body);
+    void deal_out(int layer, ComposedLayer& composed) const;
+    void take_out(int layer, ComposedLayer& composed) const;
+    [[nodiscard]] int bleed_layers(int material, int layer) const;
+    [[nodiscard]] ComposedLayer owned(int layer) const;
+    [[nodiscard]] ComposedLayer bled(int layer) const;
+    [[nodiscard]] ComposedLayer outlined(int layer) const;
+    [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
+
+    Settings settings_;
+    Layers layers_ = 1;
+    std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
+    /// Bodies whose pixels are dealt out in the same way: all of one material, or one that has a blend.
+    struct Zone {
+        int material = 0;
+        int second = -1;  ///< of the blend
+        int body = 0;     ///< the first
+        std::optional<Blend> blend;
+    };
+    std::vector<Zone> zones_;
+    std::vector<int> zone_of_, material_of_;  ///< per body
+    std::vector<Measures> measures_;          ///< per body
+    std::vector<bool> fillers_;               ///< per body
+    std::vector<std::string> materials_, labels_, warnings_;
+    int layer_count_ = 0;
+};
+
+struct Summary {
+    int layer_count = 0;
+    std::vector<std::string> materials;
+    double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
+    std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
+    std::vector<std::string> warnings;
+    std::vector<double> lost_mm3{};      ///< per body: its share of overlap_mm3, which a later body keeps
+    std::vector<double> second_share{};  ///< per body: of its light that the second material of its blend got
+    std::vector<double> doubled_mm3{};   ///< per body: what a later one of the same material, or itself, fills too
+};
+
+/// Collects the remarks of all layers, added in order.
+class Tally {
+public:
+    explicit Tally(const Slicer& slicer);
+    void add(int k, const SlicedLayer& layer);
+    [[nodiscard]] Summary summary() const;
+
+private:
+    const Slicer& slicer_;
+    std::vector<double> lost_mm3_, doubled_mm3_, first_mm3_, second_mm3_;  ///< per body
+    std::int64_t closed_gap_pixels_ = 0;
+    int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
+};
+
+/// Enough layers for all cores to work on, few enough for their runs to stay small.
+inline constexpr int layers_at_once = 64;
+
+/// Calls `emit(layer, material, image)` for every image that is not blank, by layer and then by material, from the
+/// calling thread; layers are made in parallel batches, never all in memory. Stops at the first error of `emit`, or
+/// when `progress` is cancelled.
+[[nodiscard]] Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
+                                           const std::function<Status(int layer, int material, const RunImage&)>& emit,
+                                           Progress& progress);
+
+}  // namespace pliant::slice

@@ -1,0 +1,183 @@
+#include "printing/slice/supports.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/core/near.hpp"
+#include "printing/slice/grid_surface.hpp"
+#include "printing/slice/inspect.hpp"
+#include "printing/slice/repair.hpp"
+#include "printing/slice/support_shapes.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+
+namespace {
+
+const Settings settings{{200, 160, 100}, 50, {}};  // 20 x 16 mm
+
+double volume_of(const mesh::TriMesh& mesh) {
+    const auto repaired = repair(mesh, "shape", 50);
+    REQUIRE(repaired.has_value());
+    CHECK(repaired->warnings.empty());
+    return volume_mm3(repaired->surface);
+}
+
+struct Outcome {
+    Supports supports;
+    std::size_t islands = 0;
+    double part_mm3 = 0, support_mm3 = 0;
+    std::vector<std::string> warnings;
+};
+
+Outcome supported(const std::vector<Body>& part, const SupportSettings& wanted) {
+    Progress progress;
+    auto made = make_supports(part, settings, wanted, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    std::vector<Body> all = made->bodies;
+    all.insert(all.end(), part.begin(), part.end());
+    const auto slicer = Slicer::prepare(all, settings);
+    REQUIRE(slicer.has_value());
+    Outcome outcome{std::move(*made), 0, 0, 0, {}};
+    Inspector inspector(slicer->layers());
+    Tally tally(*slicer);
+    for (int k = 0; k < slicer->layer_count(); ++k) {
+        const SlicedLayer layer = slicer->layer(k);
+        tally.add(k, layer);
+        for (const MaterialImage& m : layer.images)
+            (slicer->materials()[static_cast<std::size_t>(m.material)] == wanted.material ? outcome.support_mm3
+                                                                                          : outcome.part_mm3) +=
+                static_cast<double>(m.value_sum) / 255 * 0.01 * 0.05;
+        inspector.add(shape_of(layer, settings.raster.width_px));
+    }
+    outcome.islands = inspector.finish().islands.size();
+    outcome.warnings = tally.summary().warnings;
+    return outcome;
+}
+
+SupportSettings in_wax() {
+    SupportSettings wanted;
+    wanted.material = "wax";
+    return wanted;
+}
+
+}  // namespace
+
+TEST_CASE("shapes of supports are closed and as large as their formulas") {
+    // A cylinder of radius 1 mm and a cone frustum on it.
+    const double wanted = std::numbers::pi * (1 * 2 + 1.0 / 3 * (1 + 0.5 + 0.25));
+    CHECK(volume_of(turned_solid(500, -200, {{0, 1000}, {2000, 1000}, {3000, 500}})) ==
+          near(wanted, {.relative = 1e-3}));
+    // The hull of four corners of a 4 x 2 mm rectangle and a point inside, with a margin of 1 mm: a regular polygon of
+    // 16 sides at the corners, together.
+    const double polygon = 8 * std::sin(std::numbers::pi / 8);
+    CHECK(volume_of(hull_prism({{0, 0}, {4000, 0}, {2000, 1000}, {4000, 2000}, {0, 2000}}, 1000, 0, 500)) ==
+          near(0.5 * (8 + 2 * (4 + 2) + polygon), {.relative = 1e-3}));
+}
+
+TEST_CASE("a table in mid-air stands on tips, no island is left, and the part keeps its volume") {
+    const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
+    const Outcome o = supported(plate, in_wax());
+    CHECK(o.islands == 0);
+    CHECK(o.supports.islands_left == 0);
+    CHECK(o.supports.on_part == 0);
+    // Tips 3 mm apart at most over 12 x 8 mm: more than area / (pi 3^2), fewer than area / (pi 1.5^2) and a rim.
+    CHECK(o.supports.tips > 4);
+    CHECK(o.supports.tips < 30);
+    CHECK(o.part_mm3 == near(12 * 8 * 1, {.relative = 1e-9}));
+    // Pillars of 1 mm, 5 mm high, with a foot and a cone of 2 mm down to 0.4 mm.
+    const double cone = std::numbers::pi / 3 * 2 * (0.25 + 0.1 + 0.04);
+    const double foot = std::numbers::pi / 3 * 0.5 * (0.75 * 0.75 + 0.75 * 0.5 + 0.25);
+    const double pillar = std::numbers::pi * 0.25 * 2.5;
+    CHECK(o.support_mm3 == near(o.supports.tips * (cone + foot + pillar), {.relative = 0.03}));
+    CHECK(o.supports.volume_mm3 == near(o.support_mm3, {.relative = 0.01}));
+    CHECK(o.warnings.empty());
+}
+
+TEST_CASE("only flat undersides get tips, and a barred pillar stands on the part") {
+    // A column with a roof that leans by 60 degrees needs none; a floor below a ledge is stood upon.
+    const std::vector<Body> steep{
+        {"soft", prism({{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}, 0, 4000), ""}};
+    CHECK(supported(steep, in_wax()).supports.tips == 0);
+    const std::vector<Body> ledge{{"soft", box({-7000, -3000, 0}, {7000, 3000, 1000}), ""},
+                                  {"soft", box({-7000, -3000, 1000}, {-6000, 3000, 6000}), ""},
+                                  {"soft", box({-7000, -3000, 6000}, {7000, 3000, 7000}), ""}};
+    const Outcome o = supported(ledge, in_wax());
+    CHECK(o.islands == 0);
+    CHECK(o.supports.tips > 5);
+    CHECK(o.supports.on_part == o.supports.tips);
+}
+
+TEST_CASE("a sphere in mid-air, on a raft, in a material of its own") {
+    mesh::TriMesh ball;
+    constexpr int rings = 24, around = 48;
+    const auto at = [&](int i, int j) {
+        const double polar = std::numbers::pi * i / rings, turn = 2 * std::numbers::pi * j / around;
+        return Vec3{3000 * std::sin(polar) * std::cos(turn), 3000 * std::sin(polar) * std::sin(turn),
+                    7000 + 3000 * std::cos(polar)};
+    };
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < around; ++j) {
+            if (i > 0) add_triangle(ball, at(i, j), at(i + 1, j), at(i, j + 1));
+            if (i + 1 < rings) add_triangle(ball, at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        }
+    }
+    SupportSettings wanted = in_wax();
+    wanted.raft_um = 800;
+    wanted.spacing_um = 1500;
+    const Outcome o = supported({{"soft", ball, ""}}, wanted);
+    CHECK(o.islands == 0);
+    CHECK(o.supports.tips > 3);
+    CHECK(o.part_mm3 == near(4.0 / 3 * std::numbers::pi * 27, {.relative = 0.02}));
+    // The raft reaches 2 mm beyond the outermost pillar on all sides.
+    CHECK(o.support_mm3 > 0.8 * 16);
+}
+
+TEST_CASE("supports that make no sense are refused") {
+    const std::vector<Body> plate{{"soft", box({-600, -400, 500}, {600, 400, 600}), ""}};
+    Progress progress;
+    const auto refused = [&](const SupportSettings& s) {
+        const auto made = make_supports(plate, settings, s, progress);
+        return made ? std::string() : made.error().message;
+    };
+    SupportSettings s = in_wax();
+    s.tip_um = 2000;
+    CHECK(refused(s) == "supports: a tip of 2000 um is wider than its pillar of 1000 um");
+    s = in_wax();
+    s.angle_deg = 90;
+    CHECK(refused(s) == "supports: angle of 90 degrees: must be 0 to 89");
+    CHECK(refused({}) == "supports: a material is needed");
+}
+
+TEST_CASE("tall supports are braced, the braces need no support themselves, and one alone has a broad foot") {
+    const Settings tall{{200, 160, 100}, 100, {}};
+    const auto made_for = [&](const std::vector<Body>& part) {
+        Progress progress;
+        auto made = make_supports(part, tall, in_wax(), progress);
+        REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+        CHECK(made->islands_left == 0);
+        return std::move(*made);
+    };
+    const Supports table = made_for({{"soft", box({-5000, -3000, 24000}, {5000, 3000, 25000}), ""}});
+    CHECK(table.tips > 4);
+    CHECK(table.struts >= table.tips);
+    // A foot a twentieth as wide as the pillar is long: the lowest ring of the body.
+    const Supports lone = made_for({{"soft", box({-500, -500, 32500}, {500, 500, 33000}), ""}});
+    REQUIRE(lone.tips == 1);
+    CHECK(lone.struts == 0);
+    const Box3 around = mesh::bounds(lone.bodies[0].surface_um);
+    CHECK(around.size().x == near((32500 - 2000 - 500) / 20.0, {.relative = 0.05}));
+    // A wall between two pillars bars their struts.
+    const std::vector<Body> walled{{"soft", box({-5000, -100, 0}, {5000, 100, 24000}), ""},
+                                   {"soft", box({-2000, -2000, 24000}, {2000, 2000, 25000}), ""}};
+    const Supports apart = made_for(walled);
+    REQUIRE(apart.bodies.size() == static_cast<std::size_t>(apart.tips + apart.struts));
+    for (auto strut = apart.bodies.begin() + apart.tips; strut != apart.bodies.end(); ++strut) {
+        const Box3 box = mesh::bounds(strut->surface_um);
+        CHECK((box.low.y > 0 || box.high.y < 0));
+    }
+}

@@ -1,0 +1,58 @@
+#include "printing/slice/thin.hpp"
+
+#include <doctest/doctest.h>
+
+#include "printing/slice/slicer.hpp"
+#include "printing/slice/test_shapes.hpp"
+
+using namespace pliant;
+using namespace pliant::slice;
+using namespace pliant::slice::test;
+
+namespace {
+
+const Raster raster{128, 96, 50};  // 6.4 x 4.8 mm
+
+std::vector<ThinSpot> thin_in(const std::vector<Body>& bodies, double least_um) {
+    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    REQUIRE(slicer.has_value());
+    return thin_spots(slicer->layer(0), 0, least_um, raster);
+}
+
+}  // namespace
+
+TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
+    const std::vector<Body> wall{{"soft", box({-1000, -100, 0}, {1000, 100, 500}), ""}};
+    const auto spots = thin_in(wall, 300);
+    REQUIRE(spots.size() == 1);
+    CHECK(spots[0].pixels == 40 * 4);
+    CHECK(spots[0].row == 46);
+    CHECK(spots[0].column == 44);
+    CHECK(
+        describe(spots, {"soft"}, 300, raster).front() ==
+        "material \"soft\": features narrower than 0.3 mm in 1 layers from 0 to 0; most, 0.4 mm^2, in layer 0 from row "
+        "46, column 44 on");
+    CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());
+    CHECK(thin_in(wall, 50).empty());
+}
+
+TEST_CASE("corners, discs and triangles are not thin; a fin on a block and a needle's tip are") {
+    CHECK(thin_in({{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), ""}}, 400).empty());
+    CHECK(thin_in({{"soft", prism(regular_polygon(4, 1500, 0.3), 0, 500), ""}}, 400).empty());
+    CHECK(thin_in({{"soft", prism(regular_polygon(64, 1500), 0, 500), ""}}, 400).empty());
+    const std::vector<Body> fin{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), ""},
+                                {"soft", box({0, -50, 0}, {1500, 50, 500}), ""}};
+    REQUIRE(thin_in(fin, 400).size() == 1);
+    CHECK(thin_in(fin, 400)[0].pixels > 0.7 * 30 * 2);
+    CHECK(thin_in({{"soft", prism({{-1500, -200}, {1500, 0}, {-1500, 200}}, 0, 500), ""}}, 300).size() == 1);
+}
+
+TEST_CASE("each material has its own features") {
+    const std::vector<Body> sandwich{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), ""},
+                                     {"rigid", box({0, -1000, 0}, {100, 1000, 500}), ""},
+                                     {"soft", box({100, -1000, 0}, {1000, 1000, 500}), ""}};
+    const auto spots = thin_in(sandwich, 300);
+    REQUIRE(spots.size() == 1);
+    CHECK(spots[0].material == 1);
+    CHECK(spots[0].pixels == 2 * 40);
+}

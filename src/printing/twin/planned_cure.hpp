@@ -1,0 +1,24 @@
+// What a job's images and times cure by themselves: no program, no wire, no faults. It tells before the print how deep
+// the light will cure below undersides.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "printing/job/job.hpp"
+#include "printing/twin/cure.hpp"
+#include "printing/twin/inspect.hpp"
+#include "printing/twin/screen.hpp"
+
+namespace pliant::twin {
+
+/// The closed block. Every image is lit as long as the manifest says, in the first vat of its resin, which does not run
+/// dry. `printer` must outlive it, and its vats hold the job's resins. Errors: an image cannot be had.
+[[nodiscard]] Result<Cure> planned_cure(const machine::Printer& printer, const job::Manifest& job,
+                                        const RunSource& images, const Screen& screen);
+
+/// One line for each resin that cures deeper below undersides than `allowed_overcure_um`; none: all is well.
+[[nodiscard]] std::vector<std::string> overcure_warnings(const Cure& cure, const machine::Printer& printer);
+
+}  // namespace pliant::twin

@@ -1,0 +1,37 @@
+// A pseudo-terminal: one end is this program's, the other is a device that any host may open like a serial port.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/core/error.hpp"
+
+namespace pliant::twin {
+
+class Pty {
+public:
+    /// Opens a pseudo-terminal in raw mode; with `link`, puts a symbolic link of that name to the device (an old link
+    /// is replaced, any other file is not).
+    [[nodiscard]] static Result<Pty> open(const std::filesystem::path& link = {});
+    Pty(Pty&& other) noexcept;
+    Pty& operator=(Pty&&) = delete;
+    ~Pty();  ///< removes the link
+
+    /// What hosts open, such as /dev/pts/3.
+    [[nodiscard]] const std::string& device() const { return device_; }
+    /// Bytes from the host; waits up to `timeout_s` for the first. "" if none came, or while no host has the device
+    /// open.
+    [[nodiscard]] Result<std::string> read(double timeout_s);
+    /// Never blocks: what no host takes is lost, as on a serial line.
+    void write(std::string_view bytes);
+
+private:
+    Pty(int file, int other_end, std::string device, std::filesystem::path link);
+    int file_;
+    int other_end_;  ///< kept open, so that the device survives hosts that come and go
+    std::string device_;
+    std::filesystem::path link_;
+};
+
+}  // namespace pliant::twin

@@ -1,0 +1,76 @@
+#include "printing/twin/serve.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::twin;
+
+namespace {
+
+/// A host's end of the device: sends a line, reads until `wanted` has come or five seconds have passed.
+struct Host {
+    int file;
+    std::string heard;
+    explicit Host(const std::string& device) : file(::open(device.c_str(), O_RDWR | O_NOCTTY)) { REQUIRE(file >= 0); }
+    ~Host() { ::close(file); }
+    bool hears(const std::string& wanted) {
+        for (int i = 0; i < 500 && heard.find(wanted) == std::string::npos; ++i) {
+            pollfd wait{file, POLLIN, 0};
+            char bytes[256];
+            if (::poll(&wait, 1, 10) <= 0) continue;
+            const ssize_t got = ::read(file, bytes, sizeof bytes);
+            if (got > 0) heard.append(bytes, static_cast<std::size_t>(got));
+        }
+        const std::size_t at = heard.find(wanted);
+        heard.erase(0, at == std::string::npos ? heard.size() : at + wanted.size());
+        return at != std::string::npos;
+    }
+    void say(const std::string& line) const {
+        REQUIRE(::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a host opens the device like a serial port, homes the machine a thousand times as fast, and comes back") {
+    const auto printer = machine::load_printer("examples/printers/tower.toml").value();
+    const pliant::test::Folder folder("serve");
+    const std::filesystem::path link = folder / "printer";
+    Twin twin(printer);
+    std::atomic<bool> stop = false;
+    {
+        auto pty = Pty::open(link);
+        REQUIRE_MESSAGE(pty, (pty ? "" : pty.error().message));
+        std::thread machine([&] { CHECK(serve(twin, *pty, {1000, [&] { return stop.load(); }, {}, {}, {}})); });
+        {
+            Host host(link.string());
+            CHECK(host.hears("start\n"));
+            host.say("G28 Z\n");
+            CHECK(host.hears("busy: processing\n"));
+            CHECK(host.hears("\nok\n"));
+        }
+        Host again(pty->device());
+        again.say("M114\n");
+        CHECK(again.hears("Z:400.000"));
+        CHECK(again.hears("ok\n"));
+        stop = true;
+        machine.join();
+    }
+    CHECK_FALSE(std::filesystem::is_symlink(link));
+    CHECK(twin.interlock().homed(machine::Axis::platform));
+}
+
+TEST_CASE("a link is not put over a file that is there") {
+    const pliant::test::Folder folder("serve");
+    CHECK_FALSE(Pty::open(folder.path()));
+    CHECK_FALSE(Pty::open(folder / "no such folder" / "x"));
+}

@@ -1,0 +1,124 @@
+// Where the virtual printer's vats are, whatever its controller thinks, and what the part carries from one to the next.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "printing/twin/twin.hpp"
+
+namespace pliant::twin {
+namespace {
+
+using machine::Axis;
+using machine::Command;
+
+constexpr int most_slip_um = 500;  // of a carriage, a table, a tower: beyond that nothing fits any more
+
+}  // namespace
+
+/// A move has put a vat on the hooks, under the platform, or away.
+void Twin::note_vat(std::optional<int> before) {
+    const auto vat = interlock().hooked_vat();
+    if (vat == before) return;
+    const double brushed = brush_.wiped() ? printer_.brushed_share() : 0;
+    brush_.reset();
+    if (before) {
+        if (part_vat_ == *before && cure_.section_mm2() > 0) {
+            cure_.take_ml(*before, fluids_.leave(*before, cure_.section_mm2(), brushed));
+            residue_ = 1;
+        }
+        if (fault_hits(Fault::Kind::stuck_hook, ++unhooked_) && stuck_vat_ < 0) {
+            stuck_vat_ = *before;
+            mishap(fmt::format("the vat of slot {} stays on the hooks", slot_of(*before)));
+        }
+    }
+    if (!vat) return;
+    const bool missed = std::abs(slip_um_[static_cast<std::size_t>(Axis::tower)]) > most_slip_um;
+    const bool weak = printer_.hooks.magnet.present() && fault_hits(Fault::Kind::weak_magnet, ++takes_);
+    missed_vat_ = missed || weak || *vat == left_vat_ ? *vat : -1;
+    if (missed) mishap("the hooks do not catch the vat: the tower is off");
+    if (weak) mishap(fmt::format("the magnet does not hold the vat of slot {}", slot_of(*vat)));
+    count_swap(*vat);
+}
+
+/// Counts swaps, and those with too little cleaning between the last light and the new vat.
+void Twin::count_swap(int vat) {
+    if (vat == last_vat_) return;
+    if (last_vat_ >= 0) {
+        ++log_.swaps;
+        // The rise of the hooks, during which the pump still runs, is only queued here; a magnet is only switched.
+        const bool spraying = pump_on_ && pump_works_;
+        const double taken_s = std::max(now_s_, motors_.done_at()) + printer_.hooks.magnet.engage_s;
+        const double sprayed = sprayed_s_ + (spraying ? taken_s - pump_since_s_ : 0);
+        if (!printer_.pump.on.empty() && sprayed < 0.99 * printer_.cleaning_s(last_vat_, vat)) ++log_.short_cleanings;
+    }
+    last_vat_ = vat;
+}
+
+/// Magnet and fork act when the moves before them are done, and take their time.
+void Twin::switch_latch(const Command& c, double at_s) {
+    const std::optional<int> vat = interlock().hooked_vat();
+    const bool was_out = interlock().fork_out();
+    if (Status status = motors_.interlock().output(c); !status) return violation(status.error().message);
+    settling_.note(c, at_s);
+    note_vat(vat);
+    if (was_out || !interlock().fork_out() || !fault_hits(Fault::Kind::stuck_fork, ++reaches_)) return;
+    mishap("the retriever's fork stays in");
+    fork_stuck_ = true;
+}
+
+/// What a fork that stayed in has not taken off its place, or has not put there.
+void Twin::miss_vat(const std::optional<int>& tray) {
+    const std::optional<int> now = interlock().tray_vat();
+    if (now == tray) return;
+    if (!interlock().fork_out() || !fork_stuck_) return;
+    fork_stuck_ = false;
+    left_vat_ = now ? *now : *tray;
+    mishap(fmt::format("the vat of slot {} is not where the retriever thinks", slot_of(left_vat_)));
+}
+
+/// Without power the magnet lets its vat go, which only stands where it is in its slot or under the platform.
+void Twin::drop_vat() {
+    const machine::Switch& coil = printer_.hooks.magnet.coil;
+    const std::optional<int> vat = interlock().hooked_vat();
+    if (coil.on.empty() || machine::on_without_power(coil) || !vat || !interlock().magnet_holds()) return;
+    const machine::Carriage& c = printer_.carriage;
+    const int at_um = motors_position()[Axis::carriage];
+    const bool rests = at_um == c.tower_um || (at_um >= c.print_um && at_um <= c.print_um + c.shear_um);
+    if (rests) return;
+    missed_vat_ = *vat;
+    mishap(fmt::format("the vat of slot {} falls: its magnet has no power", slot_of(*vat)));
+}
+
+/// The vat that really is under the platform, by index; -1: none is where it should be.
+int Twin::vat_under_light() const {
+    const int hooked = interlock().hooked_vat().value_or(-1);
+    const auto slip = [&](machine::Axis axis) { return std::abs(slip_um_[static_cast<std::size_t>(axis)]); };
+    if (slip(machine::Axis::carriage) > most_slip_um || slip(machine::Axis::table) > most_slip_um) return -1;
+    if (hooked >= 0 && hooked == missed_vat_) return -1;
+    return stuck_vat_ >= 0 ? stuck_vat_ : hooked;
+}
+
+/// The part comes into a vat with what cleaning has left on it of the one before.
+void Twin::change_vat_part(int vat) {
+    if (part_vat_ != vat) {
+        cure_.take_ml(vat, -fluids_.enter(vat, cure_.left_ml()[static_cast<std::size_t>(vat)]));
+        part_vat_ = vat;
+    }
+    const int top_um = interlock().position()[machine::Axis::platform];
+    const bool known =
+        !contamination_.empty() && contamination_.back().top_um == top_um && contamination_.back().vat == vat;
+    if (!known) contamination_.push_back({top_um, vat, fluids_.foreign_share(vat), residue_});
+}
+
+void Twin::fill_vat(int slot) {
+    const machine::Vat* vat = printer_.vat_of_slot(slot);
+    if (vat == nullptr) return;
+    const int index = static_cast<int>(vat - printer_.vats.data());
+    const double left_ml = std::max(0.0, cure_.left_ml()[static_cast<std::size_t>(index)]);
+    if (left_ml >= vat->fill_ml) return;
+    fluids_.pour(index, left_ml, vat->fill_ml - left_ml);
+    cure_.set_level_ml(index, vat->fill_ml);
+}
+
+}  // namespace pliant::twin

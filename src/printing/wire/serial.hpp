@@ -1,0 +1,43 @@
+// A serial port as a Wire. Any baud rate, 250000 too.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "printing/wire/devices.hpp"
+
+namespace pliant::host {
+
+class SerialWire final : public Wire {
+public:
+    /// Opens a terminal device for itself alone: raw, 8 data bits, no parity, no flow control. Opening a board such as
+    /// the Mega 2560 for the first time after it was plugged in resets it; closing and opening again does not. Errors
+    /// name the device and what the system said; a device that another host has open is refused.
+    [[nodiscard]] static Result<SerialWire> open(const std::string& device, int baud_rate);
+
+    SerialWire(SerialWire&& other) noexcept;
+    SerialWire& operator=(SerialWire&& other) noexcept;
+    ~SerialWire() override;
+
+    /// May be called from several threads: a short line arrives whole.
+    [[nodiscard]] Status write(std::string_view bytes) override;
+    [[nodiscard]] Result<std::string> read(double timeout_s) override;
+    /// By a pulse of DTR.
+    [[nodiscard]] Status reset() override;
+
+private:
+    SerialWire(int file, std::string device) : file_(file), device_(std::move(device)) {}
+    int file_ = -1;
+    std::string device_;
+    std::string lock_file_;  ///< "": none was made
+};
+
+struct SerialPort {
+    std::string device;  ///< "/dev/ttyACM0"
+    std::string name;    ///< of the board or adapter, "" if the system knows none
+};
+
+/// The serial ports that have something behind them, by name. `devices` is for tests.
+[[nodiscard]] std::vector<SerialPort> serial_ports(const std::string& devices = "/sys/class/tty");
+
+}  // namespace pliant::host

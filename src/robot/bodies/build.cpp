@@ -1,0 +1,298 @@
+#include "robot/bodies/build.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/core/text.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "geometry/files/tet_file.hpp"
+#include "geometry/mesher/mesher.hpp"
+#include "geometry/shapes/flat_faces.hpp"
+#include "robot/bodies/body_surface.hpp"
+#include "robot/bodies/crossed_notches.hpp"
+#include "robot/description/regions.hpp"
+
+namespace pliant::robot {
+namespace {
+
+/// A thing of the robot file, as problems name it.
+Diagnostic place(const Robot& robot, int line, std::string_view kind, std::string_view name) {
+    return {robot.file.string(), line, name.empty() ? std::string(kind) : fmt::format("{} \"{}\"", kind, name), ""};
+}
+
+Error at(Diagnostic place, const Error& error) {
+    place.text = error.message;
+    return error_of(error.cause, {std::move(place)});
+}
+
+/// Adds to `notes` what was odd or mended.
+Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file,
+                                        std::vector<std::string>& notes) {
+    Result<BodyTriangles> surface = read_triangles(file, robot.unit_m);
+    if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
+    for (const std::string& note : surface->notes) notes.push_back(fmt::format("body \"{}\": {}", body.name, note));
+    return std::move(surface->mesh);
+}
+
+/// What was odd or mended in the surfaces of chambers, which are read again when the model is built.
+std::vector<std::string> notes_on_chambers(const Robot& robot) {
+    std::vector<std::string> notes;
+    for (const ChamberSpec& chamber : robot.chambers) {
+        const auto* file = std::get_if<SurfaceFile>(&chamber.air);
+        const auto surface = file == nullptr ? Result<mesh::SurfaceFile>() : mesh::read_surface(file->path);
+        if (!surface) continue;
+        for (const std::string& note : surface->warnings)
+            notes.push_back(fmt::format("chamber \"{}\": {}", chamber.name, note));
+    }
+    return notes;
+}
+
+double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
+    Box3 box;
+    for (const auto& body : bodies) {
+        const Box3 one = mesh::bounds(body);
+        box.add(one.low);
+        box.add(one.high);
+    }
+    return std::max({box.size().x, box.size().y, box.size().z}) / 24;
+}
+
+/// The drawn air of all chambers and gaps that is cut out of the bodies. Enclosed air is outside them as it is.
+std::vector<mesh::Solid> drawn_air(const Robot& robot) {
+    std::vector<mesh::Solid> solids;
+    for (const Region& region : regions_of(robot)) {
+        if (region.use == Region::Use::body) continue;
+        const auto* solid = std::get_if<mesh::Solid>(region.geometry);
+        if (solid != nullptr && !std::holds_alternative<mesh::EnclosedSolid>((*solid)->shape)) solids.push_back(*solid);
+    }
+    return solids;
+}
+
+bool boxes_overlap(const Box3& a, const Box3& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (a.low[k] >= b.high[k] || b.low[k] >= a.high[k]) return false;
+    }
+    return true;
+}
+
+/// Where drawn bodies overlap the later one is printed, as it is the later one that is meshed.
+std::vector<mesh::Solid> cut_from(const Robot& robot, std::size_t body, std::vector<mesh::Solid> air) {
+    const auto& own = std::get<mesh::Solid>(robot.bodies[body].geometry);
+    for (std::size_t b = body + 1; b < robot.bodies.size(); ++b) {
+        const auto* later = std::get_if<mesh::Solid>(&robot.bodies[b].geometry);
+        if (later != nullptr && boxes_overlap(mesh::bounds(own), mesh::bounds(*later))) air.push_back(*later);
+    }
+    return air;
+}
+
+/// A drawn body without the air that is cut out of it.
+mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>& air) {
+    if (air.empty()) return body;
+    mesh::CombinedSolid cut{mesh::CombinedSolid::Operation::subtract, {body}};
+    cut.parts.insert(cut.parts.end(), air.begin(), air.end());
+    return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
+}
+
+using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
+
+/// A body without the air that is cut out of it; triangles where nothing is, or where they are too many to be cut.
+Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::vector<mesh::Solid>& air,
+                         std::vector<std::string>& notes) {
+    if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) return without_air(*solid, air);
+    Result<mesh::TriMesh> surface = read_body_surface(robot, body, std::get<SurfaceFile>(body.geometry), notes);
+    if (!surface) return tl::unexpected(surface.error());
+    const Box3 box = mesh::bounds(*surface);
+    const auto cuts = [&](const mesh::Solid& one) { return boxes_overlap(box, mesh::bounds(one)); };
+    const auto fills = [](const CableSpec& cable) { return cable.fill_notches; };
+    if (std::any_of(air.begin(), air.end(), cuts) || std::any_of(robot.cables.begin(), robot.cables.end(), fills)) {
+        if (Result<mesh::Solid> solid = mesh::polyhedron(*surface)) return without_air(*solid, air);
+    }
+    return std::move(*surface);
+}
+
+/// A size that the file gives is taken at its word; without one, walls get three elements.
+mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+    mesh::MeshSettings settings;
+    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
+    settings.order = robot.mesh.order;
+    settings.through_wall = robot.mesh.elements_through_wall.value_or(robot.mesh.size > 0 ? 0 : 3);
+    settings.judge_walls = !robot.mesh.elements_through_wall;
+    settings.close_gaps = robot.mesh.close_gaps.value_or(1e-3 * settings.size);
+    settings.size_near_cables = robot.mesh.size_near_cables;
+    for (const CableSpec& cable : robot.cables) settings.cables.push_back(cable.points);
+    return settings;
+}
+
+/// Where the file asks for no size, thin walls and many fingers must not make a mesh on which every step takes minutes:
+/// one of more nodes is meshed again with fewer elements through walls and then longer edges, and a note says so.
+Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
+                                         Progress& progress) {
+    constexpr std::size_t most_automatic_nodes = 20000;
+    constexpr int tries = 3;
+    constexpr double most_coarser = 1.6;  // at once: what remains of a notch or wall should still be meshed well
+    mesh::MeshSettings settings = mesh_settings(robot, bodies);
+    Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
+    const bool asked = robot.mesh.size > 0 || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
+    if (!mesh || asked || mesh->points.size() <= most_automatic_nodes) return mesh;
+    const std::size_t usual = mesh->points.size();
+    for (int i = 0; i < tries && mesh && mesh->points.size() > most_automatic_nodes; ++i) {
+        const double excess = static_cast<double>(mesh->points.size()) / static_cast<double>(most_automatic_nodes);
+        if (settings.through_wall > 1)
+            --settings.through_wall;
+        else
+            settings.size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
+        mesh = mesh::mesh_bodies(bodies, settings, progress);
+    }
+    if (mesh)
+        mesh->notes.push_back(
+            fmt::format("no mesh.size is given: {} nodes in place of {} with 3 elements through every "
+                        "wall, so that a step takes seconds; for a finer mesh set mesh.size (here {:.3g}) "
+                        "or mesh.elements_through_wall (here {})",
+                        mesh->points.size(), usual, settings.size, settings.through_wall));
+    return mesh;
+}
+
+Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
+                               const std::vector<mesh::Solid>& air) {
+    std::vector<mesh::Solid> walls;
+    for (const mesh::BodyGeometry& body : bodies) {
+        if (body.air) continue;
+        if (const auto* solid = std::get_if<mesh::Solid>(&body.shape)) {
+            walls.push_back(*solid);
+            continue;
+        }
+        return input_error(
+            "{}: fill_notches needs shapes, STEP files or closed surfaces of few flat faces, which \"{}\" is not",
+            robot.file.string(), body.name);
+    }
+    return crossed_notches(robot, walls, air);
+}
+
+Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {
+    const std::vector<mesh::Solid> air = drawn_air(robot);
+    std::vector<mesh::BodyGeometry> bodies;
+    std::vector<std::string> notes;
+    for (const BodySpec& body : robot.bodies) {
+        Result<Shape> shape = body_shape(robot, body, air, notes);
+        if (!shape) return tl::unexpected(shape.error());
+        bodies.push_back({body.name, std::move(*shape), false, body.size});
+    }
+    for (const Region& region : regions_of(robot)) {
+        if (region.use == Region::Use::body) continue;
+        const auto* drawn = std::get_if<mesh::Solid>(region.geometry);
+        Result<mesh::Solid> space = drawn != nullptr ? *drawn : notches_of(robot, bodies, air);
+        if (!space) return tl::unexpected(space.error());
+        bodies.push_back({std::string(region.name), std::move(*space), true});
+    }
+    Result<mesh::TetMesh> mesh = mesh_within_budget(robot, bodies, progress);
+    if (!mesh) {
+        // The mesher says which body, chamber or gap it is about.
+        int line = robot.bodies.front().line;
+        for (const Region& region : regions_of(robot)) {
+            if (!mesh.error().problems.empty() && mesh.error().problems.back().key == region.name) line = region.line;
+        }
+        return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
+    }
+    mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
+    return mesh;
+}
+
+bool box_holds_centroid(const BoxSelector& box, const mesh::TetMesh& mesh, std::size_t tet) {
+    Vec3 centroid;
+    for (std::size_t i = 0; i < 4; ++i) centroid += 0.25 * mesh.points[static_cast<std::size_t>(mesh.tet(tet)[i])];
+    return Box3{box.low, box.high}.contains(centroid, 0);
+}
+
+/// Gives user `u` the tets of its region. A region has one user, but a box may take tets from those before it.
+Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vector<Region>& users, std::size_t u,
+                  std::vector<int>& user_of_tet) {
+    const Region& user = users[u];
+    const auto& wanted = std::get<MeshRegion>(*user.geometry);
+    const auto wrong = [&](std::string text) {
+        return tl::unexpected(at(place(robot, user.line, user.kind, user.name), {Cause::input, std::move(text)}));
+    };
+    std::size_t found = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const std::string& region = mesh.region_names[static_cast<std::size_t>(mesh.region[t])];
+        if (wanted.name != "all" && wanted.name != region) continue;
+        if (wanted.box && !box_holds_centroid(*wanted.box, mesh, t)) continue;
+        ++found;
+        if (user_of_tet[t] >= 0 && !wanted.box) {
+            const Region& first = users[static_cast<std::size_t>(user_of_tet[t])];
+            return wrong(fmt::format("region \"{}\" already belongs to {} \"{}\"", region, first.kind, first.name));
+        }
+        user_of_tet[t] = static_cast<int>(u);
+    }
+    if (found > 0) return {};
+    if (wanted.box) return wrong("the box holds no centroid of a tetrahedron of the region");
+    return wrong(fmt::format("the mesh has no region \"{}\"; it has {}", wanted.name, join_names(mesh.region_names)));
+}
+
+/// Gives every region of the file to the body, chamber or gap that names it.
+Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
+    Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
+    if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
+    mesh = mesh::placed(std::move(*mesh), robot.mesh.placement);
+    const std::vector<Region> users = regions_of(robot);
+    std::vector<int> user_of_tet(mesh->tet_count(), -1);
+    for (std::size_t u = 0; u < users.size(); ++u) {
+        if (Status status = claim_tets(robot, *mesh, users, u, user_of_tet); !status)
+            return tl::unexpected(status.error());
+    }
+    for (std::size_t t = 0; t < mesh->tet_count(); ++t) {
+        if (user_of_tet[t] < 0) {
+            return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""),
+                                     {Cause::input, fmt::format("no body names region \"{}\" of the mesh",
+                                                                mesh->region_names[mesh->region[t]])}));
+        }
+    }
+    mesh->region = std::move(user_of_tet);
+    mesh->region_names.clear();
+    for (const Region& user : users) mesh->region_names.emplace_back(user.name);
+    return robot.mesh.order == 2 ? mesh::to_quadratic(*mesh) : std::move(*mesh);
+}
+
+}  // namespace
+
+Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
+    Result<mesh::TetMesh> mesh = robot.mesh.file ? read_mesh_file(robot) : mesh_drawn_bodies(robot, progress);
+    if (!mesh) return mesh;
+    const std::vector<std::string> notes = notes_on_chambers(robot);
+    mesh->notes.insert(mesh->notes.end(), notes.begin(), notes.end());
+    return mesh::scaled(std::move(*mesh), robot.unit_m);
+}
+
+Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {
+    constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
+    const std::vector<mesh::Solid> air = drawn_air(robot);
+    std::vector<BodySurface> surfaces;
+    Result<mesh::TetMesh> regions;
+    if (robot.mesh.file) {
+        regions = read_mesh_file(robot);
+        if (!regions) return tl::unexpected(regions.error());
+    }
+    for (std::size_t b = 0; b < robot.bodies.size(); ++b) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("surfaces", static_cast<double>(b) / static_cast<double>(robot.bodies.size()));
+        const BodySpec& body = robot.bodies[b];
+        Result<mesh::TriMesh> surface;
+        std::vector<std::string> notes;
+        if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
+            surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
+        } else if (std::holds_alternative<SurfaceFile>(body.geometry)) {
+            const Result<Shape> shape = body_shape(robot, body, air, notes);
+            if (!shape) return tl::unexpected(shape.error());
+            const auto* cut = std::get_if<mesh::Solid>(&*shape);
+            surface =
+                cut != nullptr ? mesh::tessellate(*cut, printable_m / robot.unit_m) : std::get<mesh::TriMesh>(*shape);
+        } else {
+            surface = mesh::region_surface(*regions, static_cast<int>(b));
+        }
+        if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
+        surfaces.push_back(
+            {body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes)});
+    }
+    return surfaces;
+}
+
+}  // namespace pliant::robot

@@ -1,0 +1,34 @@
+// What drives the actuators of a robot.
+#pragma once
+
+#include <optional>
+
+#include "robot/description/curve.hpp"
+
+namespace pliant::robot {
+
+/// What a cable is driven by: in a straight line from rest to `value` at time 1, or through keys.
+struct CableTarget {
+    enum class Kind { length_ratio, shortening_m, tension_N };
+    Kind kind = Kind::length_ratio;
+    double value = 1;
+    std::optional<Curve> keys = std::nullopt;
+    [[nodiscard]] double at(double time) const;
+};
+
+/// What a chamber is driven by, likewise. gas_ratio: the chamber is sealed and holds this many times the gas that it
+/// holds at rest at ambient pressure; (p + p_ambient) V = gas_ratio p_ambient V_rest, at constant temperature.
+struct ChamberTarget {
+    enum class Kind { volume_ratio, volume_change_m3, pressure_Pa, gas_ratio };
+    Kind kind = Kind::volume_ratio;
+    double value = 1;
+    std::optional<Curve> keys = std::nullopt;
+    [[nodiscard]] double at(double time) const;
+};
+
+/// How hard air is held to its volume and a gap to its width, beside the Young's modulus of the softest body (the
+/// weight of A.4).
+inline constexpr double default_air_weight = 0.1, default_gap_weight = 0.1;
+inline constexpr double largest_space_weight = 1000;
+
+}  // namespace pliant::robot

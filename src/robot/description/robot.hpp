@@ -1,0 +1,228 @@
+// The robot file as read: one plain value, validated, nothing built yet. docs/reference/robot.md describes every key.
+//
+// Coordinates are in the file's `length_unit` (`unit_m` metres); all other quantities are SI.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/core/vec3.hpp"
+#include "geometry/mesh/placement.hpp"
+#include "geometry/shapes/solid.hpp"
+#include "robot/description/drive.hpp"
+#include "robot/description/law.hpp"
+#include "robot/description/program.hpp"
+
+namespace pliant::robot {
+
+struct MaterialSpec {
+    std::string name;
+    material::Law law = material::NeoHookean{};
+    double youngs_modulus_Pa = 0;
+    double poisson_ratio = 0;
+    double density_kg_m3 = 0;
+    std::string resin;                             ///< the material's own name where the file says nothing
+    std::optional<std::array<double, 3>> colour;   ///< sRGB, each in [0, 1]
+    double exposure_s = 0, bottom_exposure_s = 0;  ///< of its layers when printed; 0: what the printer file says
+};
+
+/// In length units.
+struct BoxSelector {
+    Vec3 low, high;
+};
+
+/// Geometry of a body or of air: a solid expression, a surface file, or a region of the mesh file ("all": every
+/// region).
+struct SurfaceFile {
+    std::filesystem::path path;
+    std::string part{};           ///< of a 3MF file: the object or the material; empty: all of it
+    mesh::Placement placement{};  ///< lengths in length units
+};
+struct MeshRegion {
+    std::string name;
+    std::optional<BoxSelector> box;  ///< only the tets whose centroid lies inside, taken from those named before
+};
+/// The closed cavity of the bodies around a point; air alone is drawn so.
+struct CavityAt {
+    Vec3 point;
+};
+/// The notches that cables cross which ask for it; a gap alone is found so.
+struct CrossedNotches {};
+using Geometry = std::variant<mesh::Solid, SurfaceFile, MeshRegion, CavityAt, CrossedNotches>;
+
+/// A body that changes from its material to another; in length units.
+struct PrintBlend {
+    int material = 0;  ///< index into Robot::materials
+    Vec3 from, to;
+    std::vector<double> shares{0, 1};  ///< of the other material, evenly spaced from `from` to `to`
+    double cell = 0;                   ///< edge of the squares that are one or the other; 0: a pixel
+};
+
+struct BodySpec {
+    std::string name;
+    int material = 0;  ///< index into Robot::materials
+    Geometry geometry;
+    double size = 0;  ///< of the mesh in it, in length units; 0: that of the whole mesh
+    int line = 0;
+    std::optional<PrintBlend> blend{};  ///< a simulation takes it in grades, build_grades.hpp
+    double exposure_s = 0;              ///< of its layers when printed; 0: that of its material
+};
+
+struct MeshSpec {
+    double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
+    std::optional<std::filesystem::path> file;
+    mesh::Placement placement{};  ///< of the file's mesh; lengths in length units
+    int order = 2;
+    std::optional<int> elements_through_wall;  ///< at least; else 3, or where a size is given what that gives
+    std::optional<double> close_gaps;          ///< in length units, not below 0; else a thousandth of the size
+    double size_near_cables = 0;               ///< in length units; 0: no wish
+    std::optional<double> point_reach;         ///< in length units, not below 0; else an eighth of the mean edge
+    int line = 0;
+};
+
+/// Which part of the robot is meant; in length units.
+struct PlaneSelector {
+    Vec3 point, normal;
+};
+struct SphereSelector {
+    Vec3 center;
+    double radius = 0;
+};
+struct SurfaceSelector {
+    std::filesystem::path path;
+};
+struct NodeSelector {
+    std::vector<int> nodes;
+};
+using Selector = std::variant<BoxSelector, PlaneSelector, SphereSelector, SurfaceSelector, NodeSelector>;
+
+struct FixedSpec {
+    std::string name;
+    Selector selector;
+    Vec3 move;  ///< length units
+    double rotate_deg = 0;
+    Vec3 rotation_axis{1, 0, 0};
+    Vec3 rotation_center;          ///< length units
+    std::vector<Vec3> directions;  ///< in which the nodes are held; none: in all
+    Curve share = ramp(0, 1);
+    int line = 0;
+};
+
+/// Something rigid that is glued to the body where the selector catches its nodes.
+struct PlateSpec {
+    std::string name;
+    Selector selector;
+    int line = 0;
+};
+
+struct LoadSpec {
+    std::string name;
+    Selector selector;
+    Vec3 force_N;
+    std::optional<double> pressure_Pa;  ///< instead of the force: follows the surface, presses on it where positive
+    Curve share = ramp(0, 1);
+    int line = 0;
+};
+
+/// Which end of a cable or spring is fixed in space.
+enum class Anchor { none, first, last };
+
+struct CableSpec {
+    std::string name;
+    std::vector<Vec3> points;
+    Anchor anchor = Anchor::none;
+    bool guides_at_crossings = false;  ///< a guide point wherever the path enters or leaves a body
+    double eyelet_radius = 0;          ///< length units
+    double friction = 0;               ///< coefficient in the guides
+    CableTarget target;
+    bool gap_elements = false;           ///< the thesis' model (T3.5) instead of the length constraint
+    bool fill_notches = false;           ///< the notches that it crosses are gaps
+    double weight = default_gap_weight;  ///< of its gap elements, where their gap has none of its own
+    int line = 0;
+};
+
+struct SpringSpec {
+    std::string name;
+    std::vector<Vec3> points;
+    Anchor anchor = Anchor::none;
+    double eyelet_radius = 0;  ///< length units
+    double stiffness_N_m = 0;
+    std::optional<double> free_length;  ///< length units; none: as drawn
+    bool only_pulls = false;
+    int line = 0;
+};
+
+/// Empty space that closes under a cable with gap elements; a solid that is cut out of the bodies, a region, or the
+/// notches that cables cross.
+inline constexpr std::string_view notches_name = "notches";
+struct GapSpec {
+    std::string name;
+    Geometry space;
+    int line = 0;
+    std::optional<double> weight{};  ///< of its elements, beside the softest Young's modulus
+};
+
+/// A chamber's air: a solid that is cut out of the bodies, a closed surface file, a region of the mesh file, or a
+/// cavity of the bodies.
+struct ChamberSpec {
+    std::string name;
+    Geometry air;
+    ChamberTarget target;
+    bool elements = false;               ///< the thesis' model (T3.6) instead of the volume constraint
+    double weight = default_air_weight;  ///< of the elements, beside the softest Young's modulus
+    int line = 0;
+};
+
+/// A rigid thing that the robot may touch.
+struct ObstacleSpec {
+    std::string name;
+    std::variant<mesh::Solid, SurfaceFile, PlaneSelector> shape;  ///< of the plane's half-space the normal points out
+    double friction = 0;
+    Vec3 move;  ///< length units
+    Curve share = ramp(0, 1);
+    int line = 0;
+};
+
+struct ContactSpec {
+    bool self = true;
+    double distance = 0;                 ///< length units; 0: a thousandth of the robot's size
+    std::optional<double> stiffness_Pa;  ///< else a tenth of the softest Young's modulus
+    double friction = 0;                 ///< of the robot against itself
+    double slip = 0;                     ///< length units; 0: a hundredth of the distance
+    int line = 0;
+};
+
+struct MarkerSpec {
+    std::string name;
+    std::variant<Vec3, BoxSelector> place;
+    int line = 0;
+};
+
+struct Robot {
+    std::filesystem::path file;
+    std::string name;
+    double unit_m = 1e-3;
+    std::vector<MaterialSpec> materials;
+    std::vector<BodySpec> bodies;
+    MeshSpec mesh;
+    std::vector<FixedSpec> fixed;
+    std::vector<PlateSpec> plates;
+    std::vector<LoadSpec> loads;
+    std::vector<CableSpec> cables;
+    std::vector<SpringSpec> springs;
+    std::vector<ChamberSpec> chambers;
+    std::vector<GapSpec> gaps;
+    std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle
+    std::vector<ObstacleSpec> obstacles;
+    std::vector<MarkerSpec> markers;
+    Vec3 gravity_m_s2;
+    Curve gravity_share = ramp(0, 1);
+    double ambient_pressure_Pa = 101325;
+    Program program;
+};
+
+}  // namespace pliant::robot

@@ -1,0 +1,11 @@
+// [[cable]], [[spring]], [[chamber]] and [[gap]] of a robot file: what moves it.
+#pragma once
+
+#include "robot/file/reading.hpp"
+
+namespace pliant::robot {
+
+/// Reads them all into the robot. Precondition: [mesh] has been read.
+void read_actuators(config::Reader& root, Context& context);
+
+}  // namespace pliant::robot

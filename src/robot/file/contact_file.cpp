@@ -1,0 +1,65 @@
+#include "robot/file/contact_file.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+
+double read_friction(Reader& reader) {
+    const double friction = reader.number("friction", 0);
+    if (!(friction >= 0 && friction <= 10))
+        reader.problem("friction", "is a coefficient: 0 or more, rubber has 0.5 to 1");
+    return friction;
+}
+
+std::variant<mesh::Solid, SurfaceFile, PlaneSelector> read_obstacle_shape(Reader& reader, Context& context) {
+    const int given = int{reader.has("geometry")} + int{reader.has("surface")} + int{reader.has("plane")};
+    if (given != 1) reader.problem("", "takes one of geometry (a shape), surface (a file) and plane");
+    std::variant<mesh::Solid, SurfaceFile, PlaneSelector> shape = PlaneSelector{{}, {0, 0, 1}};
+    if (reader.has("plane")) {
+        shape = read_plane(reader);
+    } else if (reader.has("surface")) {
+        shape = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context), "",
+                            read_placement(reader, "place")};
+    } else if (reader.has("geometry")) {
+        shape = read_shape(reader, context);
+    }
+    for (const char* key : {"geometry", "surface", "plane"}) (void)reader.raw(key);
+    return shape;
+}
+
+void read_obstacle(Reader& reader, Context& context, ObstacleSpec& obstacle) {
+    obstacle.shape = read_obstacle_shape(reader, context);
+    obstacle.friction = read_friction(reader);
+    obstacle.move = reader.vector("move", Vec3{});
+}
+
+ContactSpec read_rules(Reader reader, const Robot& robot) {
+    ContactSpec contact;
+    contact.line = reader.line();
+    contact.self = reader.boolean("self", true);
+    contact.distance = reader.quantity("distance", Dimension::length, 0) / robot.unit_m;
+    if (reader.has("distance") && !(contact.distance > 0)) reader.problem("distance", "must be above zero");
+    if (reader.has("stiffness")) {
+        contact.stiffness_Pa = reader.quantity("stiffness", Dimension::pressure);
+        if (!(*contact.stiffness_Pa > 0)) reader.problem("stiffness", "must be above zero");
+    }
+    (void)reader.raw("stiffness");
+    contact.friction = read_friction(reader);
+    contact.slip = reader.quantity("slip", Dimension::length, 0) / robot.unit_m;
+    if (reader.has("slip") && !(contact.slip > 0)) reader.problem("slip", "must be above zero");
+    reader.finish();
+    return contact;
+}
+
+}  // namespace
+
+void read_contact(Reader& root, Context& context) {
+    const bool has_rules = root.has("contact");
+    Robot& robot = context.robot;
+    const ContactSpec rules = read_rules(root.table("contact", false), robot);
+    read_each(root, context, "obstacle", "obstacles", robot.obstacles, read_obstacle);
+    if (has_rules || !robot.obstacles.empty()) robot.contact = rules;
+}
+
+}  // namespace pliant::robot

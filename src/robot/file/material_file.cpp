@@ -1,0 +1,245 @@
+#include "robot/file/material_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/core/text.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+
+std::optional<std::array<double, 3>> read_colour(Reader& reader) {
+    if (!reader.has("colour")) return (void)reader.raw("colour"), std::nullopt;
+    const std::string text = reader.text("colour");
+    std::array<double, 3> rgb{};
+    bool good = text.size() == 7 && text[0] == '#';
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        int value = 0;
+        const char* first = text.data() + 1 + 2 * i;
+        const auto [end, code] = std::from_chars(first, first + 2, value, 16);
+        good = code == std::errc() && end == first + 2;
+        rgb[i] = value / 255.0;
+    }
+    if (!good) reader.problem("colour", "write a colour as \"#rrggbb\"");
+    return rgb;
+}
+
+/// False, and a problem, where no solid has this Poisson ratio.
+bool check_poisson_ratio(Reader& reader, double nu) {
+    if (nu > -1 && nu < 0.5) return true;
+    reader.problem("poisson_ratio",
+                   fmt::format("{} is not possible; above -1 and below 0.5, rubber is 0.45 to 0.499", nu));
+    return false;
+}
+
+/// The largest R_omega. Of a target shape that is softer still less than a thousandth of the rest shape is left: it
+/// resists a change of volume and nothing else, so that no shape is better than another and no solver finds one.
+constexpr double softest_R = 1000;
+
+/// R_omega of a ratio of moduli, R_m >= 1, by the name of a map.
+double shape_parameter_by(Reader& reader, const std::string& map, double R_m) {
+    if (map == "calibrated") {
+        const std::vector<double> c = reader.numbers("shape_curve", 3);
+        if (c.size() != 3) return 1;
+        const double R = (c[0] * R_m + c[1]) * R_m + c[2];
+        if (!(R >= 1))
+            reader.problem("shape_curve", fmt::format("gives R_omega {:.4g} for R_m {:.4g}; it is 1 or more", R, R_m));
+        return std::max(1.0, R);
+    }
+    return map == "thesis" ? material::shape_parameter_of_thesis(R_m) : material::shape_parameter_small_strain(R_m);
+}
+
+/// R_omega from two moduli: that of the material, and that of the stiffest, whose target is rigid and whose modulus is
+/// then the weight of all.
+material::ShapeBlend read_named_blend(Reader& reader, double E) {
+    const std::string map = reader.choice("shape_parameter", {"thesis", "small-strain", "calibrated"});
+    if (map != "calibrated" && reader.has("shape_curve"))
+        reader.problem("shape_curve", "goes with shape_parameter = \"calibrated\"");
+    if (!reader.has("stiffest")) {
+        reader.problem("stiffest", "is missing; Young's modulus of the material that counts as rigid, as \"45 MPa\"");
+        return {1, 1};
+    }
+    const double stiffest = reader.quantity("stiffest", Dimension::pressure, E);
+    if (!(stiffest >= E)) {
+        reader.problem("stiffest", "is below youngs_modulus; the stiffest material counts as rigid");
+        return {1, 1};
+    }
+    const double R = stiffest == E ? 1 : shape_parameter_by(reader, map, stiffest / E);
+    if (!(R <= softest_R)) {
+        reader.problem("stiffest", fmt::format("is {:.4g} times youngs_modulus, which takes R_omega {:.4g}; above {:g} "
+                                               "hardly anything holds a shape. Bring the two nearer to each other",
+                                               stiffest / E, R, softest_R));
+        return {1, 1};
+    }
+    return {stiffest, 1 / R};
+}
+
+material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
+    const double nu = material.poisson_ratio;
+    if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
+    const config::Value* given = reader.raw("shape_parameter");
+    if (given != nullptr && std::holds_alternative<std::string>(given->data)) {
+        const material::ShapeBlend blend = read_named_blend(reader, material.youngs_modulus_Pa);
+        material.poisson_ratio = material::poisson_ratio(material::moduli(blend));
+        return blend;
+    }
+    if (reader.has("stiffest")) {
+        (void)reader.raw("stiffest");
+        reader.problem("stiffest",
+                       "goes with a shape_parameter by name: \"thesis\", \"small-strain\" or "
+                       "\"calibrated\"");
+    }
+    material::ShapeBlend blend = material::shape_blend(material.youngs_modulus_Pa, nu);
+    if (given != nullptr) {
+        // The thesis' way: one weight for all materials, R_omega tells them apart.
+        const double R = reader.number("shape_parameter", 1);
+        if (R >= 1 && R <= softest_R)
+            blend.a = 1 / R;
+        else
+            reader.problem("shape_parameter",
+                           fmt::format("{:g} is not possible; R_omega is from 1 (rigid) to {:g}, with 7.08 for "
+                                       "materials of 45 and 12 MPa, and 50 for hardly more than a kept volume",
+                                       R, softest_R));
+    } else if (nu >= 0 && !(blend.a >= 1 / softest_R)) {
+        reader.problem("poisson_ratio", fmt::format("{} leaves the shape blend nothing that holds a shape; at most "
+                                                    "{:.5f}, rubber is 0.45 to 0.499",
+                                                    nu, (softest_R - 1) / (2 * softest_R + 1)));
+    }
+    return blend;
+}
+
+/// The laws that Young's modulus and Poisson ratio determine.
+void read_two_moduli(Reader& reader, const std::string& law, MaterialSpec& material) {
+    const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
+    const double E = material.youngs_modulus_Pa = reader.has("youngs_modulus")
+                                                      ? reader.quantity("youngs_modulus", Dimension::pressure, 1)
+                                                      : reader.quantity("youngs_modulus", Dimension::pressure);
+    if (!check_poisson_ratio(reader, nu)) return;
+    if (reader.has("youngs_modulus") && !(E > 0)) reader.problem("youngs_modulus", "must be above zero");
+    if (law == "neo-hookean") material.law = material::neo_hookean(E, nu);
+    if (law == "st-venant-kirchhoff") material.law = material::st_venant_kirchhoff(E, nu);
+    if (law == "corotated") material.law = material::corotated(E, nu);
+    if (law == "linear") material.law = material::linear(E, nu);
+    if (law == "shape-blend") material.law = read_shape_blend(reader, material);
+}
+
+/// Bulk modulus as given, or from the Poisson ratio at small strains. Precondition: shear_Pa > 0.
+double read_bulk(Reader& reader, double shear_Pa) {
+    if (!reader.has("bulk_modulus")) {
+        (void)reader.raw("bulk_modulus");
+        const double nu = reader.number("poisson_ratio", 0.45);
+        return check_poisson_ratio(reader, nu) ? material::bulk_modulus(shear_Pa, nu) : shear_Pa;
+    }
+    if (reader.has("poisson_ratio")) {
+        (void)reader.raw("poisson_ratio");
+        reader.problem("poisson_ratio", "stands beside bulk_modulus; one of the two determines the other");
+    }
+    const double K = reader.quantity("bulk_modulus", Dimension::pressure, shear_Pa);
+    if (!(K > 0)) reader.problem("bulk_modulus", "must be above zero");
+    return K > 0 ? K : shear_Pa;
+}
+
+double pressure(Reader& reader, std::string_view key) {
+    return reader.quantity(key, Dimension::pressure);
+}
+
+material::Ogden read_ogden(Reader& reader) {
+    material::Ogden law{};
+    const std::vector<std::string> mu = reader.texts("mu");
+    const std::vector<double> alpha = reader.numbers("alpha");
+    if (!reader.has("mu")) reader.problem("", "\"mu\" is missing; it is a list of pressures such as [\"1.2 MPa\"]");
+    if (mu.empty() || mu.size() != alpha.size() || mu.size() > material::Ogden::most_terms) {
+        if (reader.has("mu") && reader.has("alpha"))
+            reader.problem("mu", fmt::format("has {} values and alpha {}; as many of each, 1 to {}", mu.size(),
+                                             alpha.size(), material::Ogden::most_terms));
+        return law;
+    }
+    law.terms = static_cast<int>(mu.size());
+    for (std::size_t k = 0; k < mu.size(); ++k) {
+        const Result<double> value = parse_quantity(mu[k], Dimension::pressure);
+        if (!value) reader.problem("mu", value.error().message);
+        law.mu_Pa[k] = value.value_or(0);
+        law.alpha[k] = alpha[k];
+        if (alpha[k] == 0 || !(std::fabs(alpha[k]) <= 100))
+            reader.problem("alpha", fmt::format("{} is not possible; between -100 and 100, and not zero", alpha[k]));
+    }
+    return law;
+}
+
+/// The constants alone, with the bulk modulus still zero.
+material::Law read_constants(Reader& reader, const std::string& law) {
+    if (law == "mooney-rivlin") return material::MooneyRivlin{pressure(reader, "c10"), pressure(reader, "c01"), 0};
+    if (law == "ogden") return read_ogden(reader);
+    return material::Yeoh{pressure(reader, "c10"), reader.quantity("c20", Dimension::pressure, 0),
+                          reader.quantity("c30", Dimension::pressure, 0), 0};
+}
+
+std::string_view shear_formula(const std::string& law) {
+    if (law == "mooney-rivlin") return "2 (c10 + c01)";
+    return law == "ogden" ? "the sum of mu" : "2 c10";
+}
+
+/// The laws with constants of their own.
+void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& material) {
+    if (reader.has("youngs_modulus")) {
+        (void)reader.raw("youngs_modulus");
+        reader.problem("youngs_modulus",
+                       fmt::format("does not determine the constants of \"{}\"; give them, its initial shear modulus "
+                                   "is {}, or take law = \"neo-hookean\"",
+                                   law, shear_formula(law)));
+        (void)read_constants(reader, law);
+        (void)reader.raw("poisson_ratio");
+        return;
+    }
+    material::Law elastic = read_constants(reader, law);
+    const double shear = material::moduli(elastic).shear_Pa;
+    if (!(shear > 0)) {
+        const std::string_view key = law == "ogden" ? "mu" : "c10";
+        if (reader.has(key))
+            reader.problem(key, fmt::format("the initial shear modulus, {}, is {:.4g} MPa; a stable solid needs one "
+                                            "above zero",
+                                            shear_formula(law), shear / 1e6));
+    }
+    const double K = read_bulk(reader, shear > 0 ? shear : 1);
+    if (auto* l = std::get_if<material::MooneyRivlin>(&elastic)) l->bulk_Pa = K;
+    if (auto* l = std::get_if<material::Yeoh>(&elastic)) l->bulk_Pa = K;
+    if (auto* l = std::get_if<material::Ogden>(&elastic)) l->bulk_Pa = K;
+    material.law = elastic;
+    material.youngs_modulus_Pa = material::youngs_modulus(material::moduli(elastic));
+    material.poisson_ratio = material::poisson_ratio(material::moduli(elastic));
+}
+
+}  // namespace
+
+double read_exposure(Reader& reader, std::string_view key) {
+    constexpr double most_s = 3600;
+    if (!reader.has(key)) return (void)reader.raw(key), 0;
+    const double seconds = reader.quantity(key, Dimension::time, 1);
+    if (!(seconds > 0 && seconds <= most_s)) reader.problem(key, "must be above 0 s and at most an hour");
+    return seconds;
+}
+
+MaterialSpec read_material(Reader& reader, const std::string& name) {
+    MaterialSpec material;
+    material.name = name;
+    const std::string law = reader.choice(
+        "law",
+        {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "linear", "shape-blend"},
+        "neo-hookean");
+    if (law == "mooney-rivlin" || law == "yeoh" || law == "ogden")
+        read_hyperelastic(reader, law, material);
+    else
+        read_two_moduli(reader, law, material);
+    material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
+    if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
+    material.resin = reader.text("resin", name);
+    material.colour = read_colour(reader);
+    material.exposure_s = read_exposure(reader, "exposure");
+    material.bottom_exposure_s = read_exposure(reader, "bottom_exposure");
+    return material;
+}
+
+}  // namespace pliant::robot

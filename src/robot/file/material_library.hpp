@@ -1,0 +1,49 @@
+// The library of materials: data/materials, put into the program when it is built.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/config.hpp"
+#include "robot/description/robot.hpp"
+
+namespace pliant::robot {
+
+struct LibraryFile {
+    std::string_view name;
+    std::string_view text;  ///< TOML
+};
+/// By name.
+[[nodiscard]] std::span<const LibraryFile> library_files();
+
+/// A material of the library with what is known of it.
+struct LibraryMaterial {
+    MaterialSpec spec;
+    std::string title;              ///< product and maker
+    std::string hardness;           ///< "Shore 00-30"; empty: not published
+    std::string source;             ///< where the constants and the density come from
+    std::string derivation;         ///< how they follow from the source, and for what they should not be taken
+    std::array<double, 2> stretch;  ///< for which the constants were measured
+};
+/// An error names file and line, for a name that is not there the near ones.
+[[nodiscard]] Result<LibraryMaterial> library_material(std::string_view name);
+
+/// "; did you mean ...?" with up to four names of the library that resemble `name`, or how to list them all.
+[[nodiscard]] std::string library_hint(std::string_view name);
+
+/// The table of a material that builds on another one of the library: the keys of `own` above those of the library.
+/// A `law` in `own` drops the library's elastic constants; `bulk_modulus` and `poisson_ratio` displace each other.
+/// Precondition: `base` is in the library.
+[[nodiscard]] config::Value with_base(const config::Value& own, std::string_view base);
+
+/// The whole library for people, one line each.
+[[nodiscard]] std::string library_text();
+/// One material with its constants and where they come from.
+[[nodiscard]] std::string material_text(const LibraryMaterial& material);
+/// A list of objects; pressures in Pa.
+[[nodiscard]] std::string library_json(const std::vector<LibraryMaterial>& materials);
+
+}  // namespace pliant::robot

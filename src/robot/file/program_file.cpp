@@ -1,0 +1,187 @@
+#include "robot/file/program_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/core/text.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+
+/// Something that keys can drive: how its value is written, where it starts, and where its curve goes.
+struct Driven {
+    std::string name;
+    std::optional<Dimension> dimension;  ///< of the value; a plain number where there is none
+    double rest = 0;
+    double end = 1;       ///< where it goes without keys
+    double low = -1e300;  ///< values outside are refused
+    double high = 1e300;
+    std::function<void(Curve)> drive;
+};
+
+Driven driven(CableSpec& cable) {
+    using Kind = CableTarget::Kind;
+    Driven d{cable.name, {}, 0, cable.target.value, 0, 1e300, [&](Curve c) { cable.target.keys = std::move(c); }};
+    if (cable.target.kind == Kind::length_ratio) d.rest = 1, d.low = 1e-6, d.high = 1;
+    if (cable.target.kind == Kind::shortening_m) d.dimension = Dimension::length;
+    if (cable.target.kind == Kind::tension_N) d.dimension = Dimension::force;
+    return d;
+}
+
+Driven driven(ChamberSpec& chamber) {
+    using Kind = ChamberTarget::Kind;
+    Driven d;
+    d.name = chamber.name;
+    d.end = chamber.target.value;
+    d.drive = [&](Curve c) { chamber.target.keys = std::move(c); };
+    if (chamber.target.kind == Kind::volume_change_m3) d.dimension = Dimension::volume;
+    if (chamber.target.kind == Kind::pressure_Pa) d.dimension = Dimension::pressure;
+    if (!d.dimension) d.rest = 1, d.low = 1e-6;
+    return d;
+}
+
+std::vector<Driven> everything_driven(Robot& robot) {
+    std::vector<Driven> list;
+    for (CableSpec& cable : robot.cables) list.push_back(driven(cable));
+    for (ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    const auto share = [&](const std::string& name, Curve& curve) {
+        Driven d;
+        d.name = name;
+        d.drive = [&](Curve c) { curve = std::move(c); };
+        list.push_back(std::move(d));
+    };
+    for (LoadSpec& load : robot.loads) share(load.name, load.share);
+    for (FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
+    for (ObstacleSpec& obstacle : robot.obstacles) share(obstacle.name, obstacle.share);
+    share("gravity", robot.gravity_share);
+    if (robot.program.dynamics) list.back().rest = 1;
+    return list;
+}
+
+double read_value(Reader& key, const Driven& d) {
+    const double value = d.dimension ? key.quantity(d.name, *d.dimension) : key.number(d.name);
+    if (value < d.low || value > d.high)
+        key.problem(d.name, fmt::format("{} is not possible; {}", value,
+                                        d.high < 1e300 ? "a cable gets shorter: above 0, at most 1"
+                                        : d.low > 0    ? "it must be above zero"
+                                                       : "it must not be below zero"));
+    return value;
+}
+
+/// The times of the keys, ascending. Keys are in order, or it would be unclear what the robot does between them.
+std::vector<double> read_times(std::vector<Reader>& keys) {
+    std::vector<double> times;
+    for (Reader& key : keys) {
+        const double time = key.quantity("time", Dimension::time);
+        if (time < 0 || (!times.empty() && time <= times.back()))
+            key.problem("time", "keys are in the order of time, none below zero");
+        times.push_back(time);
+    }
+    return times;
+}
+
+/// The curve through the keys that name `d`; from rest at time 0, and without keys straight to its end.
+Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, const Driven& d, double duration) {
+    Curve curve{{0}, {d.rest}};
+    bool named = false;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        (void)keys[k].raw(d.name);  // so that a misspelt name is told this one
+        if (!keys[k].has(d.name)) continue;
+        named = true;
+        const double value = read_value(keys[k], d);
+        if (times[k] <= 0) {
+            curve.value[0] = value;
+            continue;
+        }
+        if (times[k] <= curve.time.back()) continue;  // out of order: already said
+        curve.time.push_back(times[k]);
+        curve.value.push_back(value);
+    }
+    return named ? curve : Curve{{0, duration}, {d.rest, d.end}};
+}
+
+void read_keys(Reader& program, Robot& robot) {
+    std::vector<Reader> keys = program.tables("key");
+    double duration = program.quantity("duration", Dimension::time, 1);
+    if (!(duration > 0)) program.problem("duration", "must be above zero");
+    const std::vector<double> times = read_times(keys);
+    if (!times.empty() && times.back() > 0) {
+        if (program.has("duration") && duration < times.back()) program.problem("duration", "ends before the last key");
+        if (!program.has("duration")) duration = times.back();
+    }
+    robot.program.duration = duration > 0 ? duration : 1;
+    if (keys.empty() && duration == 1 && !robot.program.dynamics) return;
+    std::vector<Driven> list = everything_driven(robot);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (list[i].name != list[j].name) continue;
+            for (Reader& key : keys) {
+                if (key.has(list[i].name)) key.problem(list[i].name, "names two things; give them different names");
+            }
+        }
+        list[i].drive(read_curve(keys, times, list[i], robot.program.duration));
+    }
+    for (Reader& key : keys) key.finish();
+}
+
+/// Mass and damping take part where a time step is given. Gravity then acts from the beginning.
+void read_dynamics(Reader& program, Robot& robot) {
+    const bool moving = program.has("time_step");
+    if (moving) robot.program.dynamics = Dynamics{};
+    const double mass = program.number("mass_damping", 0);
+    const double stiffness = program.number("stiffness_damping", 0);
+    if (mass < 0) program.problem("mass_damping", "must not be negative (1/s)");
+    if (stiffness < 0) program.problem("stiffness_damping", "must not be negative (s)");
+    if (!moving && (mass > 0 || stiffness > 0)) program.problem("", "damping has no meaning without time_step");
+    if (moving) robot.program.dynamics->damping = {mass, stiffness};
+}
+
+/// As many steps of `time_step` as fit into the duration.
+void spread_steps(Reader& program, Robot& robot) {
+    const double step = program.quantity("time_step", Dimension::time);
+    if (program.has("steps")) program.problem("steps", "follows from time_step and duration; give one of them");
+    const double steps = step > 0 ? std::round(robot.program.duration / step) : 0;
+    if (!(steps >= 1 && steps <= 1e6)) {
+        program.problem("time_step", "must be above zero, and fit 1 to 1000000 times into the duration");
+        return;
+    }
+    robot.program.steps = static_cast<int>(steps);
+}
+
+}  // namespace
+
+void read_program(config::Reader& root, Robot& robot) {
+    config::Reader reader = root.table("program", false);
+    Program& program = robot.program;
+    program.steps = static_cast<int>(std::clamp<std::int64_t>(reader.integer("steps", 30), -1, 1000000));
+    if (program.steps < 1 || program.steps > 100000) {
+        reader.problem("steps", "must be between 1 and 100000");
+        program.steps = 1;
+    }
+    program.tolerance = reader.number("tolerance", 1e-4);
+    if (!(program.tolerance >= 1e-10 && program.tolerance <= 0.1))
+        reader.problem("tolerance", "must be between 1e-10 and 0.1");
+    robot.gravity_m_s2 = reader.vector("gravity", Vec3{});
+    const std::string solver =
+        reader.choice("solver", {"auto", "newton", "quasi-newton", "anderson", "local-global"}, "auto");
+    program.solver = solver_named(solver).value_or(Solver::automatic);
+    program.iteration_limit =
+        static_cast<int>(std::clamp<std::int64_t>(reader.integer("max_iterations", 0), -1, 100000000));
+    if (program.iteration_limit < 0)
+        reader.problem("max_iterations", "must be above zero, or 0 for the solver's own limit");
+    program.imperfection_m = reader.quantity("imperfection", Dimension::length, 0);
+    if (!(program.imperfection_m >= 0)) reader.problem("imperfection", "must not be below zero; 0 only warns");
+    robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
+    if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is absolute: above zero");
+    read_dynamics(reader, robot);
+    read_keys(reader, robot);
+    if (robot.program.dynamics) spread_steps(reader, robot);
+    reader.finish();
+}
+
+}  // namespace pliant::robot

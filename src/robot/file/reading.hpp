@@ -1,0 +1,59 @@
+// What the readers of a robot file's tables share.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/core/config.hpp"
+#include "geometry/shapes/solid.hpp"
+#include "robot/description/robot.hpp"
+
+namespace pliant::robot {
+
+/// The robot so far, and what its tables are read with.
+struct Context {
+    Robot& robot;
+    config::Problems& problems;
+    mesh::NamedShapes shapes;  ///< [shape.NAME]: solids that others may use
+};
+
+/// The key `name`; a problem if it stands in `taken`, to which it is added. `kind` is the plural for the message.
+[[nodiscard]] std::string read_name(config::Reader& reader, std::set<std::string>& taken, std::string_view kind);
+
+/// `file`, which the text of `key` names, as seen from the robot file's folder; a problem if there is no such file.
+[[nodiscard]] std::filesystem::path need_file(config::Reader& reader, std::string_view key, const std::string& file,
+                                              const Context& context);
+
+/// `box`: two corners, the lower one first. Empty where it is missing or wrong.
+[[nodiscard]] BoxSelector read_box(config::Reader& reader);
+
+/// `plane`: a point and a normal that is not zero.
+[[nodiscard]] PlaneSelector read_plane(config::Reader& reader);
+
+/// The table `key`: where a mesh from a file is put. The file as it is, where the key is missing.
+[[nodiscard]] mesh::Placement read_placement(config::Reader& reader, std::string_view key);
+
+/// `geometry`, written as a shape. Precondition: the key is there.
+[[nodiscard]] mesh::Solid read_shape(config::Reader& reader, Context& context);
+
+/// Reads every [[key]] of `root` into `list`: its line, its name, which is unique among its kind, and by
+/// `read(reader, context, spec)` what else it says.
+template <typename Spec, typename Read>
+void read_each(config::Reader& root, Context& context, std::string_view key, std::string_view kind,
+               std::vector<Spec>& list, const Read& read) {
+    std::set<std::string> taken;
+    for (config::Reader& reader : root.tables(key)) {
+        Spec spec;
+        spec.line = reader.line();
+        spec.name = read_name(reader, taken, kind);
+        read(reader, context, spec);
+        reader.finish();
+        list.push_back(std::move(spec));
+    }
+}
+
+}  // namespace pliant::robot

@@ -1,0 +1,89 @@
+#include "robot/file/robot_file.hpp"
+
+#include "base/core/files.hpp"
+#include "geometry/open/open_geometry.hpp"
+#include "robot/description/robot.hpp"
+#include "robot/file/actuator_file.hpp"
+#include "robot/file/body_file.hpp"
+#include "robot/file/contact_file.hpp"
+#include "robot/file/place_file.hpp"
+#include "robot/file/program_file.hpp"
+
+namespace pliant::robot {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Problems;
+using config::Reader;
+
+mesh::NamedShapes read_shapes(Reader& root) {
+    mesh::NamedShapes shapes;
+    const config::Value* value = root.raw("shape");
+    if (value == nullptr) return shapes;
+    if (const auto* table = std::get_if<config::Table>(&value->data)) {
+        for (const auto& [name, shape] : *table) shapes.emplace_back(name, &shape);
+    } else {
+        root.problem("shape", "write [shape.NAME] for each shape");
+    }
+    return shapes;
+}
+
+Result<Robot> read_robot(config::Document document, const std::vector<std::string>& assignments) {
+    for (const std::string& assignment : assignments) {
+        if (Status status = config::set(document, assignment); !status) return tl::unexpected(status.error());
+    }
+    if (Status status = config::resolve_parameters(document); !status) return tl::unexpected(status.error());
+
+    Problems problems(document.file.string());
+    Reader root(document.root, problems);
+    Robot robot;
+    robot.file = document.file;
+    robot.name = root.text("name");
+    const std::string unit = root.text("length_unit");
+    if (const Result<double> factor = unit_factor(unit, Dimension::length))
+        robot.unit_m = *factor;
+    else if (root.has("length_unit"))
+        root.problem("length_unit", factor.error().message);
+
+    Context context{robot, problems, read_shapes(root)};
+    read_bodies(root, context);
+    read_places(root, context);
+    read_actuators(root, context);
+    read_contact(root, context);
+    read_markers(root, context);
+    read_program(root, robot);
+    root.finish();
+    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
+    return robot;
+}
+
+/// Told by its content: people hand over the drawing itself.
+bool is_geometry(const fs::path& file) {
+    const Result<std::string> bytes = read_file(file);
+    if (!bytes) return false;
+    const mesh::GeometryKind kind = mesh::geometry_kind(*bytes);
+    if (kind == mesh::GeometryKind::unknown) return false;
+    if (kind == mesh::GeometryKind::step || kind == mesh::GeometryKind::threemf) return true;
+    // A robot file with a slip may look like a mesh format that is plain text.
+    return bytes->find('\0') != std::string::npos || bytes->starts_with("solid ") || bytes->starts_with("ply\n");
+}
+
+}  // namespace
+
+Result<Robot> load_robot(const fs::path& file, const std::vector<std::string>& assignments) {
+    Result<config::Document> document = config::load(file);
+    if (!document && is_geometry(file))
+        return input_error(
+            "{}: is geometry, no robot file; write a robot file that names it, as in geometry = \"{}\" of a [[body]]",
+            file.string(), file.filename().string());
+    if (!document) return tl::unexpected(document.error());
+    return read_robot(std::move(*document), assignments);
+}
+
+Result<Robot> parse_robot(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments) {
+    Result<config::Document> document = config::parse(text, file);
+    if (!document) return tl::unexpected(document.error());
+    return read_robot(std::move(*document), assignments);
+}
+
+}  // namespace pliant::robot

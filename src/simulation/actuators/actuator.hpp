@@ -1,0 +1,67 @@
+// What drives a robot is geometry: a cable's length, a chamber's volume. Both are one function g of the node positions,
+// its measure, and a multiplier m that puts the force -m dg/dx on the nodes: m is the tension of a cable and minus the
+// pressure of a chamber. Where a cable acts through gap elements, they put the force on the nodes instead.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "simulation/actuators/cable_path.hpp"
+#include "simulation/actuators/chamber_surface.hpp"
+#include "simulation/elements/actuated_space.hpp"
+
+namespace pliant::sim {
+
+class Actuator {
+public:
+    Actuator(CablePath path, std::span<const double> rest, std::optional<GapElements> gaps = std::nullopt);
+    Actuator(ChamberSurface surface, std::span<const double> rest);
+
+    /// Length in m or volume in m^3, and at rest. `shares` (segments of a cable) as in CablePath; a chamber has none.
+    [[nodiscard]] double measure(std::span<const double> x, std::span<const double> shares = {}) const;
+    [[nodiscard]] double rest_measure() const { return rest_measure_; }
+    /// A cable pulls and never pushes (m >= 0, and it may be shorter than allowed); air and gap elements do both.
+    [[nodiscard]] bool only_pulls() const { return std::holds_alternative<CablePath>(geometry_) && !gaps_; }
+    /// Of a cable that acts through them, else nothing.
+    [[nodiscard]] const GapElements* gaps() const { return gaps_ ? &*gaps_ : nullptr; }
+
+    /// forces (3n) += factor * dg/dx.
+    void add_measure_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                              std::span<const double> shares = {}) const;
+    /// forces (3n) += factor * (force of the unit of m): dg/dx but for gap elements.
+    void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
+                      std::span<const double> shares = {}) const;
+    /// values += the derivative of that force at m = factor (of gap elements with their own energy), for a pattern over
+    /// free nodes (block 3) that holds the cliques. With `project` the addition is positive semi-definite (that of a
+    /// pulling cable always is).
+    void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
+                     std::span<const double> shares = {}) const;
+    /// result (3n) += factor * (skew part of the derivative of the gradient) * v: only a pressed patch with a free rim
+    /// has one, its force is not the gradient of g.
+    void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
+                    std::span<double> result) const;
+    void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
+
+    [[nodiscard]] const CablePath& cable() const { return std::get<CablePath>(geometry_); }
+
+private:
+    std::variant<CablePath, ChamberSurface> geometry_;
+    std::optional<GapElements> gaps_;
+    double rest_measure_;
+};
+
+/// How an actuator is driven at one instant.
+struct Drive {
+    enum class Kind {
+        measure,     ///< g = value (a cable: at most)
+        multiplier,  ///< m = value
+        gas          ///< a sealed chamber: (-m + p_ambient) g = value, in J
+    };
+    Kind kind = Kind::measure;
+    double value = 0;
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,50 @@
+// Ties points of space to the mesh that carries them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tet_locator.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "simulation/parts/description.hpp"
+
+namespace pliant::sim {
+
+/// Built once per mesh; the mesh must outlive it. Lengths are in the mesh's unit.
+class Attacher {
+public:
+    explicit Attacher(const mesh::TetMesh& mesh);
+
+    /// The point moves with the tet that holds it. An error gives the distance of a point that lies outside by more
+    /// than `tolerance`. Within it, the nearest tet carries the point as if it went on beyond its face: where the point
+    /// is at rest is kept, and its motion is that of the face and its slope. A tet that is too flat for that carries
+    /// its own nearest point instead.
+    [[nodiscard]] Result<Attachment> carried_by_tet(const Vec3& point, double tolerance) const;
+
+    /// How far a point lies outside the mesh; 0 inside.
+    [[nodiscard]] double distance_outside(const Vec3& point) const { return locator_.locate(point).distance; }
+
+    /// The point's motion is the mean motion of the material within `radius`, and a force on it spreads over that
+    /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas
+    /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and
+    /// uses at most 64 nodes.
+    [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
+
+private:
+    [[nodiscard]] Result<mesh::TetLocator::Location> locate(const Vec3& point, double tolerance) const;
+    [[nodiscard]] std::vector<int> connected_nodes_within(int tet, const Vec3& point, double radius) const;
+
+    const mesh::TetMesh* mesh_;
+    mesh::TetLocator locator_;
+    std::vector<int> tet_start_;  ///< (n + 1)
+    std::vector<int> tets_;       ///< tets of every node
+};
+
+/// The wall that faces form, their nodes as points. `index` (nodes of the mesh that the faces come from) says which
+/// node of the robot each is; where it is -1 the point stays where it is: in the mouth of a chamber that a support
+/// closes.
+[[nodiscard]] Wall wall_of_faces(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces,
+                                 std::span<const int> index);
+
+}  // namespace pliant::sim

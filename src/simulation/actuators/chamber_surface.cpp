@@ -1,0 +1,257 @@
+#include "simulation/actuators/chamber_surface.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+
+/// A point of the integration rule: shape functions and their derivatives along the sides u (0 to 1) and v (0 to 2).
+struct Sample {
+    double weight;  ///< sum 1/2, the area of the reference triangle
+    std::array<double, 6> N, Nu, Nv;
+};
+
+Sample sample_linear(double weight, const std::array<double, 3>& b) {
+    return {weight, {b[0], b[1], b[2]}, {-1, 1, 0}, {-1, 0, 1}};
+}
+
+Sample sample_quadratic(double weight, const std::array<double, 3>& b) {
+    constexpr std::array<double, 3> du = {-1, 1, 0};  // of the barycentric coordinates
+    constexpr std::array<double, 3> dv = {-1, 0, 1};
+    Sample s{weight, {}, {}, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        s.N[i] = b[i] * (2 * b[i] - 1);
+        s.Nu[i] = (4 * b[i] - 1) * du[i];
+        s.Nv[i] = (4 * b[i] - 1) * dv[i];
+        s.N[3 + i] = 4 * b[i] * b[j];
+        s.Nu[3 + i] = 4 * (b[i] * du[j] + b[j] * du[i]);
+        s.Nv[3 + i] = 4 * (b[i] * dv[j] + b[j] * dv[i]);
+    }
+    return s;
+}
+
+/// A point position times a normal is of degree 1 over a plane face (one point) and of degree 4 over a curved one (six
+/// points; Dunavant 1985).
+const std::vector<Sample>& samples(bool quadratic) {
+    static const std::vector<Sample> one = {sample_linear(0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3})};
+    static const std::vector<Sample> six = [] {
+        std::vector<Sample> list;
+        constexpr std::array<std::array<double, 2>, 2> orbits = {
+            {{0.109951743655322, 0.091576213509771}, {0.223381589678011, 0.445948490915965}}};
+        for (const auto& [weight, a] : orbits) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                std::array<double, 3> b = {a, a, a};
+                b[i] = 1 - 2 * a;
+                list.push_back(sample_quadratic(0.5 * weight, b));
+            }
+        }
+        return list;
+    }();
+    return quadratic ? six : one;
+}
+
+std::size_t points_of(const WallFace& face) {
+    return face[3] < 0 ? 3 : 6;
+}
+
+/// x, x_u and x_v of a face at one sample.
+std::array<Vec3, 3> place(const WallFace& face, const Sample& s, const std::vector<Vec3>& p) {
+    std::array<Vec3, 3> sum;
+    for (std::size_t i = 0; i < points_of(face); ++i) {
+        const Vec3& point = p[static_cast<std::size_t>(face[i])];
+        sum[0] += s.N[i] * point;
+        sum[1] += s.Nu[i] * point;
+        sum[2] += s.Nv[i] * point;
+    }
+    return sum;
+}
+
+/// [a]: [a] b = a x b.
+Matrix3 cross_matrix(const Vec3& a) {
+    Matrix3 m;
+    m << 0, -a.z, a.y, a.z, 0, -a.x, -a.y, a.x, 0;
+    return m;
+}
+
+using FaceMatrix = std::array<std::array<Matrix3, 6>, 6>;
+
+/// factor * d(dV/dx_i)/dx_j of one face, not symmetric. Only the blocks of points that the face has are set.
+FaceMatrix second_gradient(const WallFace& face, double factor, const std::vector<Vec3>& points) {
+    FaceMatrix between;
+    const std::size_t count = points_of(face);
+    for (std::size_t i = 0; i < count; ++i) std::fill_n(between[i].begin(), count, Matrix3::Zero());
+    for (const Sample& s : samples(count == 6)) {
+        const auto [at, u, v] = place(face, s, points);
+        const Matrix3 U = factor * s.weight * cross_matrix(u);
+        const Matrix3 V = factor * s.weight * cross_matrix(v);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t j = 0; j < count; ++j) between[i][j] += s.N[i] * (s.Nv[j] * U - s.Nu[j] * V);
+        }
+    }
+    return between;
+}
+
+/// (3 count, 3 count), the nearest positive semi-definite one where asked for.
+Eigen::MatrixXd symmetric_part(const FaceMatrix& blocks, Eigen::Index count, bool project) {
+    Eigen::MatrixXd matrix(3 * count, 3 * count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j < count; ++j) {
+            const auto row = static_cast<std::size_t>(i);
+            const auto column = static_cast<std::size_t>(j);
+            matrix.block<3, 3>(3 * i, 3 * j) = 0.5 * (blocks[row][column] + blocks[column][row].transpose());
+        }
+    }
+    if (!project) return matrix;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+ChamberSurface::ChamberSurface(const Wall& wall, std::span<const double> rest) : wall_(wall) {
+    const std::vector<Vec3> points = points_at(rest);
+    for (const Vec3& p : points) centre_ += p / static_cast<double>(points.size());
+}
+
+std::vector<Vec3> ChamberSurface::points_at(std::span<const double> x) const {
+    std::vector<Vec3> points;
+    points.reserve(wall_.points.size());
+    for (const Attachment& point : wall_.points) points.push_back(position(point, x));
+    return points;
+}
+
+double ChamberSurface::volume(std::span<const double> x) const {
+    const std::vector<Vec3> points = points_at(x);
+    double sum = 0;
+    for (const WallFace& face : wall_.faces) {
+        for (const Sample& s : samples(points_of(face) == 6)) {
+            const auto [at, u, v] = place(face, s, points);
+            sum += s.weight * dot(at - centre_, cross(u, v)) / 3;
+        }
+    }
+    return sum;
+}
+
+void ChamberSurface::add_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
+    const std::vector<Vec3> points = points_at(x);
+    std::vector<Vec3> on_points(points.size());
+    for (const WallFace& face : wall_.faces) {
+        for (const Sample& s : samples(points_of(face) == 6)) {
+            const auto [at, u, v] = place(face, s, points);
+            const Vec3 n = (factor * s.weight) * cross(u, v);
+            for (std::size_t i = 0; i < points_of(face); ++i)
+                on_points[static_cast<std::size_t>(face[i])] += s.N[i] * n;
+        }
+    }
+    spread(on_points, forces);
+}
+
+void ChamberSurface::spread(std::span<const Vec3> on_points, std::span<double> on_nodes) const {
+    for (std::size_t p = 0; p < on_points.size(); ++p) {
+        const Attachment& point = wall_.points[p];
+        for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+            double* target = on_nodes.data() + 3 * static_cast<std::size_t>(point.nodes[k]);
+            target[0] += point.weights[k] * on_points[p].x;
+            target[1] += point.weights[k] * on_points[p].y;
+            target[2] += point.weights[k] * on_points[p].z;
+        }
+    }
+}
+
+void ChamberSurface::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
+                                 const linalg::SymmetricPattern& pattern, std::span<double> values,
+                                 bool project) const {
+    const std::vector<Vec3> points = points_at(x);
+    for (const WallFace& face : wall_.faces) {
+        const auto count = static_cast<Eigen::Index>(points_of(face));
+        const Eigen::MatrixXd symmetric = symmetric_part(second_gradient(face, factor, points), count, project);
+        for (Eigen::Index i = 0; i < count; ++i) {
+            for (Eigen::Index j = 0; j < count; ++j) {
+                add_pair(face[static_cast<std::size_t>(i)], face[static_cast<std::size_t>(j)],
+                         symmetric.block<3, 3>(3 * i, 3 * j), free_index, pattern, values);
+            }
+        }
+    }
+}
+
+void ChamberSurface::add_pair(int first, int second, const linalg::Matrix3& block, const std::vector<int>& free_index,
+                              const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    const Attachment& a = wall_.points[static_cast<std::size_t>(first)];
+    const Attachment& b = wall_.points[static_cast<std::size_t>(second)];
+    for (std::size_t l = 0; l < b.nodes.size(); ++l) {
+        const int j = free_index[static_cast<std::size_t>(b.nodes[l])];
+        if (j < 0) continue;
+        for (std::size_t k = 0; k < a.nodes.size(); ++k) {
+            const int i = free_index[static_cast<std::size_t>(a.nodes[k])];
+            if (i < j) continue;
+            const double weight = a.weights[k] * b.weights[l];
+            pattern.add_block(values, i, j, [&](int r, int c) { return weight * block(r, c); });
+        }
+    }
+}
+
+void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::span<const double> v,
+                                std::span<double> result) const {
+    const std::vector<Vec3> points = points_at(x);
+    std::vector<Vec3> motion;  // v is a motion: points that are fixed in space have none
+    for (const Attachment& point : wall_.points) motion.push_back(point.nodes.empty() ? Vec3{} : position(point, v));
+    std::vector<Vec3> on_points(points.size());
+    for (const WallFace& face : wall_.faces) {
+        const FaceMatrix between = second_gradient(face, 0.5 * factor, points);
+        for (std::size_t i = 0; i < points_of(face); ++i) {
+            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+            for (std::size_t j = 0; j < points_of(face); ++j) {
+                const Vec3& m = motion[static_cast<std::size_t>(face[j])];
+                sum += (between[i][j] - between[j][i].transpose()) * Eigen::Vector3d(m.x, m.y, m.z);
+            }
+            on_points[static_cast<std::size_t>(face[i])] += Vec3{sum[0], sum[1], sum[2]};
+        }
+    }
+    spread(on_points, result);
+}
+
+void ChamberSurface::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
+    for (const WallFace& face : wall_.faces) {
+        std::vector<int> clique;
+        for (std::size_t i = 0; i < points_of(face); ++i) {
+            for (const int node : wall_.points[static_cast<std::size_t>(face[i])].nodes)
+                clique.push_back(free_index[static_cast<std::size_t>(node)]);
+        }
+        std::sort(clique.begin(), clique.end());
+        clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
+        cliques.push_back(clique);
+    }
+}
+
+std::vector<int> rim_points(const Wall& wall) {
+    struct Edge {
+        int balance = 0;  ///< uses in one direction minus uses in the other
+        int middle = -1;
+    };
+    std::map<std::pair<int, int>, Edge> edges;
+    for (const WallFace& face : wall.faces) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int a = face[i];
+            const int b = face[(i + 1) % 3];
+            Edge& edge = edges[std::minmax(a, b)];
+            edge.balance += a < b ? 1 : -1;
+            edge.middle = face[3 + i];
+        }
+    }
+    std::set<int> rim;
+    for (const auto& [ends, edge] : edges) {
+        if (edge.balance == 0) continue;
+        rim.insert({ends.first, ends.second});
+        if (edge.middle >= 0) rim.insert(edge.middle);
+    }
+    return {rim.begin(), rim.end()};
+}
+
+}  // namespace pliant::sim

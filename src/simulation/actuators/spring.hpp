@@ -1,0 +1,41 @@
+// The force and stiffness of an elastic spring along a path of points: a helical spring between two of them, a rubber
+// band through several.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/linalg/sparse.hpp"
+#include "simulation/actuators/cable_path.hpp"
+#include "simulation/parts/description.hpp"
+
+namespace pliant::sim {
+
+/// E = k/2 (L - L0)^2 with the path's length L (m), its stiffness k (N/m) and its length L0 without force; 0 where a
+/// spring that only pulls is shorter. Gradient: k (L - L0) dL/dx. Second gradient:
+/// k dL/dx dL/dx^T + k (L - L0) d2L/dx2.
+class SpringPath {
+public:
+    /// `rest` (3n): node positions at rest. Precondition: the spring passed Model::create.
+    SpringPath(const Spring& spring, std::span<const double> rest);
+
+    [[nodiscard]] double length(std::span<const double> x) const { return path_.length(x); }
+    /// N, positive where it pulls.
+    [[nodiscard]] double force(std::span<const double> x) const;
+    [[nodiscard]] double energy(std::span<const double> x) const;
+    /// forces (3n) += gradient of the energy.
+    void add_gradient(std::span<const double> x, std::span<double> forces) const;
+    /// For a pattern over free nodes (block 3) that holds the clique. With `project` without the part that makes the
+    /// second gradient of a pressed spring indefinite.
+    void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
+    void append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const;
+
+private:
+    CablePath path_;
+    double stiffness_N_m_;
+    double free_length_m_;
+    bool only_pulls_;
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,110 @@
+#include "simulation/calibrate/elongation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/core/csv.hpp"
+#include "base/core/letters.hpp"
+#include "robot/description/law.hpp"
+#include "simulation/calibrate/ratio.hpp"
+
+namespace pliant::calibrate {
+namespace {
+
+double nominal_shape(double stretch) {
+    return stretch - 1 / (stretch * stretch);
+}
+
+/// Which columns hold a test, and what turns their numbers into m.
+struct Columns {
+    static constexpr std::array<std::string_view, 4> names = {"length", "interface", "elongation", "joint"};
+    std::array<std::size_t, 4> at{};
+    std::array<double, 4> factor{};
+};
+
+Result<Columns> read_header(const CsvTable& table) {
+    Columns columns;
+    const std::string place = table.place(table.header_line);
+    for (std::size_t i = 0; i < Columns::names.size(); ++i) {
+        const std::string_view name = Columns::names[i];
+        const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const std::string& column) {
+            return lower_case(column).starts_with(name);
+        });
+        if (found == table.columns.end())
+            return input_error("{}: no column is named \"{}\", as in \"{} (mm)\"", place, name, name);
+        const std::string_view unit = csv_unit(*found);
+        if (unit.empty()) return input_error("{}: {} has no unit; write \"{} (mm)\"", place, name, name);
+        const Result<double> factor = unit_factor(unit, Dimension::length);
+        if (!factor) return input_error("{}: {}: {}", place, name, factor.error().message);
+        columns.at[i] = static_cast<std::size_t>(found - table.columns.begin());
+        columns.factor[i] = *factor;
+    }
+    return columns;
+}
+
+Result<ElongationRow> read_row(const CsvTable& table, const CsvRow& row, const Columns& columns) {
+    std::array<double, 4> m{};
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        const Result<double> value = table.number(row, columns.at[i], Columns::names[i]);
+        if (!value) return tl::unexpected(value.error());
+        m[i] = *value * columns.factor[i];
+    }
+    Result<ElongationRow> result = evaluate({m[0], m[1], m[2], m[3]});
+    if (!result) return input_error("{}: {}", table.place(row.line), result.error().message);
+    return result;
+}
+
+}  // namespace
+
+Result<ElongationRow> evaluate(const ElongationTest& t) {
+    if (!(t.length_m > 0 && t.length_m < 1e3))
+        return input_error("length: {:g} mm is not possible; a bar is longer than 0", t.length_m * 1e3);
+    if (!(t.interface_m > 0 && t.interface_m < t.length_m))
+        return input_error("interface: {:g} mm is not within the bar; it lies between 0 and its length, {:g} mm",
+                           t.interface_m * 1e3, t.length_m * 1e3);
+    if (!(t.elongation_m > 0 && t.elongation_m <= 10 * t.length_m))
+        return input_error("elongation: {:g} mm is not between 0 and ten times the length", t.elongation_m * 1e3);
+    if (!(t.joint_m > 0 && t.joint_m < t.elongation_m))
+        return input_error("joint: {:g} mm is not possible; the joint moves by less than the end, {:g} mm",
+                           t.joint_m * 1e3, t.elongation_m * 1e3);
+    const double strain_A = t.joint_m / t.interface_m;
+    const double strain_B = (t.elongation_m - t.joint_m) / (t.length_m - t.interface_m);
+    return ElongationRow{t, strain_B / strain_A, nominal_shape(1 + strain_B) / nominal_shape(1 + strain_A), {}};
+}
+
+Result<double> match_shape_parameter(const ElongationTest& test, std::array<int, 3> cells) {
+    const Result<ElongationRow> row = evaluate(test);
+    if (!row) return tl::unexpected(row.error());
+    // The bar's stiff part is the held one; a test with the softer one there is the same seen from its other end.
+    const bool held_is_soft = row->neo_hookean < 1;
+    RatioOptions options;
+    options.cells = cells;
+    options.strain = row->strain();
+    options.interface = test.interface_m / test.length_m;
+    double joint = test.joint_m / test.length_m;
+    if (held_is_soft) {
+        options.interface = 1 - options.interface;
+        joint = options.strain - joint;
+    }
+    if (Status status = check_bar(options); !status) return tl::unexpected(status.error());
+    constexpr double bar_mm = 100;
+    const double guess = material::shape_parameter_small_strain(std::max(row->neo_hookean, 1 / row->neo_hookean));
+    return match_shape_parameter(options, joint * bar_mm, guess);
+}
+
+Result<std::vector<ElongationRow>> parse_elongation_csv(std::string_view text, const std::string& file) {
+    const auto table = parse_csv(text, file, "length (mm),interface (mm),elongation (mm),joint (mm)");
+    if (!table) return tl::unexpected(table.error());
+    const auto columns = read_header(*table);
+    if (!columns) return tl::unexpected(columns.error());
+    std::vector<ElongationRow> rows;
+    for (const CsvRow& row : table->rows) {
+        auto result = read_row(*table, row, *columns);
+        if (!result) return tl::unexpected(result.error());
+        rows.push_back(*result);
+    }
+    return rows;
+}
+
+}  // namespace pliant::calibrate

@@ -1,0 +1,91 @@
+// A fit as people, robot files and programs read it.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "simulation/calibrate/fit.hpp"
+
+namespace pliant::calibrate {
+namespace {
+
+std::string pressure(double value_Pa) {
+    const double size = std::fabs(value_Pa);
+    if (size >= 1e5) return fmt::format("{:.5g} MPa", value_Pa / 1e6);
+    if (size >= 100) return fmt::format("{:.5g} kPa", value_Pa / 1e3);
+    return fmt::format("{:.5g} Pa", value_Pa);
+}
+
+/// A key of TOML: quoted where it is more than letters, digits, - and _.
+std::string toml_key(const std::string& name) {
+    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '-' || c == '_';
+    });
+    if (bare) return name;
+    std::string quoted = "\"";
+    for (const char c : name) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        if (static_cast<unsigned char>(c) >= ' ') quoted += c;
+    }
+    return quoted + "\"";
+}
+
+std::string join(const std::vector<std::string>& list) {
+    std::string text;
+    for (const std::string& entry : list) text += (text.empty() ? "" : ", ") + entry;
+    return text;
+}
+
+}  // namespace
+
+std::string material_toml(const Fit& fit, const std::string& name) {
+    const double nu = material::poisson_ratio(material::moduli(fit.law));
+    std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", toml_key(name), material::name(fit.law));
+    std::vector<std::string> mu;
+    std::vector<std::string> alpha;
+    for (const Constant& c : fit.constants) {
+        if (c.name == "mu")
+            mu.push_back("\"" + pressure(c.value) + "\"");
+        else if (c.name == "alpha")
+            alpha.push_back(fmt::format("{:.6g}", c.value));
+        else if (c.name == "youngs_modulus")  // such that the shear modulus is the fitted one, a third of E
+            text += fmt::format("{} = \"{}\"\n", c.name, pressure(c.value * 2 * (1 + nu) / 3));
+        else
+            text += fmt::format("{} = \"{}\"\n", c.name, pressure(c.value));
+    }
+    if (!mu.empty()) text += fmt::format("mu = [{}]\nalpha = [{}]\n", join(mu), join(alpha));
+    return text + fmt::format("poisson_ratio = {:.6g}\n", nu);
+}
+
+std::string fit_text(const Fit& fit) {
+    std::string text = fmt::format("{}, {} rows: R^2 {:.5f}, rms error {}\n", material::name(fit.law),
+                                   fit.stress_Pa.size(), fit.r_squared, pressure(fit.rms_error_Pa));
+    for (const Constant& c : fit.constants) {
+        text += c.is_pressure
+                    ? fmt::format("  {:<15} {:>13}  +- {} (95 %)\n", c.name, pressure(c.value), pressure(c.half_width))
+                    : fmt::format("  {:<15} {:>13.5g}  +- {:.3g} (95 %)\n", c.name, c.value, c.half_width);
+    }
+    for (const std::string& warning : fit.warnings) text += "  warning: " + warning + "\n";
+    return text;
+}
+
+std::string fit_json(const Fit& fit, const TensileTest& test) {
+    nlohmann::ordered_json json;
+    json["law"] = material::name(fit.law);
+    json["constants"] = nlohmann::ordered_json::array();
+    for (const Constant& c : fit.constants) {
+        json["constants"].push_back({{"name", c.name},
+                                     {"unit", c.is_pressure ? "Pa" : "1"},
+                                     {"value", c.value},
+                                     {"confidence_95", {c.value - c.half_width, c.value + c.half_width}}});
+    }
+    json["r_squared"] = fit.r_squared;
+    json["rms_error_Pa"] = fit.rms_error_Pa;
+    json["warnings"] = fit.warnings;
+    json["stretch"] = test.stretch;
+    json["stress_Pa"] = test.stress_Pa;
+    json["fitted_stress_Pa"] = fit.stress_Pa;
+    return json.dump(2);
+}
+
+}  // namespace pliant::calibrate

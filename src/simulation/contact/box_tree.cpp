@@ -1,0 +1,80 @@
+#include "simulation/contact/box_tree.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace pliant::sim::contact {
+
+namespace {
+
+/// The box in single precision, no smaller than it was.
+void put(const Bounds& box, BoxTree::Leaf& leaf, std::size_t i) {
+    constexpr float rounding = 1.2e-7F, least = 1e-37F;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto low = static_cast<float>(box.low[k]), high = static_cast<float>(box.high[k]);
+        leaf.low[k][i] = low - (std::fabs(low) * rounding + least);
+        leaf.high[k][i] = high + (std::fabs(high) * rounding + least);
+    }
+}
+
+BoxTree::Leaf empty_leaf() {
+    BoxTree::Leaf leaf;
+    for (std::size_t k = 0; k < 3; ++k) {
+        leaf.low[k].fill(HUGE_VALF);
+        leaf.high[k].fill(-HUGE_VALF);
+    }
+    return leaf;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(std::span<const Bounds> items) : order_(items.size()) {
+    if (items.empty()) return;
+    std::iota(order_.begin(), order_.end(), 0);
+    std::vector<Vec3> centres;
+    for (const Bounds& b : items)
+        centres.push_back({0.5 * (b.low[0] + b.high[0]), 0.5 * (b.low[1] + b.high[1]), 0.5 * (b.low[2] + b.high[2])});
+    split(centres, 0, items.size());
+}
+
+std::size_t BoxTree::split(std::span<const Vec3> centres, std::size_t begin, std::size_t end) {
+    const std::size_t node = nodes_.size();
+    nodes_.push_back({node + 1, (end + leaf_size - 1) / leaf_size});
+    const std::size_t leaves = (end - begin + leaf_size - 1) / leaf_size;
+    if (leaves == 1) node_of_leaf_.push_back(node);
+    if (leaves > 1) {
+        Bounds box;
+        for (std::size_t i = begin; i < end; ++i) box.add(centres[order_[i]]);
+        std::size_t axis = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
+        const std::size_t middle = begin + (leaves + 1) / 2 * leaf_size;
+        const auto before = [&](int a, int b) {
+            return std::pair(centres[a][axis], a) < std::pair(centres[b][axis], b);
+        };
+        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, before);
+        split(centres, begin, middle);
+        split(centres, middle, end);
+    }
+    return nodes_[node].next = nodes_.size();
+}
+
+BoxTree::Fit BoxTree::fit(std::span<const Bounds> items) const {
+    Fit fit{std::vector<Bounds>(nodes_.size()), std::vector<Leaf>(leaf_count(), empty_leaf())};
+    for (std::size_t l = 0; l < leaf_count(); ++l) {
+        const std::span<const int> held = leaf(l);
+        for (std::size_t i = 0; i < held.size(); ++i) {
+            fit.nodes[node_of_leaf_[l]].add(items[held[i]]);
+            put(items[held[i]], fit.leaves[l], i);
+        }
+    }
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+        if (nodes_[n].next == n + 1) continue;
+        fit.nodes[n].add(fit.nodes[n + 1]);
+        fit.nodes[n].add(fit.nodes[nodes_[n + 1].next]);
+    }
+    return fit;
+}
+
+}  // namespace pliant::sim::contact

@@ -1,0 +1,175 @@
+// Contact of a robot with itself and with obstacles: a potential that grows without bound as surfaces approach, and the
+// largest step along which they do not pass through each other.
+//
+//     const auto contact = Contact::create(robot_surface(mesh), obstacles, settings, rest);
+//     x += contact->largest_step(x, dx) * dx;                          // never passes through
+//     const Pairs pairs = contact->find(x);
+//     contact->add_gradient(pairs, x, gradient);
+//     contact->visit_hessian(pairs, x, true, add_block);
+//     const Friction friction = contact->freeze(pairs, x, step_start); // again after every step, until it settles
+//
+// Li, Ferguson, Schneider et al. 2020, "Incremental Potential Contact". Positions x are (3 nodes) metres: the robot's
+// nodes, then those of the obstacles in their order, which whoever moves an obstacle keeps up to date. All functions
+// give the same bits on any number of threads.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
+#include "simulation/contact/belonging.hpp"
+#include "simulation/contact/box_tree.hpp"
+#include "simulation/contact/ccd.hpp"
+#include "simulation/contact/friction.hpp"
+#include "simulation/contact/regions.hpp"
+#include "simulation/contact/surface.hpp"
+
+namespace pliant::sim::contact {
+
+/// All points x with (x − point) · normal < 0. Has one node, at `point`; the normal never turns.
+struct HalfSpace {
+    Vec3 point, normal;
+};
+
+struct Obstacle {
+    std::string name;
+    std::variant<mesh::TriMesh, HalfSpace> shape;  ///< metres, at its rest place; a mesh has one node per point
+    double friction = 0;                           ///< coefficient μ against the robot
+};
+
+struct Settings {
+    double distance_m = 0;    ///< forces act below this distance; of the order of an element or less, for speed
+    double stiffness_Pa = 0;  ///< pressure is about four times this at half the distance; Young's modulus / 10 is usual
+    double friction = 0;      ///< coefficient μ of the robot against itself
+    double slip_m = 1e-5;     ///< slip per step that counts as none
+    bool self = true;         ///< whether the robot can touch itself
+};
+
+/// What contact does to the robot, for results.
+struct Forces {
+    std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot
+    double self_N = 0;                ///< sum of the sizes of all normal forces of the robot on itself
+    std::vector<double> pressure_Pa;  ///< (robot nodes) normal force over the area of the node; 0 inside
+    double smallest_distance_m = 0;   ///< as of smallest_distance()
+};
+
+/// An edge that passes through a triangle.
+struct Crossing {
+    std::array<int, 2> edge;
+    std::array<int, 3> triangle;
+    int obstacle;  ///< -1: the robot with itself
+    Vec3 point_m;  ///< where they meet
+};
+
+/// Immutable, but for a memory of what was near at the last states, which is quicker and gives the same bits. A pair
+/// acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. Against
+/// obstacles the reach is min(distance_m, its distance at rest), and closed ones and half-spaces are drawn in by
+/// resting_share of distance_m (obstacle_inset.hpp), so that what presses on them rests where they are drawn. Left out
+/// are features that share a node or belong together at rest (belonging.hpp: bonded bodies, slivers) and obstacles
+/// among themselves.
+class Contact {
+public:
+    /// `rest`: (3 robot nodes). Refused: obstacles that touch or cross the robot at rest, numbers that make no sense.
+    [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
+                                                const Settings& settings, std::span<const double> rest);
+
+    /// Rest positions of all nodes, (3 nodes); obstacles as they act, drawn in.
+    [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
+    [[nodiscard]] int node_count() const { return static_cast<int>(rest_.size() / 3); }
+    [[nodiscard]] int robot_node_count() const { return robot_nodes_; }
+    [[nodiscard]] const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+    /// Nodes of obstacle k: from first_node(k) up to first_node(k + 1).
+    [[nodiscard]] int first_node(std::size_t k) const { return first_node_[k]; }
+    [[nodiscard]] const Settings& settings() const { return settings_; }
+
+    /// The pairs that are closer than their reach, in an order that depends on x alone.
+    [[nodiscard]] Pairs find(std::span<const double> x) const;
+
+    /// J. Infinite where a pair touches.
+    [[nodiscard]] double energy(const Pairs& pairs, std::span<const double> x) const;
+    /// Adds the gradient of the energy, minus the contact forces, N, to `gradient` (3 nodes).
+    void add_gradient(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
+    /// Gives every pair's 3 × 3 blocks, N/m, one pair after the other; `project`: each pair without negative
+    /// eigenvalues.
+    void visit_hessian(const Pairs& pairs, std::span<const double> x, bool project, const BlockVisitor& visit) const;
+
+    /// The largest step in [0, 1] up to which no pair comes nearer than a tenth of its present distance, found by
+    /// conservative steps; features that stay apart by more than a tenth of distance_m at all times are not looked at.
+    /// 0 if a pair touches already. `dx`: (3 nodes).
+    [[nodiscard]] double largest_step(std::span<const double> x, std::span<const double> dx) const;
+
+    /// Finds out how far apart everything is at x, if nothing is within its reach and the last states suggest that it
+    /// is worth knowing: steps from there are then answered quickly.
+    void note_clearance(std::span<const double> x) const;
+
+    /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`.
+    [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
+                                  std::span<const double> step_start) const;
+
+    [[nodiscard]] Forces forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const;
+    /// Of the pairs; infinity if there are none. From an obstacle as it is drawn: below zero where the robot is pressed
+    /// on it hard.
+    [[nodiscard]] double smallest_distance(const Pairs& pairs, std::span<const double> x) const;
+
+    /// The first crossing of surfaces at x, of the robot with itself whatever the settings say or with an obstacle, if
+    /// there is one: for states that did not come about by largest_step. Features that belong together do not count.
+    [[nodiscard]] std::optional<Crossing> crossing(std::span<const double> x) const;
+    /// Where the robot passes through itself already at rest.
+    [[nodiscard]] std::optional<Crossing> crossing_at_rest() const;
+
+private:
+    /// The robot's surface, or all meshes among the obstacles.
+    struct Side {
+        Surface surface;
+        SurfaceAreas areas;
+        BoxTree points, edges, triangles;
+        std::shared_ptr<const Regions> regions;
+    };
+    struct Plane {
+        int node, obstacle;
+        Vec3 normal;
+    };
+    class Search;  ///< one sweep over the features whose boxes overlap; contact_search.cpp
+    class Nearby;  ///< what such a sweep finds, good for as long as nothing moves far
+    struct Memory;
+
+    Contact();
+    /// What is near at x and along dx, if the last states suggest that it is worth knowing; else null.
+    [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
+    /// True only if nothing is within its reach at x, nor comes too near on the way along dx, and the last states tell.
+    [[nodiscard]] bool is_clear(std::span<const double> x, std::span<const double> dx) const;
+    void wait_for_clearance() const;
+    [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
+    void add_obstacles();
+    void draw_in_obstacles();
+    [[nodiscard]] int obstacle_of(std::span<const int> nodes) const;  ///< of a pair's four nodes
+    [[nodiscard]] double reach(int obstacle, double apart_m) const;
+    [[nodiscard]] std::optional<int> obstacle_touched_at_rest() const;
+    [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
+    [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;
+    [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;
+    [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
+    void find_planes(std::span<const double> x, Pairs& pairs) const;
+    [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
+
+    Settings settings_;
+    std::vector<Obstacle> obstacles_;
+    std::vector<double> drawn_in_m_;     ///< (obstacles)
+    std::vector<int> first_node_;        ///< (obstacles + 1)
+    std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
+    std::vector<double> rest_;
+    int robot_nodes_ = 0;
+    double seen_m_ = 0;      ///< how far a look at what is near goes, where it is to hold for many states
+    double touching_m_ = 0;  ///< distances up to this are zero but for rounding
+    Belonging belonging_;
+    Side robot_, others_;
+    std::vector<Plane> planes_;
+    std::shared_ptr<Memory> memory_;
+};
+
+}  // namespace pliant::sim::contact

@@ -1,0 +1,562 @@
+#include "simulation/contact/contact.hpp"
+
+#include <doctest/doctest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/core/near.hpp"
+#include "simulation/contact/test_bodies.hpp"
+#include "simulation/contact/test_derivatives.hpp"
+
+using namespace pliant;
+using namespace pliant::sim::contact;
+
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+Vector vector_of(const std::vector<double>& x) {
+    return Eigen::Map<const Vector>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+std::span<const double> span(const Vector& x) {
+    return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+/// Two boxes of 1 cm, one above the other with a gap of 2 mm, shifted against each other so that all kinds of pairs
+/// occur.
+SpringBody two_boxes(int cells) {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {cells, cells, cells}, 0.1);
+    body.add(spring_box({0.0013, 0.0021, 0.012}, {0.008, 0.0085, 0.01}, {cells, cells + 1, cells}, 0.15));
+    return body;
+}
+
+Contact contact_of(const SpringBody& body, const Settings& settings, std::vector<Obstacle> obstacles = {}) {
+    auto contact = Contact::create(make_surface(body.triangles), std::move(obstacles), settings, body.rest);
+    REQUIRE_MESSAGE(contact.has_value(), (contact ? "" : contact.error().message));
+    return *contact;
+}
+
+constexpr Settings usual{.distance_m = 1e-3, .stiffness_Pa = 1e4, .friction = 0, .slip_m = 1e-5, .self = true};
+
+/// A state in which the upper box has come down by `drop` and every node is a little off.
+Vector approached(const Contact& contact, std::size_t lower_nodes, double drop, double noise, unsigned seed) {
+    Vector x = vector_of(contact.rest());
+    std::mt19937 random(seed);
+    for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+        const Vec3 shift = noise * random_vector(random);
+        x.segment<3>(3 * i) += Eigen::Vector3d(shift.x, shift.y, shift.z);
+        if (i >= static_cast<Eigen::Index>(lower_nodes)) x[3 * i + 2] -= drop;
+    }
+    return x;
+}
+
+/// Solves for where the line through a and b meets the triangle's plane: another way than the library's.
+bool crosses(const Vec3& a, const Vec3& b, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
+    const auto e = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+    Eigen::Matrix3d M;
+    M << e(a - b), e(t1 - t0), e(t2 - t0);
+    if (std::abs(M.determinant()) < 1e-30) return false;
+    const Eigen::Vector3d s = M.inverse() * e(a - t0);
+    return s[0] > 0 && s[0] < 1 && s[1] > 0 && s[2] > 0 && s[1] + s[2] < 1;
+}
+
+int brute_force_crossings(const Surface& surface, std::span<const double> x) {
+    int count = 0;
+    for (const auto& e : surface.edges)
+        for (const auto& t : surface.triangles) {
+            if (std::find(t.begin(), t.end(), e[0]) != t.end() || std::find(t.begin(), t.end(), e[1]) != t.end())
+                continue;
+            count += crosses(node_at(x, e[0]), node_at(x, e[1]), node_at(x, t[0]), node_at(x, t[1]), node_at(x, t[2]));
+        }
+    return count;
+}
+
+using Key = std::tuple<bool, int, int, int, int>;
+
+Key key_of(bool edges, std::array<int, 4> n) {
+    if (edges && n[0] > n[2]) n = {n[2], n[3], n[0], n[1]};
+    return {edges, n[0], n[1], n[2], n[3]};
+}
+
+std::vector<Key> brute_force_pairs(const Surface& s, std::span<const double> rest, std::span<const double> x,
+                                   double distance) {
+    std::vector<Key> found;
+    const auto offer = [&](Features features, const std::array<int, 4>& n) {
+        const auto apart = [&](std::span<const double> at) {
+            const Stencil p{node_at(at, n[0]), node_at(at, n[1]), node_at(at, n[2]), node_at(at, n[3])};
+            return std::sqrt(squared_distance(nearest(features, p), p));
+        };
+        if (apart(x) < std::min(distance, 0.5 * apart(rest)))
+            found.push_back(key_of(features == Features::edge_edge, n));
+    };
+    for (const int p : s.points)
+        for (const auto& t : s.triangles)
+            if (std::find(t.begin(), t.end(), p) == t.end()) offer(Features::point_triangle, {p, t[0], t[1], t[2]});
+    for (std::size_t a = 0; a < s.edges.size(); ++a)
+        for (std::size_t b = a + 1; b < s.edges.size(); ++b) {
+            const auto &e = s.edges[a], &g = s.edges[b];
+            if (e[0] != g[0] && e[0] != g[1] && e[1] != g[0] && e[1] != g[1])
+                offer(Features::edge_edge, {e[0], e[1], g[0], g[1]});
+        }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("at rest there is no contact, however large the distance, nor after a rigid motion") {
+    const SpringBody body = two_boxes(4);
+    Settings far = usual;
+    far.distance_m = 0.01;
+    const Contact contact = contact_of(body, far);
+    CHECK(contact.find(contact.rest()).empty());
+    std::mt19937 random(2);
+    const Motion motion = random_motion(random);
+    std::vector<double> x;
+    for (int i = 0; i < contact.node_count(); ++i) {
+        const Vec3 p = motion(node_at(contact.rest(), i));
+        x.insert(x.end(), {p.x, p.y, p.z});
+    }
+    CHECK(contact.find(x).empty());
+    CHECK(contact.energy({}, x) == 0);
+    CHECK(std::isinf(contact.smallest_distance({}, x)));
+}
+
+TEST_CASE("the pairs are those that looking at all features finds") {
+    const SpringBody body = two_boxes(4);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    for (const double drop : {1.2e-3, 1.6e-3, 1.9e-3}) {
+        const Vector x = approached(contact, 125, drop, 5e-5, 4);
+        std::vector<Key> found;
+        for (const Pair& pair : contact.find(span(x)))
+            found.push_back(key_of(pair.kind == PairKind::edge_edge, pair.nodes));
+        std::sort(found.begin(), found.end());
+        CHECK(found.size() > 50);
+        CHECK(found == brute_force_pairs(surface, contact.rest(), span(x), usual.distance_m));
+    }
+}
+
+TEST_CASE("gradient and Hessian of the whole potential by finite differences") {
+    const SpringBody body = two_boxes(2);
+    const Contact contact = contact_of(body, usual);
+    const Vector x = approached(contact, 27, 1.7e-3, 5e-5, 9);
+    const auto energy = [&](const Vector& y) { return contact.energy(contact.find(span(y)), span(y)); };
+    const auto gradient = [&](const Vector& y) {
+        Vector g = Vector::Zero(y.size());
+        contact.add_gradient(contact.find(span(y)), span(y), {g.data(), static_cast<std::size_t>(g.size())});
+        return g;
+    };
+    const Vector g = gradient(x);
+    REQUIRE(g.norm() > 0);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(x.size(), x.size());
+    contact.visit_hessian(contact.find(span(x)), span(x), false,
+                          [&](int i, int j, const linalg::Matrix3& b) { H.block<3, 3>(3 * i, 3 * j) += b; });
+    const double h = 1e-9;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+        Vector forth = x, back = x;
+        forth[k] += h;
+        back[k] -= h;
+        CHECK(std::abs(g[k] - (energy(forth) - energy(back)) / (2 * h)) < 1e-5 * g.norm());
+        CHECK((H.col(k) - (gradient(forth) - gradient(back)) / (2 * h)).norm() < 1e-4 * H.norm());
+    }
+    CHECK((H - H.transpose()).norm() < 1e-12 * H.norm());
+}
+
+TEST_CASE("no step of any size lets surfaces pass through each other") {
+    const SpringBody body = two_boxes(3);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    std::mt19937 random(8);
+    int hindered = 0;
+    for (int k = 0; k < 40; ++k) {
+        const Vector x = approached(contact, 64, 1.5e-3, 1e-5, 20 + k);
+        Vector dx(x.size());
+        for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+            const Vec3 v = 0.003 * random_vector(random) + (i < 64 ? Vec3{} : Vec3{0, 0, -0.002 * (k % 4)});
+            dx.segment<3>(3 * i) << v.x, v.y, v.z;
+        }
+        const double step = contact.largest_step(span(x), span(dx));
+        CHECK(step > 0);
+        for (int s = 1; s <= 5; ++s) REQUIRE(brute_force_crossings(surface, span(Vector(x + s * step / 5 * dx))) == 0);
+        const Vector full = x + dx;
+        if (brute_force_crossings(surface, span(full)) == 0) continue;
+        ++hindered;
+        CHECK(step < 1);
+        CHECK(contact.crossing(span(full)).has_value());
+    }
+    CHECK(hindered > 10);
+}
+
+TEST_CASE(
+    "what is remembered changes nothing: pairs and steps are those of a contact that sees a state for the first time") {
+    const SpringBody body = two_boxes(4);
+    const Contact contact = contact_of(body, usual);
+    const auto check_pairs = [&](const Vector& x) {
+        const Pairs found = contact.find(span(x)), expected = contact_of(body, usual).find(span(x));
+        REQUIRE(found.size() == expected.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            CHECK(found[k].nodes == expected[k].nodes);
+            CHECK(found[k].kind == expected[k].kind);
+            CHECK(found[k].reach_m == expected[k].reach_m);
+        }
+        return found.size();
+    };
+    std::mt19937 random(12);
+    std::size_t pairs = 0;
+    for (int k = 0; k < 90; ++k) {
+        // Clear of each other at first, then mostly near the last state, at times far from it, and back.
+        const double drop = k < 30 ? 4e-5 * k : 1.5e-3 + (k % 9 == 8 ? 4e-4 : 0) + 5e-6 * (k - 30);
+        const Vector x = approached(contact, 125, drop, k % 9 == 5 ? 3e-4 : 2e-5, 30 + k);
+        pairs += check_pairs(x);
+        Vector dx(x.size());
+        const double far = k % 3 == 0 ? 2e-3 : 1e-4;
+        for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
+            const Vec3 v = far * random_vector(random);
+            dx.segment<3>(3 * i) << v.x, v.y, v.z;
+        }
+        CHECK(contact.largest_step(span(x), span(dx)) == contact_of(body, usual).largest_step(span(x), span(dx)));
+        check_pairs(x + 0.3 * dx);
+    }
+    CHECK(pairs > 1000);
+}
+
+TEST_CASE("a cube that is let down on a plane rests above it and presses with its weight") {
+    const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    const HalfSpace floor{{0, 0, 0}, {0, 0, 2}};
+    mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}, {-0.02, 0.04, 0}},
+                        {{0, 1, 2}, {0, 2, 3}}};
+    for (const Obstacle& obstacle : {Obstacle{"floor", floor, 0.3}, Obstacle{"table", table, 0.3}}) {
+        CAPTURE(obstacle.name);
+        const Contact contact = contact_of(body, usual, {obstacle});
+        const std::size_t n = body.node_count();
+        const double weight = 0.027;
+        Statics statics{&body,
+                        50,
+                        &contact,
+                        std::vector<double>(3 * n),
+                        std::vector<double>(n),
+                        body.rest,
+                        std::vector<bool>(static_cast<std::size_t>(contact.node_count()))};
+        for (std::size_t i = 0; i < n; ++i) statics.load[3 * i + 2] = -weight / static_cast<double>(n);
+        for (std::size_t i = n; i < statics.held.size(); ++i) statics.held[i] = true;
+        Vector x = vector_of(contact.rest());
+        // Without friction nothing fixes its place on the table, so only nearly to rest; then friction holds it.
+        REQUIRE(statics.minimise(x, nullptr, 2e-6) > 0);
+        const Vector landed = x;
+        const Friction friction = contact.freeze(contact.find(span(x)), span(x), span(landed));
+        REQUIRE(statics.minimise(x, &friction, 1e-9) > 0);
+
+        const Pairs pairs = contact.find(span(x));
+        const Forces forces = contact.forces(pairs, span(x), &friction);
+        CHECK(forces.smallest_distance_m > 0);
+        CHECK(forces.smallest_distance_m < usual.distance_m);
+        CHECK(norm(forces.on_robot_N[0] - Vec3{0, 0, weight}) < 1e-6 * weight);
+        CHECK(forces.self_N == 0);
+        CHECK(x.minCoeff() < 0.001);
+        // Mean pressure under the cube: weight over its 1 cm² base.
+        double carried = 0;
+        const SurfaceAreas areas = surface_areas(make_surface(body.triangles), body.rest);
+        for (std::size_t i = 0; i < areas.points.size(); ++i)
+            carried += forces.pressure_Pa[make_surface(body.triangles).points[i]] * areas.points[i];
+        CHECK(carried == near(weight, {.relative = 0.01}));
+    }
+}
+
+TEST_CASE("two boxes that are squashed against each other never intersect") {
+    const SpringBody body = two_boxes(3);
+    const Contact contact = contact_of(body, usual);
+    const Surface surface = make_surface(body.triangles);
+    const std::size_t n = body.node_count();
+    Statics statics{
+        &body, 50, &contact, std::vector<double>(3 * n), std::vector<double>(n), body.rest, std::vector<bool>(n)};
+    std::vector<bool> pushed(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double z = body.rest[3 * i + 2];
+        pushed[i] = z > 0.0219;
+        statics.held[i] = z < 1e-4 || pushed[i];
+    }
+    Vector x = vector_of(contact.rest());
+    const auto look = [&](const Vector& y) { REQUIRE(brute_force_crossings(surface, span(y)) == 0); };
+    double moved = 0;
+    for (int k = 0; k < 200 && moved < 0.006 - 1e-12; ++k) {
+        Vector dx = Vector::Zero(x.size());
+        const double push = std::min(5e-4, 0.006 - moved);
+        for (std::size_t i = 0; i < n; ++i)
+            if (pushed[i]) dx[3 * static_cast<Eigen::Index>(i) + 2] = -push;
+        const double step = contact.largest_step(span(x), span(dx));
+        x += step * dx;
+        moved += step * push;
+        REQUIRE(statics.minimise(x, nullptr, 1e-7, look) >= 0);
+    }
+    CHECK(moved == near(0.006, {.relative = 1e-12}));
+    const Forces forces = contact.forces(contact.find(span(x)), span(x), nullptr);
+    CHECK(forces.smallest_distance_m > 0);
+    CHECK(forces.self_N > 0.05);
+    CHECK_FALSE(contact.crossing(span(x)).has_value());
+}
+
+namespace {
+
+/// How a block on an incline of 30 degrees moves down it: the mean acceleration and the last step's slip.
+struct Slide {
+    double acceleration, last_step_m;
+};
+
+Slide slide_down(double friction) {
+    const double g = 9.81, angle = M_PI / 6, dt = 0.01, mass = 0.001;
+    const SpringBody body = spring_box({0, 0, 2e-4}, {0.01, 0.01, 0.005}, {2, 2, 1});
+    Settings settings = usual;
+    settings.slip_m = 1e-6;
+    const Contact contact = contact_of(body, settings, {{"incline", HalfSpace{{0, 0, 0}, {0, 0, 1}}, friction}});
+    const std::size_t n = body.node_count();
+    const double node_mass = mass / static_cast<double>(n);
+    Statics statics{&body,
+                    500,
+                    &contact,
+                    std::vector<double>(3 * n),
+                    std::vector<double>(n, node_mass / (dt * dt)),
+                    body.rest,
+                    std::vector<bool>(n + 1)};
+    statics.held[n] = true;
+    for (std::size_t i = 0; i < n; ++i) {
+        statics.load[3 * i] = node_mass * g * std::sin(angle);
+        statics.load[3 * i + 2] = -node_mass * g * std::cos(angle);
+    }
+    Vector x = vector_of(contact.rest()), before = x;
+    std::vector<double> place;
+    for (int step = 0; step < 40; ++step) {
+        // Backward Euler: inertia about where the block would be without forces.
+        const Vector predicted = 2 * x - before, start = x;
+        statics.predicted.assign(predicted.data(), predicted.data() + 3 * n);
+        for (int lag = 0; lag < 4; ++lag) {
+            const Friction held = contact.freeze(contact.find(span(x)), span(x), span(start));
+            REQUIRE(statics.minimise(x, &held, 1e-9) >= 0);
+        }
+        before = start;
+        double mean = 0;
+        for (std::size_t i = 0; i < n; ++i) mean += x[3 * static_cast<Eigen::Index>(i)] / static_cast<double>(n);
+        place.push_back(mean);
+    }
+    const auto speed = [&](std::size_t k) { return (place[k] - place[k - 1]) / dt; };
+    return {(speed(39) - speed(19)) / (20 * dt), place[39] - place[38]};
+}
+
+}  // namespace
+
+TEST_CASE("a block on an incline sticks where friction is enough, and slides as Coulomb says where it is not") {
+    const double steep = std::tan(M_PI / 6);
+    const Slide stuck = slide_down(1.2 * steep);
+    CHECK(std::abs(stuck.last_step_m) < 1e-6);
+    CHECK(std::abs(stuck.acceleration) < 1e-3);
+    for (const double share : {0.0, 0.4, 0.8}) {
+        const Slide sliding = slide_down(share * steep);
+        CHECK(sliding.acceleration == near(9.81 * 0.5 * (1 - share), {.relative = 0.01}));
+    }
+}
+
+TEST_CASE("forces on the robot from an obstacle that drags along it point along the motion") {
+    const SpringBody body = spring_box({0, 0, 5e-4}, {0.01, 0.01, 0.005}, {2, 2, 1});
+    mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}}, {{0, 1, 2}}};
+    const Contact contact = contact_of(body, usual, {{"table", table, 0.5}});
+    CHECK(contact.first_node(0) == contact.robot_node_count());
+    CHECK(contact.first_node(1) == contact.node_count());
+    Vector x = vector_of(contact.rest());
+    for (int i = contact.first_node(0); i < contact.first_node(1); ++i) x[3 * i + 2] += 4e-4;
+    const Vector start = x;
+    for (int i = contact.first_node(0); i < contact.first_node(1); ++i) x[3 * i] += 1e-3;
+    const Pairs pairs = contact.find(span(x));
+    const Friction friction = contact.freeze(pairs, span(x), span(start));
+    const Vec3 pressed = contact.forces(pairs, span(x), nullptr).on_robot_N[0];
+    const Vec3 all = contact.forces(pairs, span(x), &friction).on_robot_N[0];
+    CHECK(pressed.z > 0);
+    CHECK(std::abs(pressed.x) < 1e-9 * pressed.z);
+    CHECK(all.x == near(0.5 * pressed.z, {.relative = 1e-12}));
+    CHECK(all.z == near(pressed.z, {.relative = 1e-12}));
+}
+
+namespace {
+
+struct Outcome {
+    std::vector<std::array<int, 4>> nodes;
+    double energy, step;
+    std::vector<double> numbers;
+    bool operator==(const Outcome&) const = default;
+};
+
+}  // namespace
+
+TEST_CASE("the same bits on any number of threads") {
+    const SpringBody body = two_boxes(8);
+    const Contact contact = contact_of(body, usual);
+    const Vector x = approached(contact, 729, 1.6e-3, 3e-5, 5);
+    Vector dx = Vector::Zero(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) dx[i] = i < 3 * 729 ? 0 : -1e-3 * (1 + std::sin(double(i)));
+    const auto outcome = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        const Pairs pairs = contact.find(span(x));
+        Outcome o{{}, contact.energy(pairs, span(x)), contact.largest_step(span(x), span(dx)), {}};
+        for (const Pair& pair : pairs) o.nodes.push_back(pair.nodes);
+        o.numbers.resize(static_cast<std::size_t>(x.size()));
+        contact.add_gradient(pairs, span(x), o.numbers);
+        contact.visit_hessian(pairs, span(x), true, [&](int, int, const linalg::Matrix3& b) {
+            o.numbers.insert(o.numbers.end(), b.data(), b.data() + 9);
+        });
+        return o;
+    };
+    const Outcome one = outcome(1);
+    CHECK(one.nodes.size() > 300);
+    CHECK(one.step < 1);
+    for (const std::size_t threads : {2u, 4u, 7u})
+        for (int repeat = 0; repeat < 3; ++repeat) CHECK(outcome(threads) == one);
+}
+
+TEST_CASE("bodies that touch at rest are bonded: no force, no hindrance") {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    body.add(spring_box({0, 0, 0.01}, {0.01, 0.01, 0.01}, {3, 3, 3}));
+    const Contact contact = contact_of(body, usual);
+    CHECK(contact.find(contact.rest()).empty());
+    const std::vector<double> still(contact.rest().size(), 0.0);
+    CHECK(contact.largest_step(contact.rest(), still) == 1);
+}
+
+TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
+    const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {1, 1, 1});
+    const Surface surface = make_surface(body.triangles);
+    const auto message = [&](const Settings& settings, std::vector<Obstacle> obstacles) -> std::string {
+        const auto contact = Contact::create(surface, std::move(obstacles), settings, body.rest);
+        return contact ? "accepted" : contact.error().message;
+    };
+    CHECK(message(usual, {}) == "accepted");
+    Settings bad = usual;
+    bad.distance_m = 0;
+    CHECK(message(bad, {}).find("distance") != std::string::npos);
+    bad = usual;
+    bad.stiffness_Pa = NAN;
+    CHECK(message(bad, {}).find("stiffness") != std::string::npos);
+    bad = usual;
+    bad.slip_m = -1;
+    CHECK(message(bad, {}).find("slip") != std::string::npos);
+    const auto refused = [&](const Obstacle& obstacle) {
+        const std::string text = message(usual, {obstacle});
+        CAPTURE(text);
+        CHECK(text.starts_with("obstacle \"it\""));
+    };
+    refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 0}}});
+    refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 1}}});
+    refused({"it", HalfSpace{{0, 0, 0.005}, {0, 0, 1}}});
+    refused({"it", HalfSpace{{0, 0, -1}, {0, 0, 1}}, -0.5});
+    refused({"it", mesh::TriMesh{}});
+    refused({"it", mesh::TriMesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 3}}}});
+    refused({"it", mesh::TriMesh{{{0.005, -1, 0.02}, {0.005, 1, 0.02}, {0.005, 0, -1}}, {{0, 1, 2}}}});
+    refused({"it", mesh::TriMesh{{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}}, {{0, 1, 2}}}});
+}
+
+namespace {
+
+/// A box whose top has, for every third point, a twin a hair beside it: fans of needles, some of whose edges are within
+/// nanometres of others with which they share no node.
+SpringBody box_with_slivers(double hair) {
+    SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {4, 4, 4}, 0.1);
+    const std::vector<std::array<int, 3>> whole = body.triangles;
+    body.triangles.clear();
+    int count = 0;
+    for (const auto& t : whole) {
+        if (count++ % 3 != 0) {
+            body.triangles.push_back(t);
+            continue;
+        }
+        // A point just inside one side: two slender triangles and a needle along that side.
+        const Vec3 a = node_at(body.rest, t[0]), b = node_at(body.rest, t[1]), c = node_at(body.rest, t[2]);
+        const Vec3 m = 0.5 * (a + b), p = m + hair / norm(c - m) * (c - m);
+        const int node = static_cast<int>(body.node_count());
+        body.rest.insert(body.rest.end(), {p.x, p.y, p.z});
+        for (const int corner : t) body.springs.push_back({node, corner, norm(p - node_at(body.rest, corner))});
+        body.triangles.insert(body.triangles.end(), {{t[0], t[1], node}, {t[1], t[2], node}, {t[2], t[0], node}});
+    }
+    return body;
+}
+
+}  // namespace
+
+TEST_CASE("slivers do not hinder: what is a hair apart at rest belongs together") {
+    for (const double hair : {3e-10, 6e-8, 1e-6}) {
+        CAPTURE(hair);
+        const SpringBody body = box_with_slivers(hair);
+        const Contact contact = contact_of(body, usual);
+        // Shear that closes half of the hairs, and then some.
+        Vector dx = Vector::Zero(static_cast<Eigen::Index>(body.rest.size()));
+        for (Eigen::Index i = 0; i < dx.size() / 3; ++i) {
+            const Vec3 p = node_at(body.rest, static_cast<int>(i));
+            dx.segment<3>(3 * i) << 0.2 * p.z + 0.1 * p.y, -0.15 * p.x, 0.1 * p.y;
+            if (i >= 125) dx.segment<3>(3 * i) += Eigen::Vector3d(3, -2, 1) * hair;
+        }
+        CHECK(contact.largest_step(contact.rest(), span(dx)) == 1);
+        const Vector x = vector_of(contact.rest()) + dx;
+        CHECK(contact.find(span(x)).empty());
+        CHECK_FALSE(contact.crossing(span(x)).has_value());
+    }
+}
+
+TEST_CASE("a crossing is told with its place, whether or not the robot may touch itself") {
+    const SpringBody body = two_boxes(3);
+    Settings without_self = usual;
+    without_self.self = false;
+    for (const Settings& settings : {usual, without_self}) {
+        const Contact contact = contact_of(body, settings);
+        CHECK_FALSE(contact.crossing(contact.rest()).has_value());
+        CHECK_FALSE(contact.crossing(span(approached(contact, 64, 1.9e-3, 0, 1))).has_value());
+        const auto crossing = contact.crossing(span(approached(contact, 64, 2.3e-3, 0, 1)));
+        REQUIRE(crossing);
+        // The upper box's sides pass through the lower one's top, or its bottom is passed through by the lower's edges.
+        CHECK(crossing->point_m.z > 0.0096);
+        CHECK(crossing->point_m.z < 0.0101);
+        CHECK(crossing->obstacle == -1);
+    }
+    // What crosses at rest is told of once, and no more afterwards.
+    SpringBody overlapping = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    overlapping.add(spring_box({0.0013, 0.0021, 0.009}, {0.008, 0.0085, 0.01}, {2, 2, 2}));
+    const Contact contact = contact_of(overlapping, usual);
+    CHECK(contact.crossing_at_rest().has_value());
+    CHECK_FALSE(contact.crossing(contact.rest()).has_value());
+}
+
+TEST_CASE("an obstacle acts where it is drawn: the robot rests on it within a tenth of the distance of contact") {
+    // A cube on a floor and on a block, under a pressure of 3 % of the stiffness: by the barrier alone it would hover
+    // 0.97 of the distance above.
+    const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    mesh::TriMesh block;
+    for (int k = 0; k < 8; ++k)
+        block.points.push_back({k & 1 ? 0.05 : -0.03, k & 2 ? 0.04 : -0.03, k & 4 ? 0.0 : -0.02});
+    block.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    for (const Obstacle& obstacle : {Obstacle{"floor", HalfSpace{{}, {0, 0, 1}}}, Obstacle{"block", block}}) {
+        CAPTURE(obstacle.name);
+        const Contact contact = contact_of(body, usual, {obstacle});
+        const std::size_t n = body.node_count();
+        Statics statics{&body,
+                        500,
+                        &contact,
+                        std::vector<double>(3 * n),
+                        std::vector<double>(n, 1e-3),
+                        body.rest,
+                        std::vector<bool>(static_cast<std::size_t>(contact.node_count()))};
+        for (std::size_t i = 0; i < n; ++i) statics.load[3 * i + 2] = -0.03 / static_cast<double>(n);
+        for (std::size_t i = n; i < statics.held.size(); ++i) statics.held[i] = true;
+        Vector x = vector_of(contact.rest());
+        REQUIRE(statics.minimise(x, nullptr, 1e-8) > 0);
+        const double lowest = [&] {
+            double z = 1;
+            for (std::size_t i = 0; i < n; ++i) z = std::min(z, x[static_cast<Eigen::Index>(3 * i + 2)]);
+            return z;
+        }();
+        CHECK(std::abs(lowest) < 0.1 * usual.distance_m);
+        const double apart = contact.smallest_distance(contact.find(span(x)), span(x));
+        CHECK(apart == near(lowest, {.relative = 1e-9}));
+    }
+}

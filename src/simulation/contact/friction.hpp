@@ -1,0 +1,63 @@
+// Friction that is lagged: normal forces and tangent planes are frozen at one state, so that friction has a potential
+// (Li, Ferguson, Schneider et al. 2020, section 5).
+//
+//     E = Σ μ λ f(|u|)      u = Tᵀ Σ wᵢ (xᵢ − xᵢ⁰)      f(y) = y²/ε − y³/3ε² + ε/3 below ε, y beyond
+//
+// λ normal force, T two unit tangents, w weights of the nearest points: frozen. x⁰ is the start of the step and ε the
+// slip per step below which friction grows from nothing to μλ.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/linalg/small.hpp"
+#include "simulation/contact/pairs.hpp"
+
+namespace pliant::sim::contact {
+
+/// Receives one 3 × 3 block of a symmetric matrix of nodes; both (i, j) and (j, i) are given.
+using BlockVisitor = std::function<void(int i, int j, const linalg::Matrix3& block)>;
+
+/// One frozen pair.
+struct FrozenPair {
+    std::array<int, 4> nodes{};
+    std::array<double, 4> weights{};
+    std::array<Vec3, 2> tangents;
+    double limit_N = 0;  ///< μ λ
+    int node_count = 4;
+    int first_count = 1;  ///< nodes of the first feature
+    int obstacle = -1;
+    bool robot_first = true;
+};
+
+/// `coefficient`: μ of the pair. `x`: where the pair is.
+[[nodiscard]] FrozenPair freeze(const Pair& pair, double coefficient, double stiffness_Pa, const Stencil& x);
+
+class Friction {
+public:
+    /// `step_start` (3 nodes) is copied. Precondition: slip_m > 0.
+    Friction(std::vector<FrozenPair> pairs, std::vector<double> step_start, double slip_m);
+
+    /// J. All functions take positions (3 nodes), metres.
+    [[nodiscard]] double energy(std::span<const double> x) const;
+    /// Adds the gradient of the energy, which is minus the force on the nodes, N.
+    void add_gradient(std::span<const double> x, std::span<double> gradient) const;
+    /// Never has a negative eigenvalue, so there is nothing to project.
+    void visit_hessian(std::span<const double> x, const BlockVisitor& visit) const;
+
+    [[nodiscard]] std::span<const FrozenPair> pairs() const { return pairs_; }
+    /// Force on the first feature of pair `k`, N.
+    [[nodiscard]] Vec3 force(std::size_t k, std::span<const double> x) const;
+
+private:
+    /// Slip along the two tangents, m.
+    [[nodiscard]] std::array<double, 2> slip(const FrozenPair& pair, std::span<const double> x) const;
+
+    std::vector<FrozenPair> pairs_;
+    std::vector<double> start_;
+    double slip_m_;
+};
+
+}  // namespace pliant::sim::contact

@@ -1,0 +1,86 @@
+// The thesis' actuators: meshed empty space whose target shape an actuator scales (T3.5, T3.6). docs/theory.md, "The
+// thesis' actuators".
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/core/vec3.hpp"
+#include "base/linalg/sparse.hpp"
+#include "robot/description/law.hpp"
+#include "simulation/parts/robot_names.hpp"
+
+namespace pliant::sim {
+
+class Elements;
+
+/// What meshed space resists, beside the Young's modulus of the softest body: an element of air or of a gap may shear,
+/// turn and bend as if it were not there, and only its measure counts.
+inline constexpr double space_shape_share = 1e-3;
+
+/// psi = mu/2 (J^(-2/3) tr F^T F - 3) + K/2 (J - 1)^2 with K = weight * softest_Pa and next to no mu. Under the
+/// pressure p an element alone takes any shape of e = 1 + p/K times its volume: the target of T3.6.
+[[nodiscard]] material::NeoHookean air_law(double softest_Pa, double weight);
+/// What a gap resists in all directions, and beside its width: next to nothing.
+[[nodiscard]] material::NeoHookean gap_law(double softest_Pa);
+
+/// The elements of all gaps that one cable passes (T3.5). With the unit vector d along the cable, an element is drawn
+/// towards the shapes that are s times as long along d, and may shear and turn freely:
+///   E = sum k/2 (l - s)^2,   l = |F d|,   k = weight * volume
+/// s is the same for all of them. Its unknown is written as a tension m >= 0 that closes them,
+///   m = c (1 - s),   c = sum k / L,   E = sum k/2 (l - 1)^2 + m M + (a function of m alone),   M = sum k l / c
+/// with L the length of the cable in the gaps at rest, so that M is a mean length and is L at rest.
+class GapElements {
+public:
+    /// A gap and how the cable passes it. Its tets have been chosen by who drives it.
+    struct Gap {
+        std::vector<std::size_t> tets;
+        Vec3 direction;        ///< of length 1
+        double length_m = 0;   ///< above 0
+        double weight_Pa = 0;  ///< above 0
+    };
+    /// At least one gap with a tet.
+    GapElements(const Elements& elements, std::span<const Gap> gaps);
+
+    /// Of E at s = 1, J.
+    [[nodiscard]] double energy(std::span<const double> x) const;
+    /// forces (3n) += dE/dx at s = 1.
+    void add_gradient(std::span<const double> x, std::span<double> forces) const;
+    /// forces (3n) += factor * dM/dx.
+    void add_pull(std::span<const double> x, double factor, std::span<double> forces) const;
+    /// values += second gradient of E at m, for a pattern over free nodes (block 3) of the elements. With `project`
+    /// every point adds the nearest positive semi-definite matrix.
+    void add_hessian(std::span<const double> x, double m, const std::vector<int>& free_index,
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
+
+    /// values += k G^T G of the gradients along d, one number for each pair of a pattern of block 1: what the weighted
+    /// Laplacian needs to be no softer than the elements.
+    void add_laplacian(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
+                       std::span<double> values) const;
+
+    /// s at the multiplier m.
+    [[nodiscard]] double scale(double m) const { return 1 - m / stiffness_N_; }
+    /// What of m is left to close the gaps, N, once their elements have been shortened: c (M/L - s).
+    [[nodiscard]] double tension(std::span<const double> x, double m) const;
+
+private:
+    /// F d of an integration point, and its length.
+    struct Along {
+        Vec3 vector;
+        double length = 0;
+    };
+    [[nodiscard]] std::size_t count() const { return stiffness_J_.size(); }
+    [[nodiscard]] Along along(std::size_t point, std::span<const double> x) const;
+    /// forces += factor_of(l) * k * dl/dx over the points.
+    template <class FactorOf>
+    void add_along(std::span<const double> x, std::span<double> forces, const FactorOf& factor_of) const;
+
+    std::size_t width_ = 0;            ///< nodes of a tet
+    std::vector<int> nodes_;           ///< (points, width)
+    std::vector<double> weights_;      ///< (points, width) grad N_a . d: F d is the sum of these times the positions
+    std::vector<double> stiffness_J_;  ///< (points) k
+    double stiffness_N_ = 0;           ///< c
+    double length_m_ = 0;              ///< L
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,86 @@
+// Tangent stiffness of the elastic body: blocks of the tets, and where they go.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+
+#include "base/core/parallel.hpp"
+#include "simulation/elements/blend_kernels.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/material/response.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+using linalg::Matrix9;
+using linalg::Vector3;
+
+constexpr std::size_t places_per_piece = 1024;
+
+}  // namespace
+
+BlockSums Elements::block_sums(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern) const {
+    std::vector<int> slots(batches() * pairs() * lanes, BlockSums::no_slot);
+    parallel_for(tet_.size(), places_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            if (tet_[place] == no_tet) continue;
+            std::array<int, 10> free{};
+            for (std::size_t a = 0; a < width(); ++a)
+                free[a] = free_index[nodes_[(place / lanes * width() + a) * lanes + place % lanes]];
+            int* slot = slots.data() + place / lanes * pairs() * lanes + place % lanes;
+            for (std::size_t b = 0; b < width(); ++b) {
+                for (std::size_t a = 0; a <= b; ++a, slot += lanes) {
+                    const auto [j, i] = std::minmax(free[a], free[b]);
+                    if (j >= 0) *slot = 2 * pattern.find(i, j) + (free[a] < free[b] ? 1 : 0);
+                }
+            }
+        }
+    });
+    return {std::move(slots), batches(), pattern.node_row.size()};
+}
+
+void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
+                                  double* blocks) const {
+    std::fill_n(blocks, pairs() * 9 * lanes, 0.0);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t tet = tet_[batch * lanes + lane];
+        for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
+            Matrix9 H = material::tangent(law, deformation_gradient(tet, q, x));
+            H = project ? linalg::project_to_positive(H) : Matrix9(0.5 * (H + H.transpose()));
+            H *= point_volume(tet, q);
+            double* block = blocks + lane;
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const double* gb = gradient(tet, q, b);
+                Eigen::Matrix<double, 9, 3> change = gb[0] * H.leftCols<3>();  // of P with the motion of b
+                for (int l = 1; l < 3; ++l) change += gb[static_cast<std::size_t>(l) * lanes] * H.middleCols<3>(3 * l);
+                for (int a = 0; a <= b; ++a, block += 9 * lanes) {
+                    const double* ga = gradient(tet, q, a);
+                    Matrix3 K = ga[0] * change.topRows<3>();
+                    for (int l = 1; l < 3; ++l)
+                        K += ga[static_cast<std::size_t>(l) * lanes] * change.middleRows<3>(3 * l);
+                    for (std::size_t k = 0; k < 9; ++k) block[k * lanes] += K.data()[k];
+                }
+            }
+        }
+    }
+}
+
+void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values,
+                           bool project) const {
+    const auto fill = [&](std::size_t b, double* blocks) {
+        const material::Law& law = law_of_batch(b);
+        const auto form = material::invariant_form(law);
+        const auto* blend = std::get_if<material::ShapeBlend>(&law);
+        if (form && project)
+            batch_projected_tangent(batch(b), *form, x.data(), blocks);
+        else if (form)
+            batch_tangent(batch(b), *form, x.data(), blocks);
+        else if (blend != nullptr && !project)
+            batch_blend_tangent(batch(b), *blend, x.data(), blocks);
+        else
+            tangent_one_by_one(b, x, law, project, blocks);
+    };
+    sums.add(fill, 9, values, scratch_);
+}
+
+}  // namespace pliant::sim

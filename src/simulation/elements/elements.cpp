@@ -1,0 +1,419 @@
+#include "simulation/elements/elements.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/core/parallel.hpp"
+#include "geometry/mesh/order_in_space.hpp"
+#include "simulation/elements/blend_kernels.hpp"
+#include "simulation/material/response.hpp"
+#include "simulation/parts/description.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+using linalg::Matrix9;
+using linalg::Vector3;
+
+constexpr std::size_t batches_per_piece = 32;
+constexpr std::size_t tets_per_piece = 1024;
+constexpr double gauss_a = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
+constexpr double gauss_b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
+
+using Barycentric = std::array<double, 4>;
+
+/// What one batch does at its nodes, (nodes_per_tet, 3, lanes).
+struct BatchForces {
+    alignas(64) double values[10 * 3 * batch_lanes];
+};
+
+std::vector<Barycentric> integration_points(int order) {
+    if (order == 1) return {{0.25, 0.25, 0.25, 0.25}};
+    std::vector<Barycentric> points(4, {gauss_b, gauss_b, gauss_b, gauss_b});
+    for (std::size_t i = 0; i < 4; ++i) points[i][i] = gauss_a;
+    return points;
+}
+
+/// d N_a / d b_k for the barycentric coordinates b, (nodes, 4).
+using ShapeGradients = Eigen::Matrix<double, Eigen::Dynamic, 4, 0, 10, 4>;
+
+ShapeGradients shape_gradients(int order, const Barycentric& b) {
+    ShapeGradients gradients = ShapeGradients::Zero(order == 1 ? 4 : 10, 4);
+    for (int i = 0; i < 4; ++i) gradients(i, i) = order == 1 ? 1 : 4 * b[i] - 1;
+    if (order == 1) return gradients;
+    for (int e = 0; e < 6; ++e) {
+        const auto& [p, q] = mesh::edge_corners[static_cast<std::size_t>(e)];
+        gradients(4 + e, p) = 4 * b[q];
+        gradients(4 + e, q) = 4 * b[p];
+    }
+    return gradients;
+}
+
+/// d X / d (b1, b2, b3) with b0 = 1 - b1 - b2 - b3.
+Matrix3 jacobian_of(const mesh::TetMesh& mesh, std::size_t tet, const ShapeGradients& dN) {
+    const auto nodes = mesh.tet(tet);
+    Eigen::Matrix<double, 3, 4> dX = Eigen::Matrix<double, 3, 4>::Zero();
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+        const Vec3& X = mesh.points[nodes[a]];
+        dX += Vector3(X.x, X.y, X.z) * dN.row(static_cast<Eigen::Index>(a));
+    }
+    return dX.rightCols<3>().colwise() - dX.col(0);
+}
+
+/// grad N_a = J^-T d N_a / d (b1, b2, b3), a number every `batch_lanes`.
+void put_gradients(const ShapeGradients& dN, const Matrix3& jacobian, double* gradients) {
+    const Matrix3 inverse = jacobian.inverse().transpose();
+    for (Eigen::Index a = 0; a < dN.rows(); ++a) {
+        const Vector3 gradient = inverse * (dN.row(a).tail<3>().array() - dN(a, 0)).matrix().transpose();
+        for (int k = 0; k < 3; ++k, gradients += batch_lanes) *gradients = gradient[k];
+    }
+}
+
+/// Integral of N_a N_b over a straight tet, as a share of its volume (Zienkiewicz and Taylor, The Finite Element
+/// Method).
+Eigen::MatrixXd mass_shares(int nodes) {
+    if (nodes == 4) return (Eigen::MatrixXd::Ones(4, 4) + Eigen::MatrixXd::Identity(4, 4)) / 20;
+    Eigen::MatrixXd shares(10, 10);
+    shares.topLeftCorner(4, 4) = Eigen::MatrixXd::Ones(4, 4) + 5 * Eigen::MatrixXd::Identity(4, 4);
+    for (int e = 0; e < 6; ++e) {
+        const auto& [p, q] = mesh::edge_corners[static_cast<std::size_t>(e)];
+        for (int corner = 0; corner < 4; ++corner)
+            shares(4 + e, corner) = shares(corner, 4 + e) = corner == p || corner == q ? -4 : -6;
+        for (int f = 0; f < 6; ++f) {
+            const auto& [r, s] = mesh::edge_corners[static_cast<std::size_t>(f)];
+            const bool shared = p == r || p == s || q == r || q == s;
+            shares(4 + e, 4 + f) = e == f ? 32 : (shared ? 16 : 8);
+        }
+    }
+    return shares / 420;
+}
+
+std::vector<std::optional<material::InvariantForm>> forms_of(std::span<const material::Law> laws) {
+    std::vector<std::optional<material::InvariantForm>> forms;
+    for (const material::Law& law : laws) forms.push_back(material::invariant_form(law));
+    return forms;
+}
+
+/// result (lanes) += stiffness * volume * (gradient a . gradient b).
+void add_products(const double* a, const double* b, double stiffness, const double* volume, double* result) {
+    constexpr std::size_t lanes = batch_lanes;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        result[lane] +=
+            stiffness * volume[lane] *
+            (a[lane] * b[lane] + a[lanes + lane] * b[lanes + lane] + a[2 * lanes + lane] * b[2 * lanes + lane]);
+    }
+}
+
+}  // namespace
+
+Result<Elements> Elements::create(const Description& description) {
+    const mesh::TetMesh& mesh = description.mesh;
+    Elements elements;
+    elements.nodes_per_tet_ = mesh.nodes_per_tet();
+    elements.points_per_tet_ = mesh.order == 1 ? 1 : 4;
+    for (const Material& material : description.materials) {
+        elements.laws_.push_back(material.law);
+        elements.has_energy_ = elements.has_energy_ && material::has_energy(material.law);
+    }
+    elements.law_ = description.material_of_tet;
+    if (elements.law_.empty()) {
+        for (const int region : mesh.region) elements.law_.push_back(description.material_of_region[region]);
+    }
+    elements.group_by_law(mesh);
+    if (Status status = elements.integrate(mesh); !status) return tl::unexpected(status.error());
+    elements.weigh(description);
+    elements.fill_empty_lanes();
+    elements.sums_ = NodeSums({elements.nodes_.data(), elements.nodes_.size()}, elements.width(), mesh.points.size());
+    return elements;
+}
+
+/// Within each law, neighbours in space are neighbours in memory: what tets of a batch, a piece or a run have in common
+/// is many nodes, whatever order the file has them in.
+void Elements::group_by_law(const mesh::TetMesh& mesh) {
+    std::vector<Vec3> centre(law_.size());
+    std::vector<std::vector<int>> groups(laws_.size());
+    for (std::size_t t = 0; t < law_.size(); ++t) {
+        for (const int node : mesh.tet(t).first(4)) centre[t] += 0.25 * mesh.points[node];
+        groups[static_cast<std::size_t>(law_[t])].push_back(static_cast<int>(t));
+    }
+    const double layer = mesh::layer_of(mesh);
+    place_.resize(law_.size());
+    for (std::size_t law = 0; law < groups.size(); ++law) {
+        mesh::order_in_space(groups[law], centre, layer);
+        for (std::size_t k = 0; k < groups[law].size(); ++k) {
+            const auto tet = static_cast<std::size_t>(groups[law][k]);
+            if (k % lanes == 0) {
+                batch_law_.push_back(static_cast<int>(law));
+                tet_.resize(tet_.size() + lanes, no_tet);
+            }
+            place_[tet] = (batch_law_.size() - 1) * lanes + k % lanes;
+            tet_[place_[tet]] = tet;
+        }
+    }
+    nodes_.resize(batches() * width() * lanes);
+    gradient_.resize(batches() * points() * width() * 3 * lanes);
+    volume_.resize(batches() * points() * lanes);
+}
+
+/// Nodes, gradients and volumes. An error names the first tet that is flat.
+Status Elements::integrate(const mesh::TetMesh& mesh) {
+    std::vector<ShapeGradients> shapes;
+    for (const Barycentric& b : integration_points(mesh.order)) shapes.push_back(shape_gradients(mesh.order, b));
+    std::vector<std::size_t> flat((mesh.tet_count() + tets_per_piece - 1) / tets_per_piece, no_tet);
+    parallel_for(mesh.tet_count(), tets_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            for (std::size_t a = 0; a < width(); ++a)
+                nodes_[(place_[t] / lanes * width() + a) * lanes + place_[t] % lanes] = mesh.tet(t)[a];
+            for (std::size_t q = 0; q < points(); ++q) {
+                const Matrix3 jacobian = jacobian_of(mesh, t, shapes[q]);
+                const double determinant = jacobian.determinant();
+                if (!(determinant > 0)) flat[begin / tets_per_piece] = std::min(t, flat[begin / tets_per_piece]);
+                const std::size_t point = place_[t] / lanes * points() + q, lane = place_[t] % lanes;
+                volume_[point * lanes + lane] = determinant / 6 / static_cast<double>(points());
+                put_gradients(shapes[q], jacobian, gradient_.data() + point * width() * 3 * lanes + lane);
+            }
+        }
+    });
+    for (const std::size_t t : flat) {
+        for (std::size_t q = 0; t != no_tet && q < points(); ++q) {
+            const double volume = jacobian_of(mesh, t, shapes[q]).determinant() / 6;
+            if (volume > 0) continue;
+            return input_error("tetrahedron {} of the mesh is flat or inside out at rest (volume {:.3g} m^3)", t,
+                               volume);
+        }
+    }
+    return {};
+}
+
+/// Masses of tets and nodes.
+void Elements::weigh(const Description& description) {
+    const mesh::TetMesh& mesh = description.mesh;
+    std::vector<std::vector<double>> shares;
+    for (const Barycentric& b : integration_points(mesh.order)) shares.push_back(mesh::shape_functions(mesh.order, b));
+    node_mass_.assign(mesh.points.size(), 0.0);
+    tet_mass_.assign(mesh.tet_count(), 0.0);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const double density = description.materials[law_[t]].density_kg_m3;
+        for (std::size_t q = 0; q < points(); ++q) {
+            const double mass = density * point_volume(t, static_cast<int>(q));
+            tet_mass_[t] += mass;
+            for (std::size_t a = 0; a < width(); ++a) node_mass_[mesh.tet(t)[a]] += mass * shares[q][a];
+        }
+    }
+}
+
+/// The last batch of a law may have lanes left: they repeat its first tet, with no volume.
+void Elements::fill_empty_lanes() {
+    for (std::size_t place = 0; place < tet_.size(); ++place) {
+        if (tet_[place] != no_tet) continue;
+        const std::size_t batch = place / lanes;
+        const std::size_t lane = place % lanes;
+        for (std::size_t a = 0; a < width(); ++a) {
+            int* nodes = nodes_.data() + (batch * width() + a) * lanes;
+            nodes[lane] = nodes[0];
+        }
+        for (std::size_t k = 0; k < points() * width() * 3; ++k) {
+            double* gradients = gradient_.data() + (batch * points() * width() * 3 + k) * lanes;
+            gradients[lane] = gradients[0];
+        }
+        for (std::size_t q = 0; q < points(); ++q) volume_[(batch * points() + q) * lanes + lane] = 0;
+    }
+}
+
+TetBatch Elements::batch(std::size_t b) const {
+    return {nodes_per_tet_, points_per_tet_, nodes_.data() + b * width() * lanes,
+            gradient_.data() + b * points() * width() * 3 * lanes, volume_.data() + b * points() * lanes};
+}
+
+Matrix3 Elements::deformation_gradient(std::size_t tet, int point, std::span<const double> x) const {
+    Matrix3 F = Matrix3::Zero();
+    for (int a = 0; a < nodes_per_tet_; ++a) {
+        const double* g = gradient(tet, point, a);
+        const double* xa = x.data() + 3 * static_cast<std::size_t>(node(tet, a));
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) F(i, j) += xa[i] * g[static_cast<std::size_t>(j) * lanes];
+        }
+    }
+    return F;
+}
+
+BatchResult Elements::forces_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law,
+                                        double* forces) const {
+    BatchResult result{0, std::numeric_limits<double>::infinity()};
+    if (forces != nullptr) std::fill_n(forces, 3 * width() * lanes, 0.0);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t tet = tet_[batch * lanes + lane];
+        for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
+            const Matrix3 F = deformation_gradient(tet, q, x);
+            const double J = F.determinant();
+            // A NaN must count as inverted: the comparison is written so that it does.
+            result.min_J = J > 0 ? std::min(result.min_J, J) : -1;
+            if (!(J > 0)) return result;
+            const double volume = point_volume(tet, q);
+            if (const auto density = material::energy(law, F)) result.energy_J += volume * *density;
+            if (forces == nullptr) continue;
+            const Matrix3 P = volume * material::stress(law, F);
+            for (int a = 0; a < nodes_per_tet_; ++a) {
+                const double* g = gradient(tet, q, a);
+                double* f = forces + static_cast<std::size_t>(3 * a) * lanes + lane;
+                for (std::size_t i = 0; i < 3; ++i)
+                    f[i * lanes] += P(i, 0) * g[0] + P(i, 1) * g[lanes] + P(i, 2) * g[2 * lanes];
+            }
+        }
+    }
+    return result;
+}
+
+/// result (3n) += what `forces_of(batch, bound of its stiffness, forces)` writes for the nodes of each batch.
+template <class ForcesOf>
+void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) const {
+    const auto lists = scratch_.lend(sums_.space());
+    sums_.for_pieces([&](std::size_t piece, std::size_t begin, std::size_t end) {
+        BatchForces forces;
+        sums_.clear(piece, lists.data());
+        for (std::size_t b = begin; b < end; ++b) {
+            const double stiffness = material::stiffness_bound(law_of_batch(b));
+            forces_of(b, stiffness, forces.values);
+            sums_.add(b, forces.values, lists.data());
+        }
+    });
+    sums_.gather(lists.data(), result);
+}
+
+Elements::Evaluation Elements::evaluate(std::span<const double> x, std::span<double> forces) const {
+    std::vector<Evaluation> partial(sums_.pieces());
+    const bool with_forces = !forces.empty();
+    const auto lists = scratch_.lend(with_forces ? sums_.space() : 0);
+    const auto forms = forms_of(laws_);
+    sums_.for_pieces([&](std::size_t piece, std::size_t begin, std::size_t end) {
+        BatchForces one;
+        double* to = with_forces ? one.values : nullptr;
+        if (with_forces) sums_.clear(piece, lists.data());
+        Evaluation& sum = partial[piece];
+        sum.min_J = std::numeric_limits<double>::infinity();
+        for (std::size_t b = begin; b < end && sum.min_J > 0; ++b) {
+            const auto& form = forms[static_cast<std::size_t>(batch_law_[b])];
+            const auto* blend = std::get_if<material::ShapeBlend>(&law_of_batch(b));
+            const BatchResult result = form    ? batch_forces(batch(b), *form, x.data(), to)
+                                       : blend ? batch_blend_forces(batch(b), *blend, x.data(), to)
+                                               : forces_one_by_one(b, x, law_of_batch(b), to);
+            sum.energy_J += result.energy_J;
+            sum.min_J = std::min(sum.min_J, result.min_J);
+            if (with_forces && sum.min_J > 0) sums_.add(b, one.values, lists.data());
+        }
+    });
+    Evaluation total;
+    total.min_J = std::numeric_limits<double>::infinity();
+    for (const Evaluation& one : partial) {
+        total.energy_J += one.energy_J;
+        total.min_J = std::min(total.min_J, one.min_J);
+    }
+    if (total.min_J > 0 && with_forces) sums_.gather(lists.data(), forces);
+    return total;
+}
+
+void Elements::add_laplacian(const BlockSums& sums, std::span<double> values) const {
+    const auto fill = [&](std::size_t b, double* products) {
+        const double stiffness = material::stiffness_bound(law_of_batch(b));
+        std::fill_n(products, pairs() * lanes, 0.0);
+        for (std::size_t q = 0; q < points(); ++q) {
+            const double* gradients = gradient_.data() + (b * points() + q) * width() * 3 * lanes;
+            const double* volume = volume_.data() + (b * points() + q) * lanes;
+            double* product = products;
+            for (std::size_t j = 0; j < width(); ++j) {
+                for (std::size_t i = 0; i <= j; ++i, product += lanes)
+                    add_products(gradients + i * 3 * lanes, gradients + j * 3 * lanes, stiffness, volume, product);
+            }
+        }
+    };
+    sums.add(fill, 1, values, scratch_);
+}
+
+void Elements::apply_laplacian(std::span<const double> u, std::span<double> result) const {
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        const double stiffness = material::stiffness_bound(law(t));
+        for (int q = 0; q < points_per_tet_; ++q) {
+            const Matrix3 G = stiffness * point_volume(t, q) * deformation_gradient(t, q, u);
+            for (int a = 0; a < nodes_per_tet_; ++a) {
+                const double* g = gradient(t, q, a);
+                double* r = result.data() + 3 * static_cast<std::size_t>(node(t, a));
+                for (int i = 0; i < 3; ++i) r[i] += G(i, 0) * g[0] + G(i, 1) * g[lanes] + G(i, 2) * g[2 * lanes];
+            }
+        }
+    }
+}
+
+void Elements::add_turning(const Turning& turning, std::span<double> result) const {
+    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
+        batch_turning(batch(b), turning, stiffness, forces);
+    });
+}
+
+void Elements::find_rotations(std::span<const double> before, std::span<const double> now,
+                              AlignedArray<double>& rotations) const {
+    const std::size_t stride = 9 * points() * lanes;
+    rotations.resize(batches() * stride);
+    parallel_for(batches(), batches_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+            batch_rotations(batch(b), before.data(), now.data(), rotations.data() + b * stride);
+    });
+}
+
+void Elements::add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+                          std::span<double> result) const {
+    const std::size_t stride = 9 * points() * lanes;
+    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
+        batch_turned(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
+                     forces);
+    });
+}
+
+void Elements::add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
+                        std::span<double> values, double factor) const {
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        for (int b = 0; b < nodes_per_tet_; ++b) {
+            const int j = free_index[node(t, b)];
+            for (int a = 0; j >= 0 && a < nodes_per_tet_; ++a) {
+                const int i = free_index[node(t, a)];
+                if (i < j) continue;
+                const double entry = factor * tet_mass_[t] * shares(a, b);
+                pattern.add_block(values, i, j, [&](int r, int c) { return r == c ? entry : 0.0; });
+            }
+        }
+    }
+}
+
+void Elements::apply_mass(std::span<const double> u, std::span<double> result) const {
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        for (int a = 0; a < nodes_per_tet_; ++a) {
+            double* r = result.data() + 3 * static_cast<std::size_t>(node(t, a));
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const double mass = tet_mass_[t] * shares(a, b);
+                const double* v = u.data() + 3 * static_cast<std::size_t>(node(t, b));
+                for (int i = 0; i < 3; ++i) r[i] += mass * v[i];
+            }
+        }
+    }
+}
+
+linalg::Lists Elements::cliques(const std::vector<int>& free_index) const {
+    linalg::Lists cliques;
+    cliques.item.resize(tet_count() * width());
+    cliques.start.resize(tet_count() + 1);
+    parallel_for(tet_count(), tets_per_piece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            cliques.start[t + 1] = static_cast<int>((t + 1) * width());
+            for (std::size_t a = 0; a < width(); ++a)
+                cliques.item[t * width() + a] = free_index[node(t, static_cast<int>(a))];
+        }
+    });
+    return cliques;
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,146 @@
+// The elastic body: integration points, forces, energy, tangent.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/core/aligned_array.hpp"
+#include "base/core/array_pool.hpp"
+#include "base/core/error.hpp"
+#include "base/linalg/small.hpp"
+#include "base/linalg/sparse.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "robot/description/law.hpp"
+#include "simulation/elements/block_sums.hpp"
+#include "simulation/elements/element_kernels.hpp"
+#include "simulation/elements/node_sums.hpp"
+
+namespace pliant::sim {
+
+struct Description;
+
+/// Isoparametric tets: 1 integration point for linear ones, 4 for quadratic ones (as CalculiX' C3D4 and C3D10).
+/// F = sum_a x_a (grad N_a)^T, f_a = sum_q w_q P grad N_a. All results are the same bits on any number of threads.
+class Elements {
+public:
+    /// An error names a tet that is flat or turned inside out at rest.
+    [[nodiscard]] static Result<Elements> create(const Description& description);
+
+    struct Evaluation {
+        double energy_J = 0;  ///< of the laws that have one
+        double min_J = 1;     ///< over all integration points; if it is not positive, nothing else is computed
+    };
+    /// Adds the internal forces (3n) at node positions `x` (3n). Without `forces` only energy and min_J are found.
+    Evaluation evaluate(std::span<const double> x, std::span<double> forces) const;
+
+    /// Where the pairs of the tets' nodes go in a pattern over free nodes: made once for each pattern.
+    [[nodiscard]] BlockSums block_sums(const std::vector<int>& free_index,
+                                       const linalg::SymmetricPattern& pattern) const;
+    /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
+    /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
+    void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
+
+    /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
+    /// for each pair of the pattern of the sums; W = stiffness_bound(law) times volume.
+    void add_laplacian(const BlockSums& sums, std::span<double> values) const;
+    /// result (3n) += Laplacian of u (3n).
+    void apply_laplacian(std::span<const double> u, std::span<double> result) const;
+
+    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: what a straight motion leaves out of a turning
+    /// one. W as in the Laplacian.
+    void add_turning(const Turning& turning, std::span<double> result) const;
+
+    /// How each point has turned from `before` to `now` (3n), for add_turned. Precondition: min_J > 0 in both.
+    void find_rotations(std::span<const double> before, std::span<const double> now,
+                        AlignedArray<double>& rotations) const;
+    enum class Direction { on, back };
+    /// result (3n) += G^T W R G u, or with R^T: what the Laplacian makes into u turned on or back.
+    void add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+                    std::span<double> result) const;
+
+    /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
+    /// block 3, and result (3n) += M u.
+    void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
+                  double factor) const;
+    void apply_mass(std::span<const double> u, std::span<double> result) const;
+
+    /// Integral of density times N_a: what gravity multiplies, (n) kg.
+    [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
+    [[nodiscard]] bool has_energy() const { return has_energy_; }
+
+    /// Deformation gradients at the integration points of tet t and their volumes.
+    [[nodiscard]] int points_per_tet() const { return points_per_tet_; }
+    [[nodiscard]] linalg::Matrix3 deformation_gradient(std::size_t tet, int point, std::span<const double> x) const;
+    [[nodiscard]] double point_volume(std::size_t tet, int point) const {
+        return volume_[place_[tet] / lanes * points() * lanes + static_cast<std::size_t>(point) * lanes +
+                       place_[tet] % lanes];
+    }
+    [[nodiscard]] const material::Law& law(std::size_t tet) const { return laws_[static_cast<std::size_t>(law_[tet])]; }
+    /// Index of the material of a tet.
+    [[nodiscard]] int material(std::size_t tet) const { return law_[tet]; }
+    [[nodiscard]] std::size_t tet_count() const { return law_.size(); }
+    [[nodiscard]] std::size_t nodes_per_tet() const { return width(); }
+    [[nodiscard]] int node_of(std::size_t tet, int a) const { return node(tet, a); }
+    /// grad N_a at an integration point, 1/m.
+    [[nodiscard]] Vec3 shape_gradient(std::size_t tet, int point, int a) const {
+        const double* g = gradient(tet, point, a);
+        return {g[0], g[lanes], g[2 * lanes]};
+    }
+
+    /// Node lists of all tets, as free indices: the cliques of the stiffness pattern.
+    [[nodiscard]] linalg::Lists cliques(const std::vector<int>& free_index) const;
+
+private:
+    static constexpr std::size_t lanes = batch_lanes;
+    static constexpr std::size_t no_tet = static_cast<std::size_t>(-1);
+
+    Elements() = default;
+    [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(nodes_per_tet_); }
+    [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(points_per_tet_); }
+    [[nodiscard]] std::size_t pairs() const { return width() * (width() + 1) / 2; }
+    [[nodiscard]] std::size_t batches() const { return batch_law_.size(); }
+    [[nodiscard]] int node(std::size_t tet, int a) const {
+        return nodes_[(place_[tet] / lanes * width() + static_cast<std::size_t>(a)) * lanes + place_[tet] % lanes];
+    }
+    /// First component of grad N_a; the others follow at steps of `lanes`.
+    [[nodiscard]] const double* gradient(std::size_t tet, int point, int a) const {
+        return gradient_.data() +
+               ((place_[tet] / lanes * points() + static_cast<std::size_t>(point)) * width() +
+                static_cast<std::size_t>(a)) *
+                   3 * lanes +
+               place_[tet] % lanes;
+    }
+    [[nodiscard]] TetBatch batch(std::size_t b) const;
+    void group_by_law(const mesh::TetMesh& mesh);
+    void fill_empty_lanes();
+    Status integrate(const mesh::TetMesh& mesh);
+    void weigh(const Description& description);
+    [[nodiscard]] const material::Law& law_of_batch(std::size_t batch) const {
+        return laws_[static_cast<std::size_t>(batch_law_[batch])];
+    }
+    // Of batches, where the law has no SIMD kernel; same arrays as those of element_kernels.hpp.
+    [[nodiscard]] BatchResult forces_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law,
+                                                double* forces) const;
+    void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
+                            double* blocks) const;
+    template <class ForcesOf>
+    void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
+
+    int nodes_per_tet_ = 4;
+    int points_per_tet_ = 1;
+    bool has_energy_ = true;
+    std::vector<int> law_;            ///< (m)
+    std::vector<std::size_t> place_;  ///< (m) batch * lanes + lane: each batch holds tets of one law
+    std::vector<std::size_t> tet_;    ///< (batches, lanes) the inverse; no_tet where a lane is empty
+    std::vector<int> batch_law_;      ///< (batches)
+    AlignedArray<int> nodes_;         ///< (batches, nodes_per_tet, lanes)
+    AlignedArray<double> gradient_;   ///< (batches, points, nodes_per_tet, 3, lanes): grad N_a, 1/m
+    AlignedArray<double> volume_;     ///< (batches, points, lanes): integration weights, m^3
+    std::vector<double> node_mass_;
+    std::vector<double> tet_mass_;  ///< (m) kg
+    std::vector<material::Law> laws_;
+    NodeSums sums_;
+    mutable ArrayPool<double> scratch_;  ///< sums of pieces and runs
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,78 @@
+#include "simulation/elements/inertia.hpp"
+
+#include <cmath>
+
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+Eigen::VectorXd mass_times(const Elements& elements, const Eigen::VectorXd& u) {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
+    elements.apply_mass({u.data(), static_cast<std::size_t>(u.size())},
+                        {result.data(), static_cast<std::size_t>(result.size())});
+    return result;
+}
+
+}  // namespace
+
+Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, const History& history, double dt,
+                 const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness)
+    : elements_(&elements), free_index_(&free_index), damping_(damping), stiffness_(std::move(stiffness)) {
+    const bool even = history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
+    rate_ = even ? 1.5 / dt : 1 / dt;
+    from_ = history.x;
+    Eigen::VectorXd velocity = history.v;
+    if (even) {
+        from_ = (4 * history.x - history.x_before) / 3;
+        velocity = (4 * history.v - history.v_before) / 3;
+    }
+    coast_ = from_ + velocity / rate_;
+}
+
+Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
+    if (damping_.mass_per_s > 0) force += damping_.mass_per_s * mass_times(*elements_, motion);
+    if (!stiffness_) return force;
+    const linalg::SymmetricPattern& pattern = *stiffness_->pattern;
+    const auto& index = *free_index_;
+    Eigen::VectorXd free = Eigen::VectorXd::Zero(pattern.size());
+    for (std::size_t node = 0; node < index.size(); ++node) {
+        if (index[node] >= 0) free.segment<3>(3 * index[node]) = motion.segment<3>(3 * static_cast<Eigen::Index>(node));
+    }
+    Eigen::VectorXd product = Eigen::VectorXd::Zero(pattern.size());
+    linalg::add_product(pattern, stiffness_->values, {free.data(), static_cast<std::size_t>(free.size())}, 1,
+                        {product.data(), static_cast<std::size_t>(product.size())});
+    for (std::size_t node = 0; node < index.size(); ++node) {
+        if (index[node] < 0) continue;
+        force.segment<3>(3 * static_cast<Eigen::Index>(node)) +=
+            damping_.stiffness_s * product.segment<3>(3 * index[node]);
+    }
+    return force;
+}
+
+double Inertia::energy(const Eigen::VectorXd& x) const {
+    const Eigen::VectorXd off = x - coast_;
+    const Eigen::VectorXd motion = x - from_;
+    return 0.5 * rate_ * rate_ * off.dot(mass_times(*elements_, off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
+}
+
+void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const {
+    forces += rate_ * rate_ * mass_times(*elements_, x - coast_) + rate_ * damping_force(x - from_);
+}
+
+void Inertia::add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    elements_->add_mass(*free_index_, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
+    if (!stiffness_) return;
+    const linalg::SymmetricPattern& own = *stiffness_->pattern;
+    for (int j = 0; j < own.nodes; ++j) {
+        for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
+            const int i = own.node_row[k];
+            const double* block = stiffness_->values.data() + static_cast<std::size_t>(k) * own.block_entries();
+            pattern.add_block(values, i, j,
+                              [&](int r, int c) { return rate_ * damping_.stiffness_s * block[3 * c + r]; });
+        }
+    }
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,62 @@
+// Implicit time stepping: mass and damping as terms of the energy that a step minimises.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/linalg/sparse.hpp"
+#include "simulation/parts/robot_names.hpp"
+
+namespace pliant::sim {
+
+class Elements;
+
+/// Where the robot has been: positions and velocities (3n) of the last two steps.
+struct History {
+    Eigen::VectorXd x, v;
+    Eigen::VectorXd x_before, v_before;
+    double dt_before = 0;  ///< 0: there is no step before the last
+};
+
+/// A symmetric matrix over free nodes. The pattern outlives it: it is the same for all steps.
+struct StiffnessMatrix {
+    const linalg::SymmetricPattern* pattern = nullptr;  ///< block 3
+    std::vector<double> values;
+};
+
+/// The step that leads from a history to x. With steps of one length it is BDF2, else implicit Euler; both only
+/// take energy out of a linear system (A-stable; Euler much, BDF2 little). In both v = c (x - p) and a = c (v - q), so
+/// that the step's equations are the gradient of  c^2/2 |x - x~|_M^2 + c/2 |x - p|_C^2  with  x~ = p + q / c:
+///   Euler  c = 1/h       p = x_n                    q = v_n
+///   BDF2   c = 3/(2 h)   p = (4 x_n - x_{n-1})/3    q = (4 v_n - v_{n-1})/3
+/// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, chapter III.
+class Inertia {
+public:
+    /// `stiffness` may be null where there is no damping by stiffness; all must outlive the step.
+    Inertia(const Elements& elements, const std::vector<int>& free_index, const History& history, double dt,
+            const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness);
+
+    [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
+    /// forces (3n) += gradient: inertia and damping.
+    void add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const;
+    /// For a pattern over free nodes (block 3) that holds the elements' cliques.
+    void add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+
+    /// Velocity (3n) at the end of the step, if it ends at x.
+    [[nodiscard]] Eigen::VectorXd velocity(const Eigen::VectorXd& x) const { return rate_ * (x - from_); }
+
+private:
+    [[nodiscard]] Eigen::VectorXd damping_force(const Eigen::VectorXd& motion) const;
+
+    const Elements* elements_;
+    const std::vector<int>* free_index_;
+    double rate_ = 0;        ///< c
+    Eigen::VectorXd from_;   ///< p
+    Eigen::VectorXd coast_;  ///< x~
+    Damping damping_;
+    std::shared_ptr<const StiffnessMatrix> stiffness_;
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,72 @@
+#include "simulation/elements/plate.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim {
+namespace {}  // namespace
+
+Plate::Plate(std::vector<int> nodes, double stiffness_N_m, std::span<const double> rest)
+    : nodes_(std::move(nodes)), stiffness_(stiffness_N_m) {
+    linalg::Vector3 mean = linalg::Vector3::Zero();
+    for (const int node : nodes_) mean += linalg::view(rest, node) / static_cast<double>(nodes_.size());
+    for (const int node : nodes_) rest_.emplace_back(linalg::view(rest, node) - mean);
+}
+
+Plate::Pose Plate::pose(std::span<const double> x) const {
+    Pose pose{linalg::Vector3::Zero(), linalg::Matrix3::Zero()};
+    for (const int node : nodes_) pose.mean += linalg::view(x, node) / static_cast<double>(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) pose.A += linalg::view(x, nodes_[i]) * rest_[i].transpose();
+    return pose;
+}
+
+double Plate::energy(std::span<const double> x) const {
+    const Pose p = pose(x);
+    const linalg::Matrix3 R = linalg::nearest_rotation(p.A);
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        sum += (linalg::view(x, nodes_[i]) - p.mean - R * rest_[i]).squaredNorm();
+    return 0.5 * stiffness_ * sum;
+}
+
+void Plate::add_gradient(std::span<const double> x, std::span<double> forces) const {
+    const Pose p = pose(x);
+    const linalg::Matrix3 R = linalg::nearest_rotation(p.A);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        Eigen::Map<linalg::Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[i]));
+        force += stiffness_ * (linalg::view(x, nodes_[i]) - p.mean - R * rest_[i]);
+    }
+}
+
+void Plate::add_hessian(std::span<const double> x, const std::vector<int>& free_index,
+                        const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    const linalg::Matrix9 dR = linalg::nearest_rotation_gradient(linalg::signed_svd(pose(x).A));
+    const double share = 1.0 / static_cast<double>(nodes_.size());
+    // d(R X_i) = dR (dx_j X_j^T) X_i; vec() stacks columns, so that vec(a b^T) = b (x) a.
+    std::vector<Eigen::Matrix<double, 3, 9>> turned(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        turned[i].setZero();
+        for (int c = 0; c < 3; ++c) turned[i] += rest_[i][c] * dR.middleRows<3>(3 * c);
+    }
+    for (std::size_t b = 0; b < nodes_.size(); ++b) {
+        const int j = free_index[static_cast<std::size_t>(nodes_[b])];
+        if (j < 0) continue;
+        for (std::size_t a = 0; a < nodes_.size(); ++a) {
+            const int i = free_index[static_cast<std::size_t>(nodes_[a])];
+            if (i < j) continue;
+            linalg::Matrix3 block = (a == b ? 1 - share : -share) * linalg::Matrix3::Identity();
+            for (int c = 0; c < 3; ++c) block -= rest_[b][c] * turned[a].middleCols<3>(3 * c);
+            pattern.add_block(values, i, j, [&](int r, int c) { return stiffness_ * block(r, c); });
+        }
+    }
+}
+
+void Plate::append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const {
+    std::vector<int> clique;
+    for (const int node : nodes_) clique.push_back(free_index[static_cast<std::size_t>(node)]);
+    cliques.push_back(clique);
+}
+
+}  // namespace pliant::sim

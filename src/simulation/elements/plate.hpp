@@ -1,0 +1,43 @@
+// A rigid plate glued to the body: its nodes keep their shape and move as one.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/linalg/small.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::sim {
+
+/// A rigid target shape (thesis, 3.2) for a whole set of nodes, stiff enough to count as rigid:
+///   E = k/2 min over R, t of sum_i |x_i - R X_i - t|^2,    f_i = -k (x_i - x_mean - R X_i),
+/// with rest positions X from their mean and R the rotation nearest to A = sum_i x_i X_i^T (Horn 1988; Müller et al.
+/// 2005, "Meshless deformations based on shape matching"). The Hessian is exact:
+///   H_ij = k (delta_ij I - I/n - d(R X_i)/dA X_j).
+class Plate {
+public:
+    /// `rest` (3n). Preconditions: at least three nodes that are not on one line, stiffness above zero.
+    Plate(std::vector<int> nodes, double stiffness_N_m, std::span<const double> rest);
+
+    [[nodiscard]] double energy(std::span<const double> x) const;
+    /// forces (3n) += gradient of the energy.
+    void add_gradient(std::span<const double> x, std::span<double> forces) const;
+    /// For a pattern over free nodes (block 3) that holds all pairs of the plate's nodes.
+    void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
+                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+    void append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const;
+
+private:
+    struct Pose {
+        linalg::Vector3 mean;
+        linalg::Matrix3 A;  ///< sum of x_i X_i^T
+    };
+    [[nodiscard]] Pose pose(std::span<const double> x) const;
+
+    std::vector<int> nodes_;
+    std::vector<linalg::Vector3> rest_;  ///< from their mean
+    double stiffness_;
+};
+
+}  // namespace pliant::sim

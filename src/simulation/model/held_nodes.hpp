@@ -1,0 +1,62 @@
+// Which nodes the supports hold, and in which directions: nodes of a clamp in all three, those of a roller or of a
+// plane of symmetry in fewer.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "base/core/vec3.hpp"
+
+namespace pliant::sim {
+
+struct Support;
+
+class HeldNodes {
+public:
+    /// Errors name the support: no nodes, nodes that do not exist, directions that are zero or not finite, a motion
+    /// that is not finite, nodes that two supports hold in the same direction while one of them moves, or that two
+    /// supports hold in all directions.
+    [[nodiscard]] static Result<HeldNodes> create(std::span<const Support> supports, int node_count);
+
+    /// True if the node is held in all directions.
+    [[nodiscard]] bool is_fixed(int node) const { return fixed_[static_cast<std::size_t>(node)]; }
+
+    /// A node that is held in one or two directions.
+    struct Roller {
+        int node = 0;
+        Eigen::Matrix3d may_move;  ///< projector onto the directions in which it may move
+    };
+    /// Ascending by node.
+    [[nodiscard]] const std::vector<Roller>& rollers() const { return rollers_; }
+
+    /// Moves every held node, only along the directions in which it is held, to where its supports want it. `shares`
+    /// (supports) of their motion; `rest` (n); x (3n). All in metres.
+    void place(std::span<const Support> supports, std::span<const Vec3> rest, std::span<const double> shares,
+               Eigen::VectorXd& x) const;
+
+    /// The force that each support exerts on the robot, (supports) N. `out_of_balance` (3n) are internal minus external
+    /// forces. What two supports share at a node is split by the smallest forces that do it.
+    [[nodiscard]] std::vector<Vec3> reactions(std::span<const Support> supports,
+                                              const Eigen::VectorXd& out_of_balance) const;
+
+private:
+    using Directions = Eigen::Matrix<double, Eigen::Dynamic, 3>;  ///< orthonormal rows
+    struct Shared {
+        int node = 0;
+        std::vector<int> supports;  ///< at least two
+        Directions directions;      ///< of all of them, one below the other
+    };
+    HeldNodes() = default;
+    [[nodiscard]] Status add_shared(std::span<const Support> supports, int node, const std::vector<int>& holders);
+    [[nodiscard]] Status check_shared(std::span<const Support> supports, const std::vector<int>& holders) const;
+
+    std::vector<Directions> directions_;   ///< (supports)
+    std::vector<std::vector<int>> alone_;  ///< (supports) nodes that no other support holds
+    std::vector<Shared> shared_;
+    std::vector<bool> fixed_;  ///< (n)
+    std::vector<Roller> rollers_;
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,306 @@
+#include "simulation/model/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/core/disjoint_sets.hpp"
+#include "geometry/mesh/order_in_space.hpp"
+#include "simulation/actuators/chamber_surface.hpp"
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+Status check_attachment(const Attachment& point, int nodes, const std::string& owner) {
+    if (point.nodes.size() != point.weights.size())
+        return input_error("{}: as many weights as nodes are needed", owner);
+    double sum = 0;
+    for (const double weight : point.weights) sum += weight;
+    for (const int node : point.nodes) {
+        if (node < 0 || node >= nodes) return input_error("{}: node {} does not exist", owner, node);
+    }
+    if (!point.nodes.empty() && !(std::fabs(sum - 1) < 1e-9)) return input_error("{}: weights do not sum to 1", owner);
+    if (!is_finite(point.fixed)) return input_error("{}: position is not finite", owner);
+    return {};
+}
+
+Status check_mesh(const Description& d) {
+    const mesh::TetMesh& mesh = d.mesh;
+    if (mesh.tet_count() == 0) return input_error("the mesh holds no tetrahedra");
+    if (mesh.region.size() != mesh.tet_count()) return input_error("the mesh needs one region per tetrahedron");
+    const int nodes = static_cast<int>(mesh.points.size());
+    for (const int node : mesh.nodes) {
+        if (node < 0 || node >= nodes) return input_error("the mesh names node {}, it has {}", node, nodes);
+    }
+    for (const Vec3& p : mesh.points) {
+        if (!is_finite(p)) return input_error("the mesh holds a point that is not finite");
+    }
+    for (const int region : mesh.region) {
+        if (region < 0 || region >= static_cast<int>(d.material_of_region.size())) {
+            return input_error("region {} has no material", region);
+        }
+    }
+    for (const int m : d.material_of_region) {
+        if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
+    }
+    if (!d.material_of_tet.empty() && d.material_of_tet.size() != mesh.tet_count())
+        return input_error("there are materials of {} tets, the mesh has {}", d.material_of_tet.size(),
+                           mesh.tet_count());
+    for (const int m : d.material_of_tet) {
+        if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
+    }
+    return {};
+}
+
+Status check_cable(const Cable& cable, int nodes) {
+    const std::string owner = "cable \"" + cable.name + "\"";
+    if (cable.points.size() < 2) return input_error("{}: at least two points are needed", owner);
+    for (const Attachment& point : cable.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    const double value = cable.target.value;
+    const bool ratio = cable.target.kind == CableTarget::Kind::length_ratio;
+    if (!std::isfinite(value) || value < 0 || (ratio && value == 0)) {
+        return input_error("{}: the target {} is not possible", owner, value);
+    }
+    return {};
+}
+
+Status check_spring(const Spring& spring, int nodes) {
+    const std::string owner = "spring \"" + spring.name + "\"";
+    if (spring.points.size() < 2) return input_error("{}: at least two points are needed", owner);
+    for (const Attachment& point : spring.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    if (!(spring.stiffness_N_m > 0) || !std::isfinite(spring.stiffness_N_m))
+        return input_error("{}: its stiffness must be above zero", owner);
+    if (spring.free_length_m && !(*spring.free_length_m >= 0 && std::isfinite(*spring.free_length_m)))
+        return input_error("{}: its free length must not be negative", owner);
+    return {};
+}
+
+/// The faces name points that exist, and those of a chamber close.
+Status check_wall(const Wall& wall, bool closed, int nodes, const std::string& owner) {
+    if (wall.faces.empty()) return input_error("{}: has no wall", owner);
+    for (const Attachment& point : wall.points) {
+        if (Status status = check_attachment(point, nodes, owner); !status) return status;
+    }
+    for (const WallFace& face : wall.faces) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            const bool none = face[i] == -1 && face[3] == -1 && i >= 3;
+            if (!none && (face[i] < 0 || face[i] >= static_cast<int>(wall.points.size())))
+                return input_error("{}: a face names point {} of its wall, which does not exist", owner, face[i]);
+        }
+    }
+    if (closed && !is_closed(wall)) return input_error("{}: its wall is not closed", owner);
+    return {};
+}
+
+Status check_chamber(const Chamber& chamber, int nodes) {
+    const std::string owner = "chamber \"" + chamber.name + "\"";
+    if (Status status = check_wall(chamber.wall, true, nodes, owner); !status) return status;
+    const double value = chamber.target.value;
+    using Kind = ChamberTarget::Kind;
+    const bool ratio = chamber.target.kind == Kind::volume_ratio || chamber.target.kind == Kind::gas_ratio;
+    if (!std::isfinite(value) || (ratio && value <= 0))
+        return input_error("{}: the target {} is not possible", owner, value);
+    return {};
+}
+
+/// Three nodes that span a plane, or the plate could turn about a line without noticing.
+Status check_plates(const Description& d) {
+    for (const RigidPlate& plate : d.plates) {
+        for (const int node : plate.nodes) {
+            if (node < 0 || node >= static_cast<int>(d.mesh.points.size()))
+                return input_error("plate \"{}\": node {} does not exist", plate.name, node);
+        }
+        double area = 0;
+        double reach = 0;
+        for (std::size_t k = 2; k < plate.nodes.size(); ++k) {
+            const Vec3 a = d.mesh.points[plate.nodes[1]] - d.mesh.points[plate.nodes[0]];
+            const Vec3 b = d.mesh.points[plate.nodes[k]] - d.mesh.points[plate.nodes[0]];
+            area = std::max(area, norm(cross(a, b)));
+            reach = std::max({reach, norm(a), norm(b)});
+        }
+        if (!(area > 1e-6 * reach * reach))
+            return input_error("plate \"{}\": needs at least three nodes that are not on one line", plate.name);
+    }
+    return {};
+}
+
+Status check_growths(const Description& d) {
+    const auto cables = static_cast<int>(d.cables.size());
+    const auto actuators = cables + static_cast<int>(d.chambers.size());
+    for (const Growth& growth : d.growths) {
+        if (growth.material < 0 || growth.material >= static_cast<int>(d.materials.size()))
+            return input_error("a growth names material {} of {}", growth.material, d.materials.size());
+        if (growth.actuator < 0 || growth.actuator >= actuators)
+            return input_error("a growth names actuator {} of {}", growth.actuator, actuators);
+        if (!(growth.weight_Pa > 0) || !std::isfinite(growth.weight_Pa))
+            return input_error("a growth needs a weight above zero");
+        const auto a = static_cast<std::size_t>(growth.actuator);
+        if (growth.actuator >= cables) {
+            const auto kind = d.chambers[a - d.cables.size()].target.kind;
+            if (kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
+                return input_error("chamber \"{}\": elements know volumes only", d.chambers[a - d.cables.size()].name);
+            continue;
+        }
+        if (d.cables[a].target.kind == CableTarget::Kind::tension_N || d.cables[a].friction > 0)
+            return input_error("cable \"{}\": gap elements know neither tension nor friction", d.cables[a].name);
+        if (!(growth.length_m > 0) || !(std::fabs(norm(growth.direction) - 1) < 1e-6))
+            return input_error("cable \"{}\": a gap needs a direction and a length", d.cables[a].name);
+    }
+    return {};
+}
+
+Status check_loads(const Description& d, int nodes) {
+    for (const Load& load : d.loads) {
+        const Attachment spread{load.nodes, load.shares, {}};
+        if (load.nodes.empty()) return input_error("load \"{}\": acts on nothing", load.name);
+        if (Status status = check_attachment(spread, nodes, "load \"" + load.name + "\""); !status) return status;
+        if (!is_finite(load.force_N)) return input_error("load \"{}\": the force is not finite", load.name);
+    }
+    for (const PressureLoad& load : d.pressures) {
+        const std::string owner = "load \"" + load.name + "\"";
+        if (Status status = check_wall(load.wall, false, nodes, owner); !status) return status;
+        if (!std::isfinite(load.pressure_Pa)) return input_error("{}: the pressure is not finite", owner);
+    }
+    for (const Marker& marker : d.markers) {
+        if (Status status = check_attachment(marker.point, nodes, "marker \"" + marker.name + "\""); !status)
+            return status;
+    }
+    return is_finite(d.gravity_m_s2) ? Status{} : input_error("gravity is not finite");
+}
+
+/// Numbers the free nodes, neighbours in space one after the other; nodes that no tet uses are held too, they have no
+/// stiffness.
+void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<int>& free_index, int& count) {
+    const int nodes = static_cast<int>(d.mesh.points.size());
+    std::vector<bool> used(nodes, false);
+    for (const int node : d.mesh.nodes) used[node] = true;
+    std::vector<int> free;
+    for (int node = 0; node < nodes; ++node) {
+        if (used[node] && !held.is_fixed(node)) free.push_back(node);
+    }
+    mesh::order_in_space(free, d.mesh.points, mesh::layer_of(d.mesh));
+    count = static_cast<int>(free.size());
+    free_index.assign(nodes, -1);
+    for (int k = 0; k < count; ++k) free_index[free[k]] = k;
+}
+
+/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium.
+Status check_held(const Description& d) {
+    const auto& mesh = d.mesh;
+    DisjointSets pieces(mesh.points.size());
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        for (const int node : mesh.tet(t)) pieces.join(node, mesh.tet(t)[0]);
+    }
+    std::vector<bool> held(mesh.points.size(), false);
+    for (const Support& support : d.supports) {
+        for (const int node : support.nodes) held[pieces.find(node)] = true;
+    }
+    std::size_t loose = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) loose += held[pieces.find(mesh.tet(t)[0])] ? 0 : 1;
+    if (loose == 0) return {};
+    if (loose == mesh.tet_count()) return input_error("nothing is fixed; add a [[fixed]] that holds the robot");
+    return input_error("a piece of {} of the {} tetrahedra is connected to nothing that is fixed", loose,
+                       mesh.tet_count());
+}
+
+std::vector<double> numbers_of(const std::vector<Vec3>& points) {
+    std::vector<double> numbers;
+    numbers.reserve(3 * points.size());
+    for (const Vec3& p : points) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    return numbers;
+}
+
+/// Of the tets that carry material: meshed space may be passed through.
+contact::Surface surface_of_bodies(const Description& d) {
+    mesh::TetMesh bodies;
+    bodies.order = d.mesh.order;
+    bodies.points = d.mesh.points;
+    for (std::size_t t = 0; t < d.mesh.tet_count(); ++t) {
+        const int material = d.material_of_tet.empty()
+                                 ? d.material_of_region[static_cast<std::size_t>(d.mesh.region[t])]
+                                 : d.material_of_tet[t];
+        const auto fills = [&](const Growth& growth) { return growth.material == material; };
+        if (std::any_of(d.growths.begin(), d.growths.end(), fills)) continue;
+        const std::span<const int> tet = d.mesh.tet(t);
+        bodies.nodes.insert(bodies.nodes.end(), tet.begin(), tet.end());
+    }
+    return contact::robot_surface(bodies);
+}
+
+/// Nothing acts with it: only crossing() is asked.
+Result<contact::Contact> surfaces_without_contact(const Description& d) {
+    return contact::Contact::create(surface_of_bodies(d), {}, {.distance_m = 1, .stiffness_Pa = 1},
+                                    numbers_of(d.mesh.points));
+}
+
+Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, bool self) {
+    const std::vector<double> rest = numbers_of(d.mesh.points);
+    std::vector<contact::Obstacle> obstacles;
+    for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
+    contact::Settings settings = d.contact->settings;
+    settings.self = self;
+    auto contact = contact::Contact::create(d.contact->surface, std::move(obstacles), settings, rest);
+    if (!contact) return tl::unexpected(contact.error());
+    return std::make_unique<contact::Contact>(std::move(*contact));
+}
+
+}  // namespace
+
+Model::Model() = default;
+Model::Model(Model&&) noexcept = default;
+Model& Model::operator=(Model&&) noexcept = default;
+Model::~Model() = default;
+
+Result<Model> Model::create(Description description) {
+    Model model;
+    const int nodes = static_cast<int>(description.mesh.points.size());
+    Status status = check_mesh(description);
+    if (status) status = check_loads(description, nodes);
+    if (status) status = check_growths(description);
+    if (status) status = check_plates(description);
+    for (std::size_t c = 0; status && c < description.cables.size(); ++c)
+        status = check_cable(description.cables[c], nodes);
+    for (std::size_t c = 0; status && c < description.chambers.size(); ++c)
+        status = check_chamber(description.chambers[c], nodes);
+    for (std::size_t s = 0; status && s < description.springs.size(); ++s)
+        status = check_spring(description.springs[s], nodes);
+    if (!status) return tl::unexpected(status.error());
+    Result<HeldNodes> held = HeldNodes::create(description.supports, nodes);
+    if (!held) return tl::unexpected(held.error());
+    if (status = check_held(description); !status) return tl::unexpected(status.error());
+    number_free_nodes(description, *held, model.free_index_, model.free_count_);
+    model.held_ = std::make_unique<HeldNodes>(std::move(*held));
+    model.description_ = std::move(description);
+    Result<Elements> elements = Elements::create(model.description_);
+    if (!elements) return tl::unexpected(elements.error());
+    model.elements_ = std::make_unique<Elements>(std::move(*elements));
+    if (status = model.make_contact(); !status) return tl::unexpected(status.error());
+    return model;
+}
+
+Status Model::make_contact() {
+    const auto& rules = description_.contact;
+    const bool waits = rules && rules->settings.self && rules->self_when_met;
+    if (rules && (!waits || !rules->obstacles.empty())) {
+        auto contact = create_contact(description_, rules->settings.self && !waits);
+        if (!contact) return tl::unexpected(contact.error());
+        contact_ = std::move(*contact);
+    }
+    if (waits) {
+        auto contact = create_contact(description_, true);
+        if (!contact) return tl::unexpected(contact.error());
+        // What crosses at rest can never be told from what meets.
+        if (!(*contact)->crossing_at_rest()) met_ = std::move(*contact);
+    }
+    if (contact_ || met_) return {};
+    Result<contact::Contact> surfaces = surfaces_without_contact(description_);
+    if (!surfaces) return tl::unexpected(surfaces.error());
+    surfaces_ = std::make_unique<contact::Contact>(std::move(*surfaces));
+    return {};
+}
+
+}  // namespace pliant::sim

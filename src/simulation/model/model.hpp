@@ -1,0 +1,49 @@
+// A robot as the solver sees it: built once from a description, validated, never changed.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "simulation/model/held_nodes.hpp"
+#include "simulation/parts/description.hpp"
+
+namespace pliant::sim {
+
+class Elements;
+
+class Model {
+public:
+    /// Checks indices, weights, volumes, supports (HeldNodes), and that something holds the robot.
+    [[nodiscard]] static Result<Model> create(Description description);
+    Model(Model&&) noexcept;
+    Model& operator=(Model&&) noexcept;
+    ~Model();
+
+    [[nodiscard]] const Description& description() const { return description_; }
+    [[nodiscard]] const mesh::TetMesh& mesh() const { return description_.mesh; }
+    [[nodiscard]] const Elements& elements() const { return *elements_; }
+    /// What touches, null if nothing can; `met`: after the robot has met itself, where contact waits for that.
+    [[nodiscard]] const contact::Contact* contact(bool met) const { return met && met_ ? met_.get() : contact_.get(); }
+    /// The surfaces of the bodies, to see whether they have passed through each other; those of contact() where there
+    /// is one.
+    [[nodiscard]] const contact::Contact& surfaces() const { return surfaces_ ? *surfaces_ : *contact(true); }
+    [[nodiscard]] int node_count() const { return static_cast<int>(description_.mesh.points.size()); }
+    [[nodiscard]] int free_count() const { return free_count_; }
+    /// (n), index among the free nodes, or -1 for nodes that supports hold in all directions. Rollers count as free.
+    [[nodiscard]] const std::vector<int>& free_index() const { return free_index_; }
+    [[nodiscard]] const HeldNodes& held() const { return *held_; }
+
+private:
+    Model();
+    [[nodiscard]] Status make_contact();
+    Description description_;
+    std::unique_ptr<Elements> elements_;
+    std::unique_ptr<contact::Contact> contact_;
+    std::unique_ptr<contact::Contact> met_;       ///< where contact of the robot with itself waits until it is needed
+    std::unique_ptr<contact::Contact> surfaces_;  ///< where there is no contact
+    std::unique_ptr<HeldNodes> held_;
+    std::vector<int> free_index_;
+    int free_count_ = 0;
+};
+
+}  // namespace pliant::sim

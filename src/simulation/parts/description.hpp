@@ -1,0 +1,174 @@
+// A robot as it is meshed: mesh, laws, supports, loads, cables, chambers, markers; what a Model is made from. Time runs
+// from 0, at rest, to the end of the program.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "base/core/vec3.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "robot/description/law.hpp"
+#include "simulation/contact/contact.hpp"
+#include "simulation/parts/robot_names.hpp"
+
+namespace pliant::sim {
+
+/// A point that rides on the mesh: sum of weights[i] * x[nodes[i]]. Without nodes it is fixed in space at `fixed`.
+struct Attachment {
+    std::vector<int> nodes;
+    std::vector<double> weights;  ///< sum 1
+    Vec3 fixed;                   ///< metres
+};
+
+struct Material {
+    std::string name;
+    material::Law law;
+    double density_kg_m3 = 0;
+};
+
+/// A rotation, right-handed about an axis through a point.
+struct Turn {
+    double angle_rad = 0;
+    Vec3 axis{1, 0, 0};  ///< of any length but zero
+    Vec3 center_m;
+};
+
+/// Nodes whose motion is prescribed: at each instant they are turned from rest by share * angle and then shifted by
+/// share * move. With directions they are held along those alone and slide across them: rollers, planes of symmetry.
+struct Support {
+    std::string name;
+    std::vector<int> nodes;
+    Vec3 move_m;
+    Curve share = ramp(0, 1);
+    Turn turn{};
+    std::vector<Vec3> directions{};  ///< of any length but zero; none: held in all
+    [[nodiscard]] bool moves() const { return turn.angle_rad != 0 || !(move_m == Vec3{}); }
+    /// Where a node is that lay at `rest`, both in metres.
+    [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
+};
+
+/// A force that keeps its direction: share * force.
+struct Load {
+    std::string name;
+    std::vector<int> nodes;
+    std::vector<double> shares;  ///< of the total force, sum 1
+    Vec3 force_N;
+    Curve share = ramp(0, 1);
+};
+
+/// A face of a wall: 3 corners and, where it is curved, the points between 0-1, 1-2, 2-0 (else -1); indices into
+/// Wall::points. Seen counter-clockwise from the solid side: the normal points out of the air.
+using WallFace = std::array<int, 6>;
+
+/// A surface that air presses on; its points ride on the mesh.
+struct Wall {
+    std::vector<Attachment> points;
+    std::vector<WallFace> faces;
+};
+
+/// A pressure that follows the surface as it deforms: share * pressure, towards the solid.
+struct PressureLoad {
+    std::string name;
+    Wall wall;
+    double pressure_Pa = 0;
+    Curve share = ramp(0, 1);
+};
+
+/// A cable through guide points; its length is that of the polyline. It slides without friction or, with a coefficient
+/// above zero, as a rope over bollards: its tension, given at the pulled end, drops at every turn.
+struct Cable {
+    std::string name;
+    std::vector<Attachment> points;  ///< at least two
+    CableTarget target;
+    double friction = 0;
+    bool pulled_at_first = true;  ///< else at the last point
+};
+
+/// An elastic spring along a path of points: its force is stiffness * (length - free length), of either sign unless it
+/// only pulls, as a rubber band does.
+struct Spring {
+    std::string name;
+    std::vector<Attachment> points;  ///< at least two
+    double stiffness_N_m = 0;
+    std::optional<double> free_length_m = std::nullopt;  ///< without force; none: the length at rest
+    bool only_pulls = false;
+};
+
+/// Air inside a closed wall. Its pressure (above ambient, of either sign) is the multiplier of its volume.
+struct Chamber {
+    std::string name;
+    Wall wall;
+    ChamberTarget target;
+};
+
+/// The thesis' actuators (T3.5, T3.6): a cable or chamber that is driven by its length or volume acts through the
+/// elements of one material, meshed empty space. They are scaled along `direction` or, where that is zero, in volume by
+/// as much as it takes for the actuator's measure to be what its target wants (actuated_space.hpp). Where several
+/// cables pass one gap, each has the tets that are nearest to it.
+struct Growth {
+    int material = 0;      ///< of air: air_law(), of a gap: gap_law()
+    Vec3 direction;        ///< of a gap: along the cable, of length 1
+    int actuator = 0;      ///< first the cables, then the chambers
+    double weight_Pa = 0;  ///< above 0: how hard the elements are held to their target
+    double length_m = 0;   ///< of a gap: of the cable in it at rest, above 0
+    Vec3 center_m;         ///< of a gap: a point of that cable
+};
+
+/// Nodes that something rigid is glued to: they keep their shape and move as one.
+struct RigidPlate {
+    std::string name;
+    std::vector<int> nodes;  ///< at least three, not on one line
+};
+
+/// A rigid thing that the robot may touch; it is at rest + share * move.
+struct Obstacle {
+    contact::Obstacle body;
+    Vec3 move_m;
+    Curve share = ramp(0, 1);
+};
+
+/// What can touch what.
+struct ContactRules {
+    contact::Surface surface;    ///< of the robot's bodies
+    contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
+    std::vector<Obstacle> obstacles;
+    /// With settings.self: the robot touches itself only from the first step on in which its surfaces would pass
+    /// through each other. Until then its contact with itself costs next to nothing and exerts no force.
+    bool self_when_met = false;
+};
+
+/// A point of the material whose position is reported.
+struct Marker {
+    std::string name;
+    Attachment point;
+};
+
+struct Description {
+    mesh::TetMesh mesh;                   ///< metres, positive volumes
+    std::vector<Material> materials;      ///< at least one
+    std::vector<int> material_of_region;  ///< (regions)
+    std::vector<Support> supports;
+    std::vector<Load> loads;
+    std::vector<PressureLoad> pressures;
+    std::vector<Cable> cables;
+    std::vector<Chamber> chambers;
+    std::vector<Spring> springs{};
+    std::vector<Growth> growths;
+    std::vector<RigidPlate> plates;
+    std::optional<ContactRules> contact = std::nullopt;
+    std::vector<Marker> markers;
+    Vec3 gravity_m_s2;
+    Curve gravity_share = ramp(0, 1);
+    double ambient_pressure_Pa = 101325;
+    std::vector<int> material_of_tet{};  ///< (tets) where bodies are graded, in place of their region's; else empty
+    std::vector<std::string> notes{};    ///< what people should know of it; a line each
+};
+
+/// Position of an attachment for node positions `x` (3n).
+[[nodiscard]] Vec3 position(const Attachment& point, std::span<const double> x);
+
+}  // namespace pliant::sim

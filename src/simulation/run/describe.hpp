@@ -1,0 +1,15 @@
+// A state of equilibrium as a step of a trajectory: what simulate() and Live tell of it is the same.
+#pragma once
+
+#include "simulation/model/model.hpp"
+#include "simulation/run/trajectory.hpp"
+#include "simulation/solver/equilibrium.hpp"
+
+namespace pliant::sim {
+
+/// Fills in residual, min_J, energy, actuators, supports, contact, markers and positions; `evaluation` must be that of
+/// `state` under `controls`. What belongs to the way there (index, time, iterations, wall time) is left as it is.
+void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
+              const Evaluation& evaluation, Step& step);
+
+}  // namespace pliant::sim

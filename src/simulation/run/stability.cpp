@@ -1,0 +1,237 @@
+#include "simulation/run/stability.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/core/parallel.hpp"
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+constexpr int looks_with_one_metric = 8;
+constexpr int first_steps = 12;     // of the first look, which knows nothing
+constexpr int usual_steps = 2;      // of those after it
+constexpr double soft = 0.3;        // a ratio below this is looked at more closely
+constexpr double settled = 0.98;    // a step that leaves more than this of the ratio is the last
+constexpr double unstable = -2e-3;  // a ratio below this is not rounding, nor what is left of the residual
+constexpr int halvings = 4;
+constexpr double most_of_it = 0.6;  // of a motion; of one that grows as a root a quarter is left after as many
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+std::span<double> view(Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// Numbers between -1 and 1 without order, always the same: no mode of a robot is at right angles to them.
+Eigen::VectorXd scattered(Eigen::Index size) {
+    Eigen::VectorXd v(size);
+    std::uint64_t seed = 0x9E3779B97F4A7C15ULL;
+    for (double& value : v) {
+        seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+        value = static_cast<double>(static_cast<std::int64_t>(seed)) * 0x1p-63;
+    }
+    return v;
+}
+
+double largest_motion(const Eigen::VectorXd& v) {
+    double most = 0;
+    for (Eigen::Index i = 0; i + 2 < v.size(); i += 3) most = std::max(most, v.segment<3>(i).norm());
+    return most;
+}
+
+}  // namespace
+
+bool Stability::can_judge() const {
+    return system_->conservative() && system_->model().description().growths.empty() &&
+           system_->model().free_count() > 0;
+}
+
+std::optional<Eigen::VectorXd> Stability::falling_motion(const State& state, const Controls& controls) {
+    if (!can_judge() || !system_->contact_cliques(state, controls).empty()) return {};
+    assemble(state, controls, false, stiffness_);
+    const bool first = inverse_ == nullptr;
+    if (first && !take_metric(state, controls)) return {};
+    collect_constraints(state, controls);
+    begin();
+    const int least = first ? first_steps : usual_steps;
+    for (int step = 0; ratio_ >= unstable; ++step) {
+        const double before = ratio_;
+        if (!improve()) break;
+        if (step + 1 >= least && (ratio_ > soft || ratio_ > settled * before || step >= 2 * first_steps)) break;
+    }
+    // Near the end of stability rounding may let an indefinite tangent pass for a metric.
+    if (++age_ >= looks_with_one_metric && ratio_ > soft && take_metric(state, controls)) age_ = 0;
+    const double scale = largest_motion(v_);
+    if (ratio_ >= unstable || !(scale > 0)) return {};
+    return v_ / scale;
+}
+
+void Stability::assemble(const State& state, const Controls& controls, bool project,
+                         AlignedArray<double>& values) const {
+    values.resize(layout_->pattern.entries());
+    parallel_clear(values.span());
+    system_->add_tangent(state, controls, *layout_, values.span(), project);
+}
+
+/// The tangent at hand where it is positive definite; else the one that is there or, as a beginning, its positive
+/// projection.
+bool Stability::take_metric(const State& state, const Controls& controls) {
+    const Eigen::VectorXd positions = system_->free_positions(state.x);
+    auto inverse = two_levels_are_quicker(layout_->pattern, laplacian_->work())
+                       ? make_two_level_inverse(layout_->pattern)
+                       : make_direct_inverse(laplacian_->analysis(), false);
+    AlignedArray<double> values(stiffness_.size());
+    std::ranges::copy(stiffness_.span(), values.span().begin());
+    if (!inverse->set(values.span(), positions, TangentInverse::Effort::usual)) {
+        if (inverse_) return false;
+        assemble(state, controls, true, values);
+        if (!inverse->set(values.span(), positions, TangentInverse::Effort::all)) return false;
+    }
+    inverse_ = std::move(inverse);
+    metric_ = std::move(values);
+    return true;
+}
+
+void Stability::collect_constraints(const State& state, const Controls& controls) {
+    const auto& actuators = system_->actuators();
+    std::vector<Eigen::VectorXd> fixed, gas;
+    for (std::size_t a = 0; a < actuators.size(); ++a) {
+        const Drive& drive = controls.drives[a];
+        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        const bool slack = actuators[a].only_pulls() && !(multiplier > 0);
+        if (drive.kind == Drive::Kind::multiplier || slack) continue;
+        Eigen::VectorXd full = Eigen::VectorXd::Zero(state.x.size());
+        const bool sealed = drive.kind == Drive::Kind::gas;
+        const double scale = sealed ? 1 / std::sqrt(system_->gas_compliance(drive, multiplier)) : 1;
+        actuators[a].add_gradient(view(state.x), scale, view(full));
+        (sealed ? gas : fixed).push_back(system_->restrict_to_free(full));
+    }
+    const auto columns = [&](const std::vector<Eigen::VectorXd>& list) {
+        Eigen::MatrixXd matrix(3 * system_->model().free_count(), static_cast<Eigen::Index>(list.size()));
+        for (std::size_t k = 0; k < list.size(); ++k) matrix.col(static_cast<Eigen::Index>(k)) = list[k];
+        return matrix;
+    };
+    fixed_ = columns(fixed);
+    gas_ = columns(gas);
+    answers_ = fixed_;
+    if (answers_.cols() > 0) solve(answers_);
+}
+
+void Stability::solve(Eigen::MatrixXd& columns) {
+    // Whatever it gives leads somewhere: how far, the ratios say.
+    (void)inverse_->solve(columns, 0.05);
+}
+
+Eigen::VectorXd Stability::stiffness_times(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd result = gas_ * (gas_.transpose() * v);
+    linalg::add_product(layout_->pattern, stiffness_.span(), view(v), 1, view(result));
+    return result;
+}
+
+Eigen::VectorXd Stability::metric_times(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(v.size());
+    linalg::add_product(layout_->pattern, metric_.span(), view(v), 1, view(result));
+    return result;
+}
+
+/// Takes away what would change a length or a volume, so that the least is moved, as M measures it.
+void Stability::keep_constraints(Eigen::VectorXd& v) const {
+    if (fixed_.cols() == 0) return;
+    const Eigen::MatrixXd S = fixed_.transpose() * answers_;
+    for (int twice = 0; twice < 2; ++twice)
+        v -= answers_ * S.completeOrthogonalDecomposition().solve(fixed_.transpose() * v);
+}
+
+/// The softest motion of the last look, or a scattered one, made fit for this state.
+void Stability::begin() {
+    if (v_.size() == 0) {
+        Eigen::MatrixXd column = scattered(3 * system_->model().free_count());
+        solve(column);
+        v_ = column;
+    }
+    keep_constraints(v_);
+    p_ = {};
+    take(v_, metric_times(v_), stiffness_times(v_));
+}
+
+/// Takes a motion, at a length of 1 as M measures it.
+void Stability::take(const Eigen::VectorXd& v, const Eigen::VectorXd& Mv, const Eigen::VectorXd& Kv) {
+    const double square = v.dot(Mv);
+    const double length = square > 0 ? std::sqrt(square) : v.norm();
+    // M is not positive there: rounding let it pass. What K says still holds.
+    ratio_ = square > 0 ? v.dot(Kv) / square : std::copysign(1.0, v.dot(Kv));
+    Eigen::VectorXd motion = v / length;
+    Kv_ = Kv / length;
+    Mv_ = Mv / length;
+    v_ = std::move(motion);
+}
+
+/// The best of the plane, or the space, of the motion, its preconditioned residual and the last change. False: no
+/// better one.
+bool Stability::improve() {
+    Eigen::MatrixXd column = Kv_ - ratio_ * Mv_;
+    solve(column);
+    Eigen::VectorXd w = column;
+    keep_constraints(w);
+    w -= v_ * Mv_.dot(w);
+    Eigen::VectorXd Mw = metric_times(w);
+    const double square = w.dot(Mw);
+    Eigen::VectorXd Kw = stiffness_times(w);
+    if (square < 0 && w.dot(Kw) < 0) return take(w, Mw, Kw), true;
+    if (!(square > 1e-24) || !std::isfinite(square)) return false;
+    for (Eigen::VectorXd* x : {&w, &Mw, &Kw}) *x /= std::sqrt(square);
+
+    const Eigen::Index count = p_.size() > 0 ? 3 : 2;
+    const std::array<const Eigen::VectorXd*, 3> x = {&v_, &w, &p_}, Kx = {&Kv_, &Kw, &Kp_}, Mx = {&Mv_, &Mw, &Mp_};
+    Eigen::MatrixXd K(count, count), M(count, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j < count; ++j) {
+            K(i, j) = x[static_cast<std::size_t>(std::max(i, j))]->dot(*Kx[static_cast<std::size_t>(std::min(i, j))]);
+            M(i, j) = x[static_cast<std::size_t>(std::max(i, j))]->dot(*Mx[static_cast<std::size_t>(std::min(i, j))]);
+        }
+    }
+    // The last change may lie in the plane of the other two.
+    const Eigen::Index used =
+        count == 3 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues()[0] < 1e-8 ? 2 : count;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K.topLeftCorner(used, used),
+                                                                          M.topLeftCorner(used, used));
+    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] < ratio_)) return false;
+    const Eigen::VectorXd share = eigen.eigenvectors().col(0);
+    const auto change = [&](const auto& list) {
+        Eigen::VectorXd sum = share[1] * *list[1];
+        if (used == 3) sum += share[2] * *list[2];
+        return sum;
+    };
+    Eigen::VectorXd p = change(x), Kp = change(Kx), Mp = change(Mx);
+    v_ = share[0] * v_ + p;
+    Kv_ = share[0] * Kv_ + Kp;
+    Mv_ = share[0] * Mv_ + Mp;
+    ratio_ = eigen.eigenvalues()[0];
+    const double length = std::sqrt(std::max(p.dot(Mp), 1e-300));
+    p_ = p / length;
+    Kp_ = Kp / length;
+    Mp_ = Mp / length;
+    return true;
+}
+
+bool is_jump(Moment before, Moment after, const std::function<bool(double time, State& state)>& solve) {
+    const auto distance = [](const Moment& a, const Moment& b) { return (b.state.x - a.state.x).norm(); };
+    const double whole = distance(before, after);
+    for (int k = 0; k < halvings; ++k) {
+        Moment middle{0.5 * (before.time + after.time), before.state};
+        if (!solve(middle.time, middle.state)) return false;
+        (distance(before, middle) > distance(middle, after) ? after : before) = std::move(middle);
+        if (!(distance(before, after) > most_of_it * whole)) return false;
+    }
+    return true;
+}
+
+}  // namespace pliant::sim

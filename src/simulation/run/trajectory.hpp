@@ -1,0 +1,88 @@
+// What a simulation gives back, step by step. Everything in SI; positions of all nodes of the mesh.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/core/vec3.hpp"
+#include "simulation/solver/iteration_record.hpp"
+
+namespace pliant::sim {
+
+struct CableState {
+    std::string name;
+    double length_ratio = 1;  ///< current length over rest length
+    double length_m = 0;
+    double tension_N = 0;  ///< never negative: a cable only pulls
+};
+
+struct ChamberState {
+    std::string name;
+    double volume_ratio = 1;  ///< current volume over rest volume
+    double volume_m3 = 0;
+    double pressure_Pa = 0;
+};
+
+struct SpringState {
+    std::string name;
+    double length_m = 0;
+    double force_N = 0;  ///< positive where it pulls
+};
+
+struct SupportState {
+    std::string name;
+    Vec3 force_N;  ///< sum of the forces that the support exerts on the robot
+};
+
+struct MarkerState {
+    std::string name;
+    Vec3 position_m;
+};
+
+struct ContactState {
+    std::string name;  ///< of the obstacle
+    Vec3 force_N;      ///< pressure and friction of the obstacle on the robot
+};
+
+/// One step of the program at equilibrium. Step 0 is the rest state.
+struct Step {
+    int index = 0;
+    double time = 0;        ///< of the program; 0 at rest
+    bool converged = true;  ///< false: accepted on looser terms than the tolerance; `reason` says which
+    std::string reason;
+    int iterations = 0;
+    int substeps = 1;                   ///< more than one where the step had to be halved
+    double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
+    Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
+    double wall_s = 0;
+    double min_J = 1;  ///< smallest det F over all integration points
+    double energy_J =
+        0;  ///< elastic energy, with that of springs, and contact energy, minus the work of dead loads and gravity
+    double kinetic_energy_J = 0;  ///< of a motion in time
+    std::vector<CableState> cables;
+    std::vector<ChamberState> chambers;
+    std::vector<SpringState> springs;
+    std::vector<SupportState> supports;
+    std::vector<ContactState> contacts;  ///< (obstacles)
+    double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
+    double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of what is near enough to act
+    bool met = false;                ///< the robot has met itself, where contact with itself waits for that
+    std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
+    std::vector<MarkerState> markers;
+    std::vector<Vec3> positions;  ///< (n, 3)
+};
+
+struct Trajectory {
+    std::vector<Step> steps;            ///< rest state first; only those that were accepted
+    bool converged = true;              ///< the whole program was run
+    std::string message;                ///< where and why it stopped, if it did
+    std::vector<std::string> warnings;  ///< where the answer should not be trusted
+    std::string solver;                 ///< the solver that was asked for or chosen, by name; Step::solver has more
+    std::vector<IterationRecord> iterations;  ///< all, in order, also of steps that did not converge
+    double setup_s = 0;
+    double solve_s = 0;
+};
+
+}  // namespace pliant::sim

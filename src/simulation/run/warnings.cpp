@@ -1,0 +1,65 @@
+#include "simulation/run/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant::sim {
+namespace {
+
+std::string near(const Vec3& place_m) {
+    return fmt::format("near ({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * place_m.x, 1e3 * place_m.y, 1e3 * place_m.z);
+}
+
+std::string crossing_text(const Vec3& place_m) {
+    return fmt::format(
+        "the robot passes through itself {}, and its shape and forces are wrong: self-contact is off; [contact] with "
+        "self = true keeps surfaces apart",
+        near(place_m));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const Step& step) {
+    std::vector<std::string> warnings;
+    if (step.crossing_m) warnings.push_back(crossing_text(*step.crossing_m));
+    if (!step.converged) warnings.push_back("accepted on looser terms: " + step.reason);
+    return warnings;
+}
+
+std::vector<std::string> warnings_at_rest(const Model& model) {
+    std::vector<std::string> warnings = model.description().notes;
+    if (const auto crossing = model.surfaces().crossing_at_rest())
+        warnings.push_back(fmt::format(
+            "the robot passes through itself already at rest, {}: {}", near(crossing->point_m),
+            model.contact(true) != nullptr ? "what crosses there does not touch, and what is next to it may get stuck"
+                                           : "self-contact is off"));
+    return warnings;
+}
+
+std::string closed_gap_text(const std::string& cable, int segment) {
+    return fmt::format(
+        "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without [contact] its flanks "
+        "pass through each other",
+        segment + 1, segment + 2, cable);
+}
+
+void add_warnings(Trajectory& trajectory) {
+    const auto& steps = trajectory.steps;
+    const auto crossed = std::find_if(steps.begin(), steps.end(), [](const Step& s) { return bool(s.crossing_m); });
+    if (crossed != steps.end())
+        trajectory.warnings.push_back(
+            fmt::format("from step {} on, {}", crossed->index, crossing_text(*crossed->crossing_m)));
+    const auto loose = [](const Step& s) { return !s.converged; };
+    const auto first = std::find_if(steps.begin(), steps.end(), loose);
+    if (first == steps.end()) return;
+    const auto worst = std::max_element(first, steps.end(), [&](const Step& a, const Step& b) {
+        return (loose(a) ? a.residual : 0) < (loose(b) ? b.residual : 0);
+    });
+    trajectory.warnings.push_back(fmt::format(
+        "{} of {} steps, the first of them step {}, were accepted on looser terms than the tolerance. The "
+        "worst is step {}: {}",
+        std::count_if(first, steps.end(), loose), steps.size() - 1, first->index, worst->index, worst->reason));
+}
+
+}  // namespace pliant::sim

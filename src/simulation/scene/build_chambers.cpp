@@ -1,0 +1,121 @@
+#include "simulation/scene/build_chambers.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "geometry/files/surface_file.hpp"
+#include "geometry/repair/cavity.hpp"
+#include "geometry/repair/surface_check.hpp"
+#include "simulation/scene/build_places.hpp"
+
+namespace pliant::robot {
+namespace {
+
+/// The wall of a surface file need not follow the mesh exactly: so far from the bodies, as a share of the robot's size.
+constexpr double wall_reach = 0.03;
+
+void check_mouth(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
+    std::vector<bool> held(draft.description.mesh.points.size(), false);
+    for (const sim::Support& support : draft.description.supports) {
+        for (const int node : support.nodes)
+            held[static_cast<std::size_t>(node)] = !support.moves() && support.directions.empty();
+    }
+    std::size_t loose = 0;
+    for (const sim::WallFace& face : wall.faces) {
+        bool open = false;
+        bool fast = true;
+        for (const int point : face) {
+            if (point < 0) continue;
+            const auto& nodes = wall.points[static_cast<std::size_t>(point)].nodes;
+            open = open || nodes.empty();
+            fast = fast && (nodes.empty() || held[static_cast<std::size_t>(nodes[0])]);
+        }
+        loose += open && !fast ? 1 : 0;
+    }
+    if (loose > 0)
+        draft.problem(
+            spec.line, "chamber", spec.name,
+            fmt::format("{} faces of its wall belong to no body: the chamber is open; close it with a body, or "
+                        "let its mouth lie in a [[fixed]] without move or rotate",
+                        loose));
+}
+
+/// The boundary of a meshed chamber. A mouth that no body closes must lie in a support that stays where it is.
+sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
+    const int region = static_cast<int>(draft.region_of(Region::Use::chamber, spec.name));
+    const std::vector<mesh::Face> faces = mesh::region_faces(draft.whole, region);
+    sim::Wall wall = sim::wall_of_faces(draft.whole, faces, draft.node_of_whole);
+    if (faces.empty()) {
+        draft.problem(spec.line, "chamber", spec.name, "is empty");
+        return {};
+    }
+    check_mouth(draft, spec, wall);
+    return wall;
+}
+
+/// A cavity of the bodies.
+sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const CavityAt& cavity) {
+    const Vec3 point = draft.robot.unit_m * cavity.point;
+    Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(draft.bodies, point);
+    if (faces) return pressed_wall(draft, std::move(*faces));
+    draft.problem(spec.line, "chamber", spec.name,
+                  fmt::format("inside: the point {} {}", draft.show(point), faces.error().message));
+    return {};
+}
+
+/// A closed surface whose points ride on the tets that hold them.
+sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
+                       const SurfaceFile& given) {
+    Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
+    if (!file) {
+        draft.problem(spec.line, "chamber", spec.name, file.error().message);
+        return {};
+    }
+    const mesh::TriMesh surface =
+        mesh::scaled(mesh::placed(std::move(file->mesh), given.placement), draft.robot.unit_m);
+    if (Status closed = mesh::check_closed(surface); !closed) {
+        draft.problem(spec.line, "chamber", spec.name, closed.error().message);
+        return {};
+    }
+    sim::Wall wall;
+    for (const Vec3& p : surface.points) {
+        Result<sim::Attachment> attachment = attacher.carried_by_tet(p, wall_reach * draft.box.diagonal());
+        if (!attachment) {
+            draft.problem(spec.line, "chamber", spec.name,
+                          fmt::format("its wall at {} is far from every body; {}", draft.show(p), draft.show_bounds()));
+            return {};
+        }
+        wall.points.push_back(std::move(*attachment));
+    }
+    const bool outwards = mesh::signed_volume(surface) > 0;
+    for (const auto& t : surface.triangles)
+        wall.faces.push_back({t[0], outwards ? t[1] : t[2], outwards ? t[2] : t[1], -1, -1, -1});
+    return wall;
+}
+
+void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
+    sim::Chamber chamber{spec.name, {}, spec.target};
+    if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
+        chamber.wall = wall_of_file(draft, attacher, spec, *file);
+    else if (const auto* cavity = std::get_if<CavityAt>(&spec.air))
+        chamber.wall = wall_of_cavity(draft, spec, *cavity);
+    else
+        chamber.wall = wall_of_region(draft, spec);
+    if (chamber.wall.faces.empty()) return;
+    if (spec.elements) {
+        const std::size_t region = draft.region_of(Region::Use::chamber, spec.name);
+        const auto actuator = static_cast<int>(draft.description.cables.size() + draft.description.chambers.size());
+        draft.description.growths.push_back(
+            {draft.material_of(region), {}, actuator, spec.weight * softest_Pa(draft.robot), 0, {}});
+    }
+    draft.description.chambers.push_back(std::move(chamber));
+}
+
+}  // namespace
+
+void add_chambers(ModelDraft& draft, const sim::Attacher& attacher) {
+    for (const ChamberSpec& chamber : draft.robot.chambers) add_chamber(draft, attacher, chamber);
+}
+
+}  // namespace pliant::robot

@@ -1,0 +1,17 @@
+// What may touch what, from the robot file to the solver.
+#pragma once
+
+#include <optional>
+
+#include "geometry/mesh/tet_mesh.hpp"
+#include "robot/description/robot.hpp"
+#include "simulation/model/model.hpp"
+
+namespace pliant::robot {
+
+/// `bodies`: the tets that carry material, metres. Where the file has neither [contact] nor an obstacle, the robot
+/// touches itself from the moment on in which it would pass through itself. Nothing where contact with itself is
+/// switched off and there is no obstacle. Errors name the obstacle and its line.
+[[nodiscard]] Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies);
+
+}  // namespace pliant::robot

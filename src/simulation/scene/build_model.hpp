@@ -1,0 +1,15 @@
+// From a robot file and its mesh to a model.
+#pragma once
+
+#include "base/core/error.hpp"
+#include "geometry/mesh/tet_mesh.hpp"
+#include "robot/description/robot.hpp"
+#include "simulation/model/model.hpp"
+
+namespace pliant::robot {
+
+/// Ties supports, plates, loads, cables, chambers and markers to the mesh of build_mesh(). An error holds one line per
+/// problem, each with file and line.
+[[nodiscard]] Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh);
+
+}  // namespace pliant::robot

@@ -1,0 +1,205 @@
+#include "simulation/scene/build_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/files/surface_file.hpp"
+#include "simulation/actuators/loads.hpp"
+
+namespace pliant::robot {
+namespace {
+
+/// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return norm(ap);
+    const Vec3 bp = p - b;
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return norm(bp);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return norm(ap - (d1 / (d1 - d3)) * ab);
+    const Vec3 cp = p - c;
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return norm(cp);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return norm(ap - (d2 / (d2 - d6)) * ac);
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return norm(bp - ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b));
+    const double scale = 1 / (va + vb + vc);
+    return norm(ap - (vb * scale) * ab - (vc * scale) * ac);
+}
+
+std::vector<int> select_on_surface(ModelDraft& draft, const SurfaceSelector& selector, std::string_view kind,
+                                   const std::string& name, int line) {
+    const Result<mesh::SurfaceFile> file = mesh::read_surface(selector.path);
+    std::vector<int> nodes;
+    if (!file) {
+        draft.problem(line, kind, name, file.error().message);
+        return nodes;
+    }
+    const mesh::TriMesh surface = mesh::scaled(file->mesh, draft.robot.unit_m);
+    const Box3 bounds = mesh::bounds(surface);
+    for (std::size_t n = 0; n < draft.description.mesh.points.size(); ++n) {
+        const Vec3& p = draft.description.mesh.points[n];
+        if (!bounds.contains(p, draft.tolerance)) continue;
+        const bool near = std::any_of(surface.triangles.begin(), surface.triangles.end(), [&](const auto& t) {
+            return distance_to_triangle(p, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]) <
+                   draft.tolerance;
+        });
+        if (near) nodes.push_back(static_cast<int>(n));
+    }
+    return nodes;
+}
+
+/// The nodes that a selector catches; `kind`, `name` and `line` are for messages.
+std::vector<int> select(ModelDraft& draft, const Selector& selector, std::string_view kind, const std::string& name,
+                        int line) {
+    const auto& points = draft.description.mesh.points;
+    std::vector<int> nodes;
+    const auto collect = [&](const auto& inside) {
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            if (inside(points[n])) nodes.push_back(static_cast<int>(n));
+        }
+    };
+    if (const auto* box = std::get_if<BoxSelector>(&selector)) {
+        collect([&, b = draft.box_of(*box)](const Vec3& p) { return b.contains(p, draft.box_margin); });
+    } else if (const auto* plane = std::get_if<PlaneSelector>(&selector)) {
+        const Vec3 normal = plane->normal / norm(plane->normal);
+        collect([&](const Vec3& p) {
+            return std::fabs(dot(normal, p - draft.robot.unit_m * plane->point)) < draft.tolerance;
+        });
+    } else if (const auto* sphere = std::get_if<SphereSelector>(&selector)) {
+        collect([&](const Vec3& p) {
+            return norm(p - draft.robot.unit_m * sphere->center) <=
+                   draft.robot.unit_m * sphere->radius + draft.box_margin;
+        });
+    } else if (const auto* surface = std::get_if<SurfaceSelector>(&selector)) {
+        nodes = select_on_surface(draft, *surface, kind, name, line);
+    } else {
+        nodes = std::get<NodeSelector>(selector).nodes;
+        for (const int node : nodes) {
+            if (node < static_cast<int>(points.size())) continue;
+            draft.problem(line, kind, name,
+                          fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
+            return {};
+        }
+    }
+    return nodes;
+}
+
+void add_support(ModelDraft& draft, const FixedSpec& fixed) {
+    const std::size_t before = draft.problems.size();
+    std::vector<int> nodes = select(draft, fixed.selector, "fixed", fixed.name, fixed.line);
+    if (nodes.empty() && draft.problems.size() == before) {
+        draft.problem(fixed.line, "fixed", fixed.name, "catches no node of the mesh; " + draft.show_bounds());
+    }
+    constexpr double radians = std::numbers::pi / 180;
+    const sim::Turn turn{radians * fixed.rotate_deg, fixed.rotation_axis, draft.robot.unit_m * fixed.rotation_center};
+    draft.description.supports.push_back(
+        {fixed.name, std::move(nodes), draft.robot.unit_m * fixed.move, fixed.share, turn, fixed.directions});
+}
+
+void add_plate(ModelDraft& draft, const PlateSpec& plate) {
+    const std::size_t before = draft.problems.size();
+    std::vector<int> nodes = select(draft, plate.selector, "plate", plate.name, plate.line);
+    if (nodes.empty() && draft.problems.size() == before)
+        draft.problem(plate.line, "plate", plate.name, "catches no node of the mesh; " + draft.show_bounds());
+    if (!nodes.empty()) draft.description.plates.push_back({plate.name, std::move(nodes)});
+}
+
+void add_load(ModelDraft& draft, const LoadSpec& load) {
+    const std::size_t before = draft.problems.size();
+    std::vector<bool> caught(draft.description.mesh.points.size(), false);
+    for (const int node : select(draft, load.selector, "load", load.name, load.line))
+        caught[static_cast<std::size_t>(node)] = true;
+    std::vector<mesh::Face> faces;
+    for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
+        const auto inside = [&](std::size_t i) { return caught[static_cast<std::size_t>(face.nodes[i])]; };
+        if (inside(0) && inside(1) && inside(2)) faces.push_back(face);
+    }
+    if (draft.problems.size() > before) return;
+    if (faces.empty()) {
+        const bool box = std::holds_alternative<BoxSelector>(load.selector);
+        draft.problem(
+            load.line, "load", load.name,
+            fmt::format("no face of the outer surface lies {}; {}",
+                        box ? "inside the box" : "where it acts: all three corners must", draft.show_bounds()));
+        return;
+    }
+    if (load.pressure_Pa) {
+        draft.description.pressures.push_back({load.name, pressed_wall(draft, faces), *load.pressure_Pa, load.share});
+        return;
+    }
+    sim::SurfaceShares shares = sim::surface_shares(draft.description.mesh, faces);
+    draft.description.loads.push_back(
+        {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
+}
+
+void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSpec& spec) {
+    if (const auto* point = std::get_if<Vec3>(&spec.place)) {
+        const Vec3 place = draft.robot.unit_m * *point;
+        Result<sim::Attachment> attachment = attacher.carried_by_tet(place, draft.point_reach);
+        const double distance = attacher.distance_outside(place);
+        if (!attachment) {
+            draft.problem(spec.line, "marker", spec.name,
+                          fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
+                                      1e3 * distance, draft.show_bounds()));
+            return;
+        }
+        draft.count_point("markers", distance);
+        draft.description.markers.push_back({spec.name, std::move(*attachment)});
+        return;
+    }
+    const Box3 box = draft.box_of(std::get<BoxSelector>(spec.place));
+    std::vector<bool> corner(draft.description.mesh.points.size(), false);
+    for (std::size_t t = 0; t < draft.bodies.tet_count(); ++t) {
+        for (std::size_t a = 0; a < 4; ++a) corner[draft.bodies.tet(t)[a]] = true;
+    }
+    sim::Attachment mean;
+    for (std::size_t n = 0; n < corner.size(); ++n) {
+        if (corner[n] && box.contains(draft.description.mesh.points[n], draft.box_margin))
+            mean.nodes.push_back(static_cast<int>(n));
+    }
+    if (mean.nodes.empty()) {
+        draft.problem(spec.line, "marker", spec.name,
+                      "the box holds no corner node of the mesh; " + draft.show_bounds());
+        return;
+    }
+    mean.weights.assign(mean.nodes.size(), 1.0 / static_cast<double>(mean.nodes.size()));
+    draft.description.markers.push_back({spec.name, std::move(mean)});
+}
+
+}  // namespace
+
+sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces) {
+    for (mesh::Face& face : faces) {
+        std::swap(face.nodes[1], face.nodes[2]);
+        std::swap(face.nodes[3], face.nodes[5]);
+    }
+    std::vector<int> same(draft.description.mesh.points.size());
+    std::iota(same.begin(), same.end(), 0);
+    return sim::wall_of_faces(draft.description.mesh, faces, same);
+}
+
+void add_supports(ModelDraft& draft) {
+    for (const FixedSpec& fixed : draft.robot.fixed) add_support(draft, fixed);
+}
+
+void add_plates(ModelDraft& draft) {
+    for (const PlateSpec& plate : draft.robot.plates) add_plate(draft, plate);
+}
+
+void add_loads(ModelDraft& draft) {
+    for (const LoadSpec& load : draft.robot.loads) add_load(draft, load);
+}
+
+void add_markers(ModelDraft& draft, const sim::Attacher& attacher) {
+    for (const MarkerSpec& marker : draft.robot.markers) add_marker(draft, attacher, marker);
+}
+
+}  // namespace pliant::robot

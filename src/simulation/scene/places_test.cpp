@@ -1,0 +1,161 @@
+// Supports in single directions, springs, loads by any selector, and meshes from files that are placed.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "geometry/files/surface_file.hpp"
+#include "geometry/files/tet_writer.hpp"
+#include "geometry/mesh/test_shapes.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+using pliant::test::replaced;
+using testing::Built;
+using testing::check_problem;
+
+namespace {
+
+const std::string head = R"(name = "block"
+length_unit = "mm"
+material.soft = { youngs_modulus = "100 kPa", poisson_ratio = 0.4 }
+)";
+
+/// An eighth of a block on three planes of symmetry, drawn out by a fifth.
+const std::string eighth = head + R"(mesh = { size = "5 mm" }
+body = [{ name = "block", material = "soft", geometry = { box = [[0, 0, 0], [10, 10, 10]] } }]
+fixed = [
+  { name = "x", plane = { point = [0, 0, 0], normal = [1, 0, 0] }, directions = "normal" },
+  { name = "y", box = [[0, 0, 0], [10, 0, 10]], directions = ["y"] },
+  { name = "z", box = [[0, 0, 0], [10, 10, 0]], directions = [[0, 0, -2]] },
+  { name = "end", box = [[10, 0, 0], [10, 10, 10]], directions = ["x"], move = [2, 0, 0] },
+]
+marker = [{ name = "corner", point = [10, 10, 10] }]
+program = { steps = 2, tolerance = 1e-6 }
+)";
+
+Built build(const std::string& text) {
+    return testing::build(parse_robot(text, "block.toml"));
+}
+
+sim::Step last_step(const Built& built) {
+    return testing::run_to_the_end(built).steps.back();
+}
+
+}  // namespace
+
+TEST_CASE("rollers and planes of symmetry hold single directions: a block thins as it is drawn out") {
+    const sim::Step last = last_step(build(eighth));
+    const Vec3 corner = last.markers[0].position_m;
+    CHECK(corner.x == near(0.012, {.relative = 1e-9}));
+    CHECK(corner.y == near(corner.z, {.relative = 1e-6}));
+    CHECK(corner.y < 0.0096);
+    CHECK(corner.y > 0.0090);
+    CHECK(last.supports[3].force_N.x == near(-last.supports[0].force_N.x, {.relative = 1e-9}));
+    CHECK(std::fabs(last.supports[3].force_N.y) < 1e-12);  // a roller has no force across
+}
+
+TEST_CASE("directions are named where they are wrong") {
+    check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [\"w\"]"),
+                  "bar.toml:8: fixed[1].directions: is \"normal\" or a list");
+    check_problem(replaced(eighth, "directions = [\"y\"]", "directions = []"), "is \"normal\" or a list");
+    check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [[0, 0, 0]]"), "is \"normal\" or a list");
+    check_problem(replaced(eighth, "directions = [\"y\"]", "directions = \"normal\""), "\"normal\" is that of a plane");
+    check_problem(
+        replaced(eighth, "directions = [\"x\"],", "directions = [\"x\"], rotate = { angle = 5, axis = [1,0,0] },"),
+        "has no meaning beside rotate");
+}
+
+TEST_CASE("a spring holds a block against a load") {
+    const std::string slider = replaced(eighth, "directions = [\"x\"], move = [2, 0, 0]", "directions = [\"x\"]");
+    const std::string loose = replaced(slider, "  { name = \"x\", plane", "  # { name = \"x\", plane");
+    const std::string sprung =
+        replaced(loose, "  { name = \"end\"", "  # { name = \"end\"") +
+        "[[spring]]\nname = \"s\"\npoints = [[10, 5, 5], [30, 5, 5]]\nanchor = \"last\"\nstiffness = \"0.05 N/mm\"\n"
+        "[[load]]\nname = \"pull\"\nplane = { point = [0, 0, 0], normal = [1, 0, 0] }\nforce = [\"-0.1 N\", \"0 N\", "
+        "\"0 N\"]\n";
+    const sim::Step last = last_step(build(sprung));
+    REQUIRE(last.springs.size() == 1);
+    CHECK(last.springs[0].force_N == near(0.1, {.relative = 1e-5}));
+    CHECK(last.springs[0].length_m == near(0.022, {.relative = 1e-5}));
+    check_problem(replaced(sprung, "\"0.05 N/mm\"", "\"0.05 N\""), "unknown unit \"N\"; here the units are N/mm");
+    check_problem(replaced(sprung, "anchor = \"last\"", "anchor = \"first\""), "point 2 at (30, 5, 5) lies outside");
+    check_problem(replaced(sprung, "anchor", "free_length = \"-1 mm\"\nanchor"), "must not be negative");
+}
+
+TEST_CASE("a load acts on the outer faces that any selector catches") {
+    const std::string pull = "[[load]]\nname = \"pull\"\nforce = [\"0.1 N\", \"0 N\", \"0 N\"]\n";
+    const auto nodes = [&](const std::string& place) {
+        return build(eighth + pull + place).model.description().loads.at(0).nodes;
+    };
+    const auto box = nodes("box = [[10, 0, 0], [10, 10, 10]]\n");
+    CHECK(nodes("plane = { point = [10, 0, 0], normal = [-1, 0, 0] }\n") == box);
+    CHECK(nodes("sphere = { center = [17, 5, 5], radius = 9.95 }\n") == box);
+    CHECK(nodes("sphere = { center = [0, 0, 0], radius = 100 }\n").size() > box.size());
+    check_problem(eighth + pull + "sphere = { center = [5, 5, 5], radius = 1 }\n", "no face of the outer surface");
+    check_problem(eighth + pull, "names no place; add box, plane, sphere, surface or nodes");
+    check_problem(eighth + pull + "surface = \"nowhere.stl\"\n", "there is no file");
+}
+
+TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved and repeated") {
+    const test::Folder folder("placed");
+    const Built once = build(eighth);
+    mesh::TetMesh unit = mesh::scaled(once.model.mesh(), 100);  // a cube of side 1 in the file's unit
+    unit.region_names = {"block"};
+    REQUIRE(mesh::write_tet_mesh(folder.path() / "cube.vtk", unit));
+    const std::string place =
+        "place = { scale = 10, mirror = { normal = [1, 0, 0] }, rotate = { angle = 90, axis = [0, 0, 1] }, "
+        "move = [0, 0, 5], repeat = { count = 3, move = [20, 0, 0] } }";
+    const std::string text = head + "mesh = { file = \"cube.vtk\", order = 1, " + place + " }\n" +
+                             "body = [{ name = \"block\", material = \"soft\", region = \"all\" }]\n" +
+                             "fixed = [{ name = \"floor\", box = [[-10, -10, 5], [100, 0, 5]] }]\n";
+    const auto read = [&](const std::string& t) { return parse_robot(t, folder.path() / "block.toml"); };
+    const Built built = testing::build(read(text));
+    CHECK(mesh::volume(built.model.mesh()) == near(3e-6, {.relative = 1e-12}));
+    Box3 box;
+    for (const Vec3& p : built.model.mesh().points) box.add(p);
+    // x -> -x, a quarter turn: (x, y) -> (-y, -x); three of them.
+    CHECK(norm(box.low - Vec3{-0.01, -0.01, 0.005}) < 1e-9);
+    CHECK(norm(box.high - Vec3{0.04, 0, 0.015}) < 1e-9);
+    const auto message = [&](const std::string& t) {
+        const auto robot = read(t);
+        return robot ? std::string() : robot.error().message;
+    };
+    CHECK(message(replaced(text, "scale = 10", "scale = 0")).find("must be above zero") != std::string::npos);
+    CHECK(message(replaced(text, "count = 3, move = [20, 0, 0]", "count = 3")).find("needs move or rotate") !=
+          std::string::npos);
+    CHECK(message(replaced(text, "count = 3", "count = 100000")).find("1 to 1000 are possible") != std::string::npos);
+    CHECK(message(replaced(eighth, "[10, 10, 10]] } }]", "[10, 10, 10]] }, place = { scale = 2 } }]"))
+              .find("a shape is placed by translate, rotate and repeat") != std::string::npos);
+}
+
+TEST_CASE("surfaces of chambers and obstacles are placed, too") {
+    const test::Folder folder("placed");
+    REQUIRE(mesh::write_stl(folder.path() / "cube.stl", mesh::test::cube()));
+    const std::string text = head + R"(mesh = { size = "4 mm", order = 1 }
+body = [{ name = "block", material = "soft", geometry = { difference = [
+    { box = [[0, 0, 0], [10, 10, 10]] }, { box = [[3, 3, 3], [7, 7, 7]] }] } }]
+fixed = [{ name = "floor", box = [[0, 0, 0], [10, 10, 0]] }]
+chamber = [{ name = "air", surface = "cube.stl", place = { scale = 0.4, move = [3, 3, 3] }, target = { volume_ratio = 1.1 } }]
+obstacle = [{ name = "lid", surface = "cube.stl", place = { rotate = { angle = 90, axis = [1, 0, 0] }, move = [0, 10, 12] } }]
+)";
+    const Built built = testing::build(parse_robot(text, folder.path() / "block.toml"));
+    const sim::Description& d = built.model.description();
+    const sim::Wall& wall = d.chambers.at(0).wall;
+    std::vector<double> x;
+    for (const Vec3& p : d.mesh.points) x.insert(x.end(), {p.x, p.y, p.z});
+    Box3 air;
+    for (const sim::Attachment& point : wall.points) air.add(sim::position(point, x));
+    CHECK(norm(air.low - Vec3{3e-3, 3e-3, 3e-3}) < 1e-9);
+    CHECK(norm(air.high - Vec3{7e-3, 7e-3, 7e-3}) < 1e-9);
+    const auto& lid = std::get<mesh::TriMesh>(d.contact->obstacles.at(0).body.shape);
+    // (x, y, z) -> (x, -z, y), then moved.
+    CHECK(norm(mesh::bounds(lid).low - Vec3{0, 0, 12e-3}) < 1e-9);
+    CHECK(norm(mesh::bounds(lid).high - Vec3{10e-3, 10e-3, 22e-3}) < 1e-9);
+}

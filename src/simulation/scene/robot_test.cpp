@@ -1,0 +1,571 @@
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "geometry/files/tet_writer.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+using testing::check_problem;
+using testing::problem;
+
+namespace {
+
+/// A bar of two materials with one notch, a cable and a marker; every line below may be replaced by a test.
+const std::string good = R"(name = "bar"
+length_unit = "mm"
+[parameters]
+gaps = 1
+[material.soft]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.4
+[material.hard]
+youngs_modulus = "5 MPa"
+poisson_ratio = 0.4
+resin = "rigid"
+[shape.gap]
+repeat = "= gaps"
+step = [8, 0, 0]
+of = { box = [[9, -1, 5], [11, 11, 11]] }
+[[body]]
+name = "left"
+material = "hard"
+geometry = { difference = [{ box = [[0, 0, 0], [20, 10, 10]] }, { use = "gap" }] }
+[[body]]
+name = "right"
+material = "soft"
+geometry = { box = [[20, 0, 0], [40, 10, 10]] }
+[mesh]
+size = "6 mm"
+[[fixed]]
+name = "clamp"
+box = [[0, 0, 0], [0, 10, 10]]
+[[cable]]
+name = "flexor"
+points = [[0, 5, 8], [40, 5, 8]]
+guides = "crossings"
+target = { length_ratio = 0.97 }
+[[marker]]
+name = "tip"
+point = [40, 5, 5]
+[program]
+steps = 3
+)";
+
+std::string with(const std::string& line, const std::string& replacement) {
+    return pliant::test::replaced(good, line, replacement);
+}
+
+}  // namespace
+
+TEST_CASE("a good robot file is read and built") {
+    const Result<Robot> robot = parse_robot(good, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->materials.size() == 2);
+    CHECK(robot->materials[0].resin == "soft");
+    CHECK(robot->materials[1].resin == "rigid");
+    CHECK(robot->program.tolerance == 1e-4);
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(mesh->order == 2);
+    CHECK(mesh::volume(*mesh, 0) == near(1e-9 * (20 * 10 * 10 - 2 * 10 * 5), {.relative = 1e-12}));
+    CHECK(mesh::volume(*mesh, 1) == near(1e-9 * 20 * 10 * 10, {.relative = 1e-12}));
+    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    CHECK(model->description().cables[0].points.size() == 4);  // both ends, and both flanks of the notch
+    const auto surfaces = body_surfaces(*robot, silent);
+    REQUIRE(surfaces);
+    CHECK(mesh::signed_volume((*surfaces)[0].surface_m) == near(1e-9 * (2000 - 100), {.relative = 1e-12}));
+}
+
+TEST_CASE("--set changes the number of gaps and the target") {
+    const Result<Robot> robot =
+        parse_robot(good, "bar.toml", {"parameters.gaps=2", "cable.flexor.target.length_ratio=0.9", "mesh.order=1"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE(mesh);
+    CHECK(mesh->order == 1);
+    CHECK(mesh::volume(*mesh, 0) == near(1e-9 * (2000 - 200), {.relative = 1e-12}));
+    CHECK(robot->cables[0].target.value == 0.9);
+}
+
+TEST_CASE("--set reaches tables that the file leaves out") {
+    const Result<Robot> robot = parse_robot(with("[program]\nsteps = 3\n", ""), "bar.toml", {"program.steps=7"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.steps == 7);
+    CHECK(problem(good, {"progam.steps=7"}) == "bar.toml: progam: nobody reads this key; did you mean \"program\"?");
+}
+
+TEST_CASE("slips in the text are named with their line") {
+    check_problem(with("geometry = { box", "geometri = { box"),
+                  "bar.toml:23: body[1].geometri: nobody reads this key; did you mean \"geometry\"?");
+    check_problem(with("\"1 MPa\"", "1000000"),
+                  "bar.toml:6: material.soft.youngs_modulus: 1000000 has no unit; write a pressure such as \"12 MPa\"");
+    check_problem(with("\"1 MPa\"", "\"1 mm\""), "unknown unit \"mm\"; here the units are MPa");
+    check_problem(with("length_unit = \"mm\"", ""), "\"length_unit\" is missing");
+    check_problem(with("material = \"soft\"", "material = \"sofd\""), "did you mean \"soft\"?");
+    check_problem(with("use = \"gap\"", "use = \"gab\""), "there is no [shape.gab]; did you mean \"gap\"?");
+    check_problem(with("poisson_ratio = 0.4\n[material.hard]", "poisson_ratio = 0.5\n[material.hard]"),
+                  "0.5 is not possible");
+    check_problem(with("length_ratio = 0.97", "length_ratio = 1.2"), "a cable gets shorter");
+    check_problem(with("geometry = { box = [[20", "geometry = { boxx = [[20"), "is no shape; did you mean \"box\"?");
+    check_problem(good + "surplus = 1\n", "bar.toml:39: program.surplus: nobody reads this key");
+    check_problem(with("steps = 3", "steps = 0"), "between 1 and 100000");
+    check_problem(with("name = \"right\"", "name = \"left\""), "two bodies named \"left\"");
+}
+
+TEST_CASE("a graded bar gives way like its grades in a row") {
+    // Without sideways strain, u = F / A int dx / E: with E rising straight from 1 to 5 MPa, ln 5 / 4 of what 1 MPa
+    // gives.
+    const testing::Built bar = testing::build(parse_robot(R"(name = "bar"
+length_unit = "mm"
+[material.soft]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0
+[material.hard]
+youngs_modulus = "5 MPa"
+poisson_ratio = 0
+[[body]]
+name = "bar"
+geometry = { box = [[0, 0, 0], [40, 5, 5]] }
+material = "soft"
+blend = { material = "hard", from = [0, 0, 0], to = [40, 0, 0] }
+[mesh]
+size = "2.5 mm"
+order = 2
+[[fixed]]
+name = "wall"
+box = [[0, 0, 0], [0, 5, 5]]
+[[load]]
+name = "pull"
+box = [[40, 0, 0], [40, 5, 5]]
+force = ["0.025 N", "0 N", "0 N"]
+[[marker]]
+name = "tip"
+box = [[40, 0, 0], [40, 5, 5]]
+[program]
+steps = 1
+)",
+                                                          "bar.toml"));
+    const sim::Description& d = bar.model.description();
+    CHECK(d.materials.size() > 15);
+    CHECK(d.materials.size() <= 2 + 19);
+    const double found = testing::run_to_the_end(bar).steps.back().markers[0].position_m.x - 0.04;
+    CHECK(found == near(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4, {.relative = 0.01}));
+}
+
+TEST_CASE("blends and exposures are read, and their slips named") {
+    const auto body = [](const std::string& lines) {
+        return with("material = \"soft\"\n", "material = \"soft\"\n" + lines + "\n");
+    };
+    const auto robot =
+        parse_robot(body("exposure = \"7 s\"\nblend = { material = \"hard\", from = [20, 0, 0], to = [40, 0, "
+                         "0], shares = [0.2, 0.4], cell = \"0.3 mm\" }"),
+                    "bar.toml");
+    REQUIRE_MESSAGE(robot.has_value(), (robot ? "" : robot.error().message));
+    CHECK(robot->bodies[1].exposure_s == 7);
+    REQUIRE(robot->bodies[1].blend.has_value());
+    CHECK(robot->bodies[1].blend->material == 1);
+    CHECK(robot->bodies[1].blend->shares == std::vector<double>{0.2, 0.4});
+    CHECK(robot->bodies[1].blend->cell == near(0.3, {.relative = 1e-12}));
+    check_problem(body("exposure = 7"), "7 has no unit; write a time such as");
+    check_problem(body("blend = { material = \"hrd\", from = [0, 0, 0], to = [1, 0, 0] }"), "did you mean \"hard\"?");
+    check_problem(body("blend = { material = \"hard\", from = [1, 0, 0], to = [1, 0, 0] }"),
+                  "needs a way to change on");
+    check_problem(body("blend = { material = \"hard\", from = [1, 0, 0], to = [2, 0, 0], shares = [2, 0] }"),
+                  "two numbers or more from 0 to 1");
+}
+
+TEST_CASE("shapes that make no sense are refused") {
+    check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ box = [[40, 0, 0], [20, 10, 10]] }"),
+                  "must be above the first");
+    check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ sphere = { center = [30, 5, 5], radius = 0 } }"),
+                  "radius: must be above zero");
+    check_problem(
+        with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ prism = [[0,0],[1,1],[1,0],[0,1]], from = 0, to = 1 }"),
+        "crosses or touches itself");
+    check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }",
+                       "{ difference = [{ box = [[20,0,0],[40,10,10]] }, { box = [[0,-1,-1],[50,11,11]] }] }"),
+                  "empty");
+    check_problem(with("of = { box = [[9, -1, 5], [11, 11, 11]] }", "of = { use = \"gap\" }"), "uses itself");
+    check_problem(with("\"= gaps\"", "5000"), "1 to 1000 are possible");
+}
+
+TEST_CASE("bodies a rounding error apart are joined, unless the file says otherwise") {
+    const std::string apart = with("[[20, 0, 0], [40", "[[20.005, 0, 0], [40");
+    CHECK(problem(apart).empty());  // a thousandth of the mesh size is 0.006 mm
+    CHECK(problem(apart, {"mesh.close_gaps=0 mm"}).find("connected to nothing that is fixed") != std::string::npos);
+    CHECK(problem(apart, {"mesh.close_gaps=3 um"}).find("connected to nothing that is fixed") != std::string::npos);
+    CHECK(problem(apart, {"mesh.close_gaps=-1 mm"}).find("must not be below zero") != std::string::npos);
+}
+
+TEST_CASE("what does not fit the robot is refused with its line") {
+    check_problem(with("geometry = { box = [[20,", "geometry = { box = [[-1,-1,-1],[50, 50, 50]] } #"),
+                  "body \"left\" is empty: all of it belongs to later ones");
+    check_problem(with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40, 5, 30]]"),
+                  "lies outside every body");
+    check_problem(with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[-9, 0, 0], [-5, 10, 10]]"),
+                  "bar.toml:26: fixed \"clamp\": catches no node");
+    check_problem(with("[[fixed]]\nname = \"clamp\"\nbox = [[0, 0, 0], [0, 10, 10]]", ""), "nothing is fixed");
+    check_problem(with("point = [40, 5, 5]", "point = [50, 5, 5]"),
+                  "marker \"tip\": the point (50, 5, 5) lies outside every body");
+    check_problem(with("length_ratio = 0.97", "shortening = \"50 mm\""), "it is 40 mm long");
+    check_problem(with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }", "geometry = \"nothere.stl\""),
+                  "there is no file");
+    check_problem(with("[[20, 0, 0], [40", "[[21, 0, 0], [40"), "connected to nothing that is fixed");
+    check_problem(with("size = \"6 mm\"", "size = \"0.01 mm\""), "tetrahedra, more than");
+}
+
+TEST_CASE("supports can be chosen by plane, sphere and nodes") {
+    for (const char* selector : {"plane = { point = [0, 0, 0], normal = [1, 0, 0] }",
+                                 "sphere = { center = [0, 5, 5], radius = 7.2 }", "nodes = [0, 1, 2, 3]"}) {
+        CHECK(problem(with("box = [[0, 0, 0], [0, 10, 10]]", selector)).empty());
+    }
+    check_problem(with("box = [[0, 0, 0], [0, 10, 10]]", "nodes = [99999]"), "node 99999 does not exist");
+    check_problem(with("box = [[0, 0, 0], [0, 10, 10]]", "nodes = [0]\nsphere = { center = [0,0,0], radius = 1 }"),
+                  "takes only one of");
+}
+
+TEST_CASE("a load is spread over the outer surface in its box") {
+    const std::string text =
+        good + "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\nforce = [\"0 N\", \"0 N\", \"0.5 N\"]\n";
+    const Result<Robot> robot = parse_robot(text, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const Result<sim::Model> model = build_model(*robot, *build_mesh(*robot, silent));
+    REQUIRE(model);
+    const sim::Load& load = model->description().loads.at(0);
+    double sum = 0;
+    for (std::size_t i = 0; i < load.nodes.size(); ++i) {
+        sum += load.shares[i];
+        CHECK(model->mesh().points[static_cast<std::size_t>(load.nodes[i])].x == near(0.04, {.relative = 1e-12}));
+    }
+    CHECK(sum == near(1, {.relative = 1e-12}));
+    CHECK(
+        problem(good +
+                "[[load]]\nname = \"push\"\nbox = [[50, 0, 0], [60, 10, 10]]\nforce = [\"0 N\", \"0 N\", \"0.5 N\"]\n")
+            .find("no face of the outer surface") != std::string::npos);
+}
+
+namespace {
+
+using testing::Built;
+
+Built build(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    return testing::build(parse_robot(text, "bar.toml", assignments));
+}
+
+sim::Step last_step(const Built& built) {
+    return testing::run_to_the_end(built).steps.back();
+}
+
+std::string chamber(const std::string& air, const std::string& target) {
+    return good + "[[chamber]]\nname = \"air\"\n" + air + "\ntarget = { " + target + " }\n";
+}
+const std::string room = "geometry = { box = [[24, 3, 3], [36, 7, 7]] }";  // 192 mm^3 inside the body "right"
+
+/// The notched bar as a mesh file with the regions "left" and "right", gone when the test ends.
+class MeshFile {
+public:
+    MeshFile() {
+        const Result<Robot> robot = parse_robot(good, "bar.toml", {"mesh.order=1"});
+        REQUIRE(robot);
+        Progress silent;
+        const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+        REQUIRE(mesh);
+        REQUIRE(mesh::write_tet_mesh(path_, mesh::scaled(*mesh, 1000)));
+    }
+
+    /// A robot of this mesh; `bodies` are [[body]] tables.
+    [[nodiscard]] std::string robot(const std::string& bodies) const {
+        const std::size_t first = good.find("[shape.gap]");
+        const std::size_t fixed = good.find("[[fixed]]");
+        return good.substr(0, first) + bodies + "[mesh]\nfile = \"" + path_.string() + "\"\n" + good.substr(fixed);
+    }
+
+private:
+    pliant::test::Folder folder_{"robot"};
+    std::filesystem::path path_ = folder_ / "bar.vtu";
+};
+
+std::string region(const std::string& name, const std::string& material, const std::string& which) {
+    return "[[body]]\nname = \"" + name + "\"\nmaterial = \"" + material + "\"\n" + which + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
+    const Built built = build(chamber(room, "volume_ratio = 1.2"));
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
+    REQUIRE(built.model.description().chambers.size() == 1);
+    CHECK(built.robot.chambers[0].target.value == 1.2);
+    Progress silent;
+    const auto surfaces = body_surfaces(built.robot, silent);
+    REQUIRE(surfaces);
+    CHECK(mesh::signed_volume((*surfaces)[1].surface_m) == near(1e-9 * (2000 - 192), {.relative = 1e-12}));
+    const sim::Step step = last_step(built);
+    CHECK(step.chambers[0].volume_m3 == near(1.2 * 192e-9, {.relative = 1e-6}));
+    CHECK(step.chambers[0].pressure_Pa > 0);
+}
+
+TEST_CASE("a cavity of the bodies is named by a point inside it, and needs no second drawing") {
+    const std::string hollow = with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+                                    "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, "
+                                    "3], [36, 7, 7]] }] }");
+    const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { volume_ratio = 1.2 }\n";
+    const Built built = build(hollow + air);
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
+    const sim::Step found = last_step(built);
+    CHECK(found.chambers[0].volume_m3 == near(1.2 * 192e-9, {.relative = 1e-6}));
+    const sim::Step drawn = last_step(build(chamber(room, "volume_ratio = 1.2")));
+    CHECK(found.chambers[0].pressure_Pa == near(drawn.chambers[0].pressure_Pa, {.relative = 0.05}));
+    check_problem(good + air, "bar.toml:39: chamber \"air\": inside: the point (30, 5, 5) lies in the material");
+    check_problem(hollow + air + "geometry = { box = [[0, 0, 0], [1, 1, 1]] }\n",
+                  "leave geometry, surface and region out");
+    check_problem(chamber(room + "\ncap = { box = [[0, 0, 0], [1, 1, 1]] }", "volume_ratio = 1.2"),
+                  "inside = [x, y, z]");
+}
+
+TEST_CASE("a cavity with a mouth is closed by a cap, and its mouth must be held") {
+    const std::string pot =
+        with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+             "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, 3], "
+             "[36, 7, 11]] }] }");
+    const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { pressure = \"1 kPa\" }\n";
+    const std::string cap = "cap = { box = [[20, 0, 10], [40, 10, 11]] }\n";
+    check_problem(pot + air, "open to the outside; close each mouth with cap");
+    check_problem(pot + air + cap, "the chamber is open; close it with a body");
+    const std::string held = "[[fixed]]\nname = \"flange\"\nbox = [[20, 0, 10], [40, 10, 10]]\n";
+    const Built built = build(pot + air + cap + held);
+    CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 12 * 4 * 7), {.relative = 1e-12}));
+    CHECK(last_step(built).chambers[0].volume_m3 == near(336e-9, {.relative = 0.01}));
+}
+
+TEST_CASE("a chamber takes one target of four") {
+    using Kind = sim::ChamberTarget::Kind;
+    const auto target = [](const std::string& text) {
+        const Result<Robot> robot = parse_robot(chamber(room, text), "bar.toml");
+        REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+        return robot->chambers[0].target;
+    };
+    CHECK(target("volume_ratio = 1.25").kind == Kind::volume_ratio);
+    CHECK(target("gas_ratio = 2").kind == Kind::gas_ratio);
+    CHECK(target("pressure = \"40 kPa\"").kind == Kind::pressure_Pa);
+    CHECK(target("pressure = \"40 kPa\"").value == near(40e3, {.relative = 1e-12}));
+    CHECK(target("pressure = \"-40 kPa\"").value == near(-40e3, {.relative = 1e-12}));
+    CHECK(target("volume_change = \"0.5 ml\"").kind == Kind::volume_change_m3);
+    CHECK(target("volume_change = \"0.5 ml\"").value == near(0.5e-6, {.relative = 1e-12}));
+
+    check_problem(chamber(room, "volume_ratio = 1.2, pressure = \"1 kPa\""),
+                  "chamber[0].target: takes one of volume_ratio, volume_change, pressure and gas_ratio");
+    check_problem(chamber(room, "volume_ratio = 0"), "a ratio of 0 is not possible; it must be above zero");
+    check_problem(chamber(room, "pressure = 40"), "40 has no unit; write a pressure such as");
+    check_problem(chamber(room, "volume_change = \"5 mm\""), "unknown unit \"mm\"; here the units are ml");
+    check_problem(chamber(room, "volume_ration = 1.2"), "did you mean \"volume_ratio\"?");
+    check_problem(good + "[[chamber]]\nname = \"air\"\n" + room + "\n", "\"target\" is missing");
+}
+
+TEST_CASE("air that is not there, or not shut in, is refused") {
+    check_problem(chamber("", "volume_ratio = 1.2"), "chamber[0]: takes one of geometry");
+    check_problem(chamber(room + "\nsurface = \"air.stl\"", "volume_ratio = 1.2"), "takes one of geometry");
+    check_problem(chamber("surface = \"nowhere.stl\"", "volume_ratio = 1.2"), "there is no file nowhere.stl");
+    check_problem(chamber("region = \"air\"", "volume_ratio = 1.2"), "needs a tet mesh; add file = ");
+    check_problem(chamber("geometri = { box = [[24, 3, 3], [36, 7, 7]] }", "volume_ratio = 1.2"),
+                  "did you mean \"geometry\"?");
+    check_problem(chamber("geometry = { box = [[36, 3, 3], [40, 7, 7]] }", "volume_ratio = 1.2"),
+                  "bar.toml:39: chamber \"air\":");
+    check_problem(chamber("geometry = { box = [[36, 3, 3], [40, 7, 7]] }", "volume_ratio = 1.2"),
+                  "the chamber is open; close it with a body");
+    // The same mouth is closed where a support holds it still, and open again where the support turns.
+    const std::string mouth = "geometry = { box = [[0, 3, 1], [6, 7, 4]] }";
+    CHECK(problem(chamber(mouth, "volume_ratio = 1.2")).empty());
+    const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
+    std::string turning = chamber(mouth, "volume_ratio = 1.2");
+    turning.insert(turning.find(box), "rotate = { angle = 5, axis = [1, 0, 0] }\n");
+    check_problem(turning, "let its mouth lie in a [[fixed]] without move or rotate");
+}
+
+TEST_CASE("a pressure load presses on the faces in its box") {
+    const std::string load = "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\n";
+    const Built built = build(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
+    CHECK(built.robot.loads[0].pressure_Pa == near(2e3, {.relative = 1e-12}));
+    CHECK(built.model.description().loads.empty());
+    REQUIRE(built.model.description().pressures.size() == 1);
+    // 100 mm^2, pressed towards the clamp.
+    CHECK(last_step(built).supports[0].force_N.x == near(0.2, {.relative = 0.01}));
+
+    check_problem(good + load + "pressure = \"2 kPa\"\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n",
+                  "give either force or pressure");
+    check_problem(good + load, "\"force\" is missing; it is a list such as [\"0 N\", \"0 N\", \"0.06 N\"] (or give");
+    check_problem(good + load + "pressure = \"2 N\"\n", "unknown unit \"N\"");
+}
+
+TEST_CASE("a support turns by degrees about an axis through a point in the file's unit") {
+    const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
+    const Built built = build(with(box, box + "\nrotate = { angle = 90, axis = [2, 0, 0], center = [0, 5, 5] }"));
+    const sim::Support& clamp = built.model.description().supports[0];
+    const Vec3 turned = clamp.position({0, 0.010, 0.005}, 1);
+    CHECK(norm(turned - Vec3{0, 0.005, 0.010}) < 1e-12);
+    const Vec3 half = clamp.position({0, 0.010, 0.005}, 1.0 / 3);
+    CHECK(half.z == near(0.005 + 0.005 * 0.5, {.relative = 1e-12}));  // sin 30
+    CHECK(clamp.moves());
+
+    check_problem(with(box, box + "\nrotate = { angle = 90 }"), "fixed[0].rotate: \"axis\" is missing");
+    check_problem(with(box, box + "\nrotate = { axis = [1, 0, 0] }"), "fixed[0].rotate: \"angle\" is missing");
+    check_problem(with(box, box + "\nrotate = { angle = 90, axis = [0, 0, 0] }"), "must not be zero");
+    check_problem(with(box, box + "\nrotate = { angle = \"90 deg\", axis = [1, 0, 0] }"), "a finite number is needed");
+    check_problem(with(box, box + "\nrotate = { angle = 90, axis = [1, 0, 0], centre = [0, 0, 0] }"),
+                  "did you mean \"center\"?");
+}
+
+TEST_CASE("keys drive what they name, in seconds; the rest goes straight to its end") {
+    const std::string keys = R"(duration = "4 s"
+[[program.key]]
+time = "1 s"
+flexor = 0.9
+[[program.key]]
+time = "3 s"
+flexor = 0.98
+air = "10 kPa"
+gravity = 0.5
+)";
+    const Built built = build(with("steps = 3\n", "steps = 3\ngravity = [0, 0, -9.81]\n" + keys) +
+                              "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"40 kPa\" }\n" +
+                              "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\npressure = \"2 kPa\"\n");
+    CHECK(built.robot.program.duration == 4);
+    const sim::Description& d = built.model.description();
+    const auto flexor = [&](double t) { return d.cables[0].target.at(t); };
+    CHECK(flexor(0) == near(1, {.relative = 1e-12}));
+    CHECK(flexor(0.5) == near(0.95, {.relative = 1e-12}));
+    CHECK(flexor(1) == near(0.9, {.relative = 1e-12}));
+    CHECK(flexor(2) == near(0.94, {.relative = 1e-12}));
+    CHECK(flexor(4) == near(0.98, {.relative = 1e-12}));  // stays where the last key left it
+    CHECK(d.chambers[0].target.at(1.5) == near(5e3, {.relative = 1e-12}));
+    CHECK(d.chambers[0].target.at(4) == near(10e3, {.relative = 1e-12}));
+    CHECK(d.gravity_share.at(3) == near(0.5, {.relative = 1e-12}));
+    CHECK(d.pressures[0].share.at(1) == near(0.25, {.relative = 1e-12}));  // no key names it
+    CHECK(d.pressures[0].share.at(4) == near(1, {.relative = 1e-12}));
+}
+
+TEST_CASE("a program without duration ends with its last key") {
+    const Result<Robot> robot =
+        parse_robot(good + "[[program.key]]\ntime = \"0 s\"\nflexor = 0.99\n[[program.key]]\ntime = \"500 ms\"\n", "b");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.duration == 0.5);
+    CHECK(robot->cables[0].target.at(0) == near(0.99, {.relative = 1e-12}));  // a key at time 0 says where it starts
+}
+
+TEST_CASE("slips in keys are named") {
+    const auto key = [](const std::string& lines) { return good + "[[program.key]]\n" + lines + "\n"; };
+    check_problem(key("time = \"1 s\"\nflexxor = 0.9"),
+                  "program.key[0].flexxor: nobody reads this key; did you mean \"flexor\"?");
+    check_problem(key("flexor = 0.9"), "program.key[0]: \"time\" is missing");
+    check_problem(key("time = 1\nflexor = 0.9"), "1 has no unit; write a time such as");
+    check_problem(key("time = \"1 s\"\nflexor = 1.2"), "1.2 is not possible; a cable gets shorter: above 0, at most 1");
+    check_problem(key("time = \"1 s\"\nflexor = \"8 N\""), "a finite number is needed");
+    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: keys are in the order");
+    check_problem(with("steps = 3\n", "steps = 3\nduration = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nflexor = 0.9\n"),
+                  "duration: ends before the last key");
+    check_problem(with("steps = 3\n", "steps = 3\nduration = \"0 s\"\n"), "duration: must be above zero");
+    std::string twice = key("time = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nclamp = 0.9");
+    const std::string name = "name = \"flexor\"";
+    check_problem(twice.replace(twice.find(name), name.size(), "name = \"clamp\""),
+                  "program.key[1].clamp: names two things; give them different names");
+    const std::string air = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"1 kPa\" }\n";
+    check_problem(key("time = \"1 s\"\nair = 3") + air, "3 has no unit; write a pressure such as");
+    check_problem(key("time = \"1 s\"\nair = \"3 N\"") + air, "unknown unit \"N\"");
+    const std::string sealed = "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { gas_ratio = 2 }\n";
+    check_problem(key("time = \"1 s\"\nair = 0") + sealed, "0 is not possible; it must be above zero");
+}
+
+TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box") {
+    const MeshFile file;
+    const Built whole = build(file.robot(region("all", "soft", "region = \"all\"")));
+    const double total = mesh::volume(whole.model.mesh());
+    CHECK(total == near(1e-9 * (4000 - 100), {.relative = 1e-12}));
+
+    // The box takes its tets from the body before it.
+    const std::string end = region("end", "hard", "region = \"right\"\nbox = [[30, -1, -1], [41, 11, 11]]");
+    const Built split = build(
+        file.robot(region("left", "hard", "region = \"left\"") + region("right", "soft", "region = \"right\"") + end));
+    const mesh::TetMesh& mesh = split.model.mesh();
+    CHECK(mesh::volume(mesh, 0) == near(1e-9 * (2000 - 100), {.relative = 1e-12}));
+    CHECK(mesh::volume(mesh, 1) + mesh::volume(mesh, 2) == near(1e-9 * 2000, {.relative = 1e-12}));
+    CHECK(mesh::volume(mesh, 2) == near(1e-9 * 1000, {.relative = 0.05}));  // to the nearest tet
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (mesh.region[t] == 0) continue;
+        Vec3 centroid;
+        for (std::size_t i = 0; i < 4; ++i) centroid += 0.25 * mesh.points[static_cast<std::size_t>(mesh.tet(t)[i])];
+        CHECK((centroid.x > 0.030) == (mesh.region[t] == 2));
+    }
+    CHECK(split.model.description().material_of_region == std::vector<int>{1, 0, 1});
+
+    const std::string left = region("left", "hard", "region = \"left\"");
+    check_problem(file.robot(left), "no body names region \"right\" of the mesh");
+    check_problem(file.robot(left + region("right", "soft", "region = \"wrong\"")),
+                  "the mesh has no region \"wrong\"; it has");
+    check_problem(file.robot(region("all", "soft", "region = \"all\"") +
+                             region("end", "hard", "region = \"all\"\nbox = [[50, 0, 0], [60, 10, 10]]")),
+                  "body \"end\": the box holds no centroid of a tetrahedron of the region");
+    check_problem(file.robot(left + left), "two bodies named \"left\"");
+    check_problem(file.robot(left + region("again", "soft", "region = \"left\"")),
+                  "region \"left\" already belongs to body \"left\"");
+    check_problem(file.robot(region("all", "soft", "geometry = { box = [[0, 0, 0], [1, 1, 1]] }")),
+                  "with a mesh file a body names its region");
+    check_problem(with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
+                       "geometry = { box = [[20, 0, 0], [40, 10, 10]] }\nbox = [[20, 0, 0], [40, 10, 10]]"),
+                  "body[1].box: nobody reads this key");
+}
+
+TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robot file with a slip is not") {
+    const pliant::test::Folder folder("robot_drawing");
+    const auto message = [&](const std::string& name, const std::string& content) {
+        std::ofstream(folder / name, std::ios::binary) << content;
+        const auto robot = load_robot(folder / name);
+        REQUIRE_FALSE(robot);
+        return robot.error().message;
+    };
+    for (const std::string& content :
+         {std::string("solid x\nfacet normal 0 0 1\n"), std::string("ISO-10303-21;\n"), std::string("PK\x03\x04...")})
+        CHECK(message("part.stl", content).find("is geometry, no robot file") != std::string::npos);
+    std::string binary = std::string(80, ' ') + std::string("\x64\0\0\0", 4);  // 100 facets
+    binary += std::string(100 * 50, '\0');
+    CHECK(message("part.stl", binary).find("is geometry, no robot file") != std::string::npos);
+    CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
+}
+
+TEST_CASE("a guide point a little outside the mesh is carried and counted, one that is farther is refused") {
+    const std::string outside = with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40.4, 5, 8]]");
+    const Built built = build(outside);
+    const auto& notes = built.model.description().notes;
+    REQUIRE(notes.size() == 1);
+    // The cable's two ends, where it leaves the body, and the flanks of the notch.
+    CHECK_MESSAGE(notes[0].find("1 of 5 guide points lie outside the mesh, by up to 0.4 mm") == 0, notes[0]);
+    CHECK(problem(outside, {"mesh.point_reach=0 mm"}).find("lies outside every body, by 0.4 mm") != std::string::npos);
+    CHECK(problem(outside, {"mesh.point_reach=0.5 mm"}).empty());
+    CHECK(problem(outside, {"mesh.point_reach=-1 mm"}).find("must not be below zero") != std::string::npos);
+    CHECK(build(good).model.description().notes.empty());
+}
+
+TEST_CASE("a support on a line is refused at rest, a pendulum in time is not") {
+    const std::string hinge = with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[0, 0, 0], [0, 10, 0]]");
+    check_problem(hinge, "bar.toml: body \"left\" can turn freely about the line through (0, ");
+    CHECK(problem(hinge, {"program.time_step=0.01 s"}).find("turn freely") == std::string::npos);
+}
+
+TEST_CASE("an imperfection is a length") {
+    const Result<Robot> robot = parse_robot(good, "bar.toml", {"program.imperfection=0.1 mm"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->program.imperfection_m == near(1e-4, {.relative = 1e-12}));
+    CHECK(problem(good, {"program.imperfection=-1 mm"}).find("must not be below zero") != std::string::npos);
+}

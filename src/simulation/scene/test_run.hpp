@@ -1,0 +1,64 @@
+// From a robot file to its run, for tests: what goes wrong on the way ends the test.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/build_model.hpp"
+
+namespace pliant::robot::testing {
+
+/// A robot and its model.
+struct Built {
+    Robot robot;
+    sim::Model model;
+};
+
+inline Built build(Result<Robot> robot) {
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    return {std::move(*robot), std::move(*model)};
+}
+
+/// What is wrong with a text, whether that shows on reading or on building; "" if nothing.
+inline std::string problem(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    const Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
+    if (!robot) return robot.error().message;
+    Progress silent;
+    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    if (!mesh) return mesh.error().message;
+    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
+    return model ? "" : model.error().message;
+}
+
+inline void check_problem(const std::string& text, const std::string& wanted) {
+    const std::string found = problem(text);
+    CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
+}
+
+/// Whether it converged is for the test to check.
+inline sim::Trajectory run(const Built& built) {
+    Progress silent;
+    return sim::run(built.model, built.robot.program, silent);
+}
+
+inline sim::Trajectory run_to_the_end(const Built& built) {
+    sim::Trajectory result = run(built);
+    REQUIRE_MESSAGE(result.converged, result.message);
+    return result;
+}
+
+inline sim::Trajectory run_file(const std::string& path, const std::vector<std::string>& assignments) {
+    return run_to_the_end(build(load_robot(path, assignments)));
+}
+
+}  // namespace pliant::robot::testing

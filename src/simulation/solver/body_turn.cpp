@@ -1,0 +1,58 @@
+#include "simulation/solver/body_turn.hpp"
+
+namespace pliant::sim {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+}  // namespace
+
+void BodyTurn::begin(const Eigen::VectorXd& x) {
+    before_ = x;
+    turned_ = false;
+}
+
+void BodyTurn::follow(const Eigen::VectorXd& x) {
+    system_->model().elements().find_rotations(view(before_), view(x), rotations_);
+    turned_ = true;
+}
+
+void BodyTurn::forces_back(Eigen::MatrixXd& columns) const {
+    if (!turned_) return;
+    laplacian_->solve(columns);
+    apply(Elements::Direction::back, columns);
+}
+
+void BodyTurn::motions_on(Eigen::MatrixXd& columns) const {
+    if (!turned_) return;
+    apply(Elements::Direction::on, columns);
+    laplacian_->solve(columns);
+}
+
+void BodyTurn::step_back(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
+    if (!turned_) return;
+    Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the price of one
+    both << motion, force;
+    apply(Elements::Direction::back, both.leftCols(1));
+    laplacian_->solve(both);
+    apply(Elements::Direction::back, both.rightCols(1));
+    motion = both.col(0);
+    force = both.col(1);
+}
+
+/// columns <- G^T W R G columns, where held nodes do not move.
+void BodyTurn::apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const {
+    Eigen::VectorXd motion(before_.size()), forces(before_.size());
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        motion.setZero();
+        forces.setZero();
+        system_->add_free(columns.col(k), 1, motion);
+        system_->model().elements().add_turned(rotations_, direction, view(motion),
+                                               {forces.data(), static_cast<std::size_t>(forces.size())});
+        columns.col(k) = system_->restrict_to_free(forces);
+    }
+}
+
+}  // namespace pliant::sim

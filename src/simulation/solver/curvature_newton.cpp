@@ -1,0 +1,302 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/core/aligned_array.hpp"
+#include "base/core/parallel.hpp"
+#include "base/linalg/gmres.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/solver/body_turn.hpp"
+#include "simulation/solver/curvature.hpp"
+#include "simulation/solver/step_memory.hpp"
+#include "simulation/solver/tangent_inverse.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using Effort = TangentInverse::Effort;
+
+class Newton final : public Curvature {
+public:
+    Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
+        : system_(&system),
+          laplacian_(&laplacian),
+          layout_(laplacian.tangent_layout()),
+          analysis_(laplacian.analysis()),
+          two_levels_(!system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work())),
+          inverse_(make_inverse()),
+          turn_(system, laplacian) {}
+
+    [[nodiscard]] Solver solver() const override { return Solver::newton; }
+    [[nodiscard]] int default_iteration_limit() const override { return 100; }
+
+    [[nodiscard]] double smallest_share() const override { return reused_ && !crawls() ? smallest_reused_share : 1e-7; }
+
+    /// In the step of the program after its own, an inverse is expected to do what the one before it did there; that
+    /// fades, so that it is tried again some day.
+    void restart() override {
+        hasty_ = false;
+        left_by_new_ = 0;
+        if (age_++ > 0) return;
+        left_ = left_at_first_;
+        left_at_first_ = hoped_left * std::pow(left_at_first_ / hoped_left, memory_of_first);
+    }
+
+    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, Errors errors) override {
+        const bool reuse = care == Care::usual && usable_ && pays(errors.residual / errors.wanted);
+        if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
+        if (reused_ && care != Care::usual) judge_old(most_left);
+        reused_ = reuse;
+        at_ = {&state, &controls};
+        const double error = std::max(errors.residual, errors.violation);
+        enough_ = solution_error(error, errors.wanted);
+        straight_ = left_by_last_ < well_led && error * error < straight_share * errors.wanted;
+        if (!reuse) return take_tangent(care == Care::cautious);
+        remember();
+        turn_.follow(state.x);
+        return true;
+    }
+
+    /// What a straight motion stretches grows with its square: a short one need not turn. A small error means a short
+    /// one, unless the body gives way to next to no force; there steps do not lead far.
+    [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
+        const Eigen::VectorXd end = x + motion;
+        return straight_ ? end : laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
+    }
+
+    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
+
+    void judge(double before, double after) override {
+        left_by_last_ = after / before;
+        if (reused_) {
+            ++uses_;
+            return judge_old(std::clamp(after / before, least_left, most_left));
+        }
+        uses_ = 0;
+        left_by_new_ = after < nearby ? after / before : 0;
+        // Where the very tangent does not lead far, the state is changing too much for an old one.
+        left_ = after > hoped_left * before ? most_left : hoped_left;
+        age_ = 0;
+        tried_later_ = false;
+    }
+
+    void solve(Eigen::MatrixXd& columns) override {
+        if (!system_->has_skew()) {
+            turn_.forces_back(columns);
+            memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_inverse(c); });
+            turn_.motions_on(columns);
+            return;
+        }
+        for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
+    }
+
+private:
+    /// The skew part wants the inverse of the very tangent.
+    [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
+        if (two_levels_) return make_two_level_inverse(layout_->pattern);
+        if (!analysis_) analysis_ = linalg::analyse(layout_->pattern);
+        return make_direct_inverse(analysis_, system_->has_skew());
+    }
+
+    /// True if a factor from an earlier state is expected to bring the error, which is `far` times what is wanted, down
+    /// for less than a new one costs. The skew part belongs to the state at which it was made, and GMRES wants one
+    /// matrix.
+    [[nodiscard]] bool pays(double far) const {
+        if (system_->has_skew()) return false;
+        if (crawls()) return true;
+        return !hasty_ && std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
+    }
+
+    /// True where, close to equilibrium, the very tangent hardly leads on: it had to be made positive definite, which
+    /// hides how easily the body goes where it wants to buckle. A few steps with one inverse teach that (StepMemory),
+    /// however short they are.
+    [[nodiscard]] bool crawls() const {
+        return share_ > 0 && left_by_new_ > hopeless && uses_ < static_cast<int>(most_steps);
+    }
+
+    /// How well to solve for a step (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982). Far from
+    /// equilibrium the step leaves a good part of the error however well it is solved for; close to it a digit that is
+    /// found is one that the next step need not find.
+    [[nodiscard]] static double solution_error(double now, double wanted) {
+        if (now > nearby) return largest_solution_error;
+        if (now <= 0) return 0;
+        return std::min(share_of_wanted * wanted / now, largest_solution_error);
+    }
+
+    /// A step with an inverse from an earlier state left so much of the error.
+    void judge_old(double left) {
+        left_ = left;
+        hasty_ = left > slow;
+        if (age_ > 0 && !std::exchange(tried_later_, true)) left_at_first_ = left;
+    }
+
+    /// What the last step taught, as it would have been where the factor was made.
+    void remember() {
+        if (learnt_.step.size() == 0) return;
+        Eigen::VectorXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
+        turn_.step_back(step, change);
+        memory_.learn(step, change);
+    }
+
+    void solve_with_inverse(Eigen::MatrixXd& columns) {
+        using Outcome = TangentInverse::Outcome;
+        const Eigen::MatrixXd right = columns;
+        Outcome outcome = inverse_->solve(columns, enough_);
+        if (outcome == Outcome::slow) {
+            two_levels_ = false;
+            inverse_ = make_inverse();
+            usable_ = false;
+        }
+        // Only solving showed that the tangent is indefinite.
+        while (outcome == Outcome::indefinite && !reused_ && share_ < 1 &&
+               project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0))) {
+            columns = right;
+            outcome = inverse_->solve(columns, enough_);
+        }
+    }
+
+    /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
+    /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
+    [[nodiscard]] bool take_tangent(bool cautious) {
+        make_room_for_contact();
+        cautious_ = cautious;
+        memory_.clear();
+        learnt_ = {};
+        turn_.begin(at_.state->x);
+        if (system_->has_skew()) state_ = *at_.state;
+        positions_ = system_->free_positions(at_.state->x);
+        assemble(false, values_);
+        share_ = 0;
+        if (!cautious && (usable_ = inverse_->set(values_.span(), positions_, Effort::usual))) {
+            share_wanted_ = smallest_share_of_projection;
+            return true;
+        }
+        return project(cautious ? 1 : std::max(0.5 * share_wanted_, smallest_share_of_projection));
+    }
+
+    /// The tangent with `share` of its projection, or as much more as it takes.
+    [[nodiscard]] bool project(double share) {
+        if (share_ == 0) assemble(true, projected_);
+        for (; share <= 1; share *= 2) {
+            blended_.resize(values_.size());
+            for (std::size_t k = 0; k < values_.size(); ++k)
+                blended_[k] = values_[k] + share * (projected_[k] - values_[k]);
+            share_ = share_wanted_ = share;
+            if ((usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all)))
+                return true;
+        }
+        return false;
+    }
+
+    /// (tangent + skew)^-1 b, with H^-1 as preconditioner from the right. Where H is the tangent the product is
+    /// v + skew H^-1 v. Where H had to be made positive definite it is not: the tangent's symmetric part may be
+    /// indefinite though the body is stable, as pressure on a patch with a free rim is not one of a potential, and the
+    /// steps of H would lead on by a share of the way each. Only the cautious are content with H.
+    [[nodiscard]] Eigen::VectorXd solve_with_skew(const Eigen::VectorXd& b) {
+        const auto precondition = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+            Eigen::MatrixXd column = v;
+            solve_with_inverse(column);
+            return column;
+        };
+        const auto multiply = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+            const Eigen::VectorXd w = precondition(v);
+            if (share_ == 0 || cautious_) return v + system_->apply_skew(state_, w);
+            Eigen::VectorXd product = system_->apply_skew(state_, w);
+            linalg::add_product(layout_->pattern, values_.span(), {w.data(), static_cast<std::size_t>(w.size())}, 1,
+                                {product.data(), static_cast<std::size_t>(product.size())});
+            return product;
+        };
+        return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
+    }
+
+    /// Contact couples nodes that no element does: where a pair is new, the pattern is made and analysed again.
+    void make_room_for_contact() {
+        bool grown = false;
+        for (std::vector<int>& clique : system_->contact_cliques(*at_.state, *at_.controls)) {
+            if (holds(clique)) continue;
+            touching_.push_back(std::move(clique));
+            grown = true;
+        }
+        if (!grown) return;
+        layout_ = std::make_shared<const TangentLayout>(system_->lay_out_tangent(touching_));
+        analysis_ = nullptr;
+        inverse_ = make_inverse();
+        // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
+        if (touching_.size() > most_remembered) touching_.clear();
+    }
+
+    /// True if the pattern couples all nodes of a clique.
+    [[nodiscard]] bool holds(const std::vector<int>& clique) const {
+        for (const int i : clique) {
+            for (const int j : clique) {
+                if (j < 0 || i < j) continue;
+                if (!layout_->pattern.holds(i, j)) return false;
+            }
+        }
+        return true;
+    }
+
+    void assemble(bool project, AlignedArray<double>& values) const {
+        values.resize(layout_->pattern.entries());
+        parallel_clear(values.span());
+        system_->add_tangent(*at_.state, *at_.controls, *layout_, values.span(), project);
+    }
+
+    static constexpr double smallest_share_of_projection = 1.0 / 16;
+    static constexpr double smallest_reused_share = 0.2;
+    static constexpr std::size_t most_steps = 8;
+    static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
+    static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
+    static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
+    static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
+    static constexpr double well_led = 0.3;
+    static constexpr std::size_t most_remembered = 20000;
+    static constexpr double skew_tolerance = 1e-8;
+    static constexpr int skew_limit = 60;
+
+    const Equilibrium* system_;
+    const FactoredLaplacian* laplacian_;
+    std::shared_ptr<const TangentLayout> layout_;
+    std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, once it was needed
+    bool two_levels_;                                   ///< as long as they are quick enough
+    std::unique_ptr<TangentInverse> inverse_;
+    AlignedArray<double> values_;     ///< tangent
+    AlignedArray<double> projected_;  ///< its positive projection, where it was needed
+    AlignedArray<double> blended_;
+    double share_ = 0;                                    ///< of the projection in H
+    bool cautious_ = false;                               ///< all of it was asked for
+    double share_wanted_ = smallest_share_of_projection;  ///< when it was needed last
+    struct {
+        const State* state;
+        const Controls* controls;
+    } at_{};                         ///< what is at hand, until it is solved with
+    double enough_ = 0;              ///< error of the next solution
+    bool straight_ = false;          ///< the next step need not turn
+    Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
+    BodyTurn turn_;                  ///< since the factor was made
+    StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then
+    struct {
+        Eigen::VectorXd step, change;
+    } learnt_;             ///< not yet in the memory
+    bool usable_ = false;  ///< the inverse solves
+    bool hasty_ = false;   ///< in this step of the program an old inverse has led astray
+    bool reused_ = false;  ///< the present direction is not from the tangent at hand
+    // Of the error, what a step with an inverse from an earlier state leaves.
+    double left_ = hoped_left;           ///< by the next one, as far as is known
+    double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
+    double left_by_last_ = 1;            ///< by the last one, with whatever inverse
+    double left_by_new_ = 0;             ///< by the last one of its own state; 0 before and far from equilibrium
+    int uses_ = 0;                       ///< of the inverse since that step
+    int age_ = 0;                        ///< of the inverse, in steps of the program
+    bool tried_later_ = false;           ///< in a later one than its own
+    std::vector<std::vector<int>> touching_;  ///< pairs in contact that the pattern has room for
+    State state_;                             ///< where the tangent was made; kept only where its skew part is needed
+};
+
+}  // namespace
+
+std::unique_ptr<Curvature> make_newton(const Equilibrium& system, const FactoredLaplacian& laplacian) {
+    return std::make_unique<Newton>(system, laplacian);
+}
+
+}  // namespace pliant::sim

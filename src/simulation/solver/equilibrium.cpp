@@ -1,0 +1,562 @@
+#include "simulation/solver/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/core/parallel.hpp"
+#include "base/linalg/vectors.hpp"
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+std::span<double> view(Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// Springs of a plate beside the stiffness of an element: what bends a plate bends the body a hundred times as much.
+constexpr double plate_stiffness = 100;
+
+using Flaw = Evaluation::Flaw;
+
+/// Squared distance of a tet's centre from the straight line of a cable through its gap.
+double distance_from(const Growth& growth, const Vec3& centre) {
+    const Vec3 away = centre - growth.center_m;
+    const Vec3 across = away - dot(away, growth.direction) * growth.direction;
+    return dot(across, across);
+}
+
+/// True if no other cable that passes the same gap is nearer to the tet, nor one before it as near.
+bool is_nearest(const Description& d, std::size_t tet, const Growth& growth) {
+    Vec3 centre;
+    for (const int node : d.mesh.tet(tet).first(4)) centre += 0.25 * d.mesh.points[static_cast<std::size_t>(node)];
+    const double own = distance_from(growth, centre);
+    for (const Growth& other : d.growths) {
+        if (other.material != growth.material || other.actuator == growth.actuator) continue;
+        const double distance = distance_from(other, centre);
+        if (distance < own || (distance == own && other.actuator < growth.actuator)) return false;
+    }
+    return true;
+}
+
+Evaluation impossible(double min_J, Flaw flaw) {
+    Evaluation e;
+    e.min_J = min_J;
+    e.flaw = flaw;
+    return e;
+}
+
+}  // namespace
+
+std::string_view name(Flaw flaw) {
+    switch (flaw) {
+        case Flaw::none:
+            return "is possible";
+        case Flaw::inverted:
+            return "turns a tetrahedron inside out";
+        case Flaw::pierced:
+            return "makes surfaces touch or pass through each other";
+        case Flaw::collapsed:
+            return "leaves a chamber without volume (walls that shall rest on each other need [contact])";
+    }
+    return {};
+}
+
+Equilibrium::Equilibrium(const Model& model) : model_(&model) {
+    const Description& d = model.description();
+    const Eigen::Index n = model.node_count();
+    rest_.resize(3 * n);
+    gravity_.resize(3 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Vec3& p = d.mesh.points[static_cast<std::size_t>(i)];
+        rest_.segment<3>(3 * i) << p.x, p.y, p.z;
+        gravity_.segment<3>(3 * i) =
+            model.elements().node_mass_kg()[static_cast<std::size_t>(i)] * linalg::vector(d.gravity_m_s2);
+    }
+    for (const HeldNodes::Roller& roller : model.held().rollers()) {
+        const int free = model.free_index()[static_cast<std::size_t>(roller.node)];
+        if (free >= 0) rollers_.push_back({roller.node, free, roller.may_move});
+    }
+    add_actuators();
+    for (std::size_t k = 0; k < d.pressures.size(); ++k) {
+        if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
+    }
+    const auto by_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
+    conservative_ =
+        model.elements().has_energy() && skew_.empty() && std::none_of(actuators_.begin(), actuators_.end(), by_gaps);
+    double stiffest = 0;
+    for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
+    const double volume = mesh::volume(d.mesh);
+    add_plates(stiffest, volume);
+    force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
+    energy_rounding_ = 1e-16 * stiffest * volume;
+    // A node is a share of where it is off its place, and pulls at that with the stiffness of a tet, times its size.
+    const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
+    force_rounding_ = 1e-16 * stiffest * rest_.cwiseAbs().maxCoeff() * size * std::sqrt(static_cast<double>(n));
+}
+
+void Equilibrium::add_actuators() {
+    const Description& d = model_->description();
+    const auto rest = view(std::as_const(rest_));
+    for (std::size_t c = 0; c < d.cables.size(); ++c)
+        actuators_.emplace_back(CablePath(d.cables[c].points, rest), rest, gap_elements_of(c));
+    for (const Spring& spring : d.springs) springs_.emplace_back(spring, rest);
+    for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
+    for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
+}
+
+/// Of the tets of a gap that several cables pass, each one has those that are nearest to it.
+std::optional<GapElements> Equilibrium::gap_elements_of(std::size_t cable) const {
+    const Description& d = model_->description();
+    std::vector<GapElements::Gap> gaps;
+    for (const Growth& growth : d.growths) {
+        if (growth.actuator != static_cast<int>(cable)) continue;
+        GapElements::Gap gap{{}, growth.direction, growth.length_m, growth.weight_Pa};
+        for (std::size_t t = 0; t < model_->elements().tet_count(); ++t) {
+            if (model_->elements().material(t) == growth.material && is_nearest(d, t, growth)) gap.tets.push_back(t);
+        }
+        if (!gap.tets.empty()) gaps.push_back(std::move(gap));
+    }
+    return gaps.empty() ? std::nullopt : std::optional(GapElements(model_->elements(), gaps));
+}
+
+void Equilibrium::add_plates(double stiffness_Pa, double volume_m3) {
+    const double element_m = std::cbrt(volume_m3 / static_cast<double>(model_->mesh().tet_count()));
+    for (const RigidPlate& plate : model_->description().plates)
+        plates_.emplace_back(plate.nodes, plate_stiffness * stiffness_Pa * element_m, view(std::as_const(rest_)));
+}
+
+bool Equilibrium::rim_is_held(const Wall& wall) const {
+    const auto held = [&](int point) {
+        const auto& nodes = wall.points[static_cast<std::size_t>(point)].nodes;
+        return std::all_of(nodes.begin(), nodes.end(),
+                           [&](int node) { return model_->free_index()[static_cast<std::size_t>(node)] < 0; });
+    };
+    const auto rim = rim_points(wall);
+    return std::all_of(rim.begin(), rim.end(), held);
+}
+
+Eigen::VectorXd Equilibrium::external_at(double time) const {
+    const Description& d = model_->description();
+    Eigen::VectorXd force = d.gravity_share.at(time) * gravity_;
+    for (const Load& load : d.loads) {
+        const Eigen::Vector3d total = load.share.at(time) * linalg::vector(load.force_N);
+        for (std::size_t k = 0; k < load.nodes.size(); ++k)
+            force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
+    }
+    return force;
+}
+
+Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
+    const Description& d = model_->description();
+    const double rest = actuators_[actuator].rest_measure();
+    if (actuator < d.cables.size()) {
+        const CableTarget& target = d.cables[actuator].target;
+        const double value = target.at(time);
+        if (target.kind == CableTarget::Kind::tension_N) return {Drive::Kind::multiplier, value};
+        return {Drive::Kind::measure, target.kind == CableTarget::Kind::length_ratio ? value * rest : rest - value};
+    }
+    const std::size_t chamber = actuator - d.cables.size();
+    if (chamber < d.chambers.size()) {
+        const ChamberTarget& target = d.chambers[chamber].target;
+        const double value = target.at(time);
+        switch (target.kind) {
+            case ChamberTarget::Kind::volume_ratio:
+                return {Drive::Kind::measure, value * rest};
+            case ChamberTarget::Kind::volume_change_m3:
+                return {Drive::Kind::measure, rest + value};
+            case ChamberTarget::Kind::pressure_Pa:
+                return {Drive::Kind::multiplier, -value};
+            case ChamberTarget::Kind::gas_ratio:
+                return {Drive::Kind::gas, value * d.ambient_pressure_Pa * rest};
+        }
+    }
+    const PressureLoad& load = d.pressures[chamber - d.chambers.size()];
+    return {Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa};
+}
+
+Controls Equilibrium::controls(double time) const {
+    Controls controls;
+    controls.time = time;
+    controls.met = met_;
+    controls.external_N = external_at(time);
+    controls.shares.resize(actuators_.size());
+    controls.obstacles = obstacles_at(time);
+    for (const Support& support : model_->description().supports)
+        controls.support_share.push_back(support.share.at(time));
+    for (std::size_t a = 0; a < actuators_.size(); ++a) controls.drives.push_back(drive_at(a, time));
+    return controls;
+}
+
+bool Equilibrium::has_cable_friction() const {
+    const auto& cables = model_->description().cables;
+    return std::any_of(cables.begin(), cables.end(), [](const Cable& cable) { return cable.friction > 0; });
+}
+
+void Equilibrium::freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> all_wanted,
+                                        std::span<const Drive> before, Controls& controls) const {
+    const auto& cables = model_->description().cables;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        if (!(cables[c].friction > 0)) continue;
+        const Drive& wanted = all_wanted[c];
+        const double change = wanted.value - before[c].value;
+        const bool by_length = wanted.kind == Drive::Kind::measure;
+        const bool let_go = by_length ? change > 0 : change < 0;
+        const CablePath& path = actuators_[c].cable();
+        const double friction = let_go ? -cables[c].friction : cables[c].friction;
+        controls.shares[c] = path.tension_shares(view(x), friction, cables[c].pulled_at_first);
+        if (!by_length) continue;
+        const double weighted = path.length(view(x), controls.shares[c]);
+        const double length = path.length(view(x));
+        controls.drives[c].value = weighted + (wanted.value - length) * weighted / length;
+    }
+}
+
+double Equilibrium::cable_friction_error(const State& state, std::span<const Drive> all_wanted) const {
+    const auto& cables = model_->description().cables;
+    double error = 0;
+    for (std::size_t c = 0; c < cables.size(); ++c) {
+        const Drive& wanted = all_wanted[c];
+        if (!(cables[c].friction > 0) || wanted.kind != Drive::Kind::measure) continue;
+        const double excess = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
+        const bool pulls = state.multiplier[static_cast<Eigen::Index>(c)] > 0;
+        error = std::max(error, pulls ? std::fabs(excess) : excess);  // a slack cable may be shorter than asked for
+    }
+    return error;
+}
+
+State Equilibrium::rest() const {
+    return {rest_, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators_.size()))};
+}
+
+void Equilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
+    model_->held().place(model_->description().supports, model_->mesh().points, controls.support_share, x);
+}
+
+double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, double g) const {
+    switch (drive.kind) {
+        case Drive::Kind::measure:
+            return 0;
+        case Drive::Kind::multiplier:
+            return drive.value * g;
+        case Drive::Kind::gas:
+            // Work of the ambient and of the gas between rest and g, at constant temperature.
+            return model_->description().ambient_pressure_Pa * g -
+                   drive.value * std::log(g / actuators_[actuator].rest_measure());
+    }
+    return 0;
+}
+
+double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const {
+    const double absolute = model_->description().ambient_pressure_Pa - multiplier;
+    return drive.value / (absolute * absolute);  // g = value / (p_ambient - m)
+}
+
+Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
+    Evaluation e;
+    Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
+    const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
+    e.min_J = elastic.min_J;
+    if (!(e.min_J > 0)) return impossible(e.min_J, Flaw::inverted);
+    if (has_collapsed_chamber(state.x)) return impossible(e.min_J, Flaw::collapsed);
+    e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
+    add_contact(state.x, controls, internal, e.energy_J);
+    if (!std::isfinite(e.energy_J)) return impossible(e.min_J, Flaw::pierced);
+    for (const Plate& plate : plates_) {
+        e.energy_J += plate.energy(view(state.x));
+        plate.add_gradient(view(state.x), view(internal));
+    }
+    for (const SpringPath& spring : springs_) {
+        e.energy_J += spring.energy(view(state.x));
+        spring.add_gradient(view(state.x), view(internal));
+    }
+    for (const Actuator& actuator : actuators_) {
+        if (actuator.gaps() == nullptr) continue;
+        e.energy_J += actuator.gaps()->energy(view(state.x));
+        actuator.gaps()->add_gradient(view(state.x), view(internal));
+    }
+    if (controls.inertia) {
+        e.energy_J += controls.inertia->energy(state.x);
+        controls.inertia->add_gradient(state.x, internal);
+    }
+    fill_actuators(state, controls, e);
+    fill_residual(state, controls, internal, e);
+    return e;
+}
+
+bool Equilibrium::has_collapsed_chamber(const Eigen::VectorXd& x) const {
+    const std::size_t first = cable_count();
+    const std::size_t end = first + model_->description().chambers.size();
+    for (std::size_t a = first; a < end; ++a) {
+        if (!(actuators_[a].measure(view(x)) > 0)) return true;
+    }
+    return false;
+}
+
+void Equilibrium::fill_actuators(const State& state, const Controls& controls, Evaluation& e) const {
+    e.multiplier = state.multiplier;
+    e.excess = Eigen::VectorXd::Zero(state.multiplier.size());
+    for (std::size_t a = 0; a < actuators_.size(); ++a) {
+        const auto i = static_cast<Eigen::Index>(a);
+        const Drive& drive = controls.drives[a];
+        const double g = actuators_[a].measure(view(state.x), controls.shares[a]);
+        e.energy_J += drive_energy(drive, a, g);
+        if (drive.kind == Drive::Kind::multiplier) e.multiplier[i] = drive.value;
+        if (drive.kind == Drive::Kind::gas)
+            e.multiplier[i] = model_->description().ambient_pressure_Pa - drive.value / g;
+        if (drive.kind != Drive::Kind::measure) continue;
+        e.excess[i] = (g - drive.value) / actuators_[a].rest_measure();
+        const bool slack = actuators_[a].only_pulls() && !(e.multiplier[i] > 0);
+        e.violation = std::max(e.violation, slack ? e.excess[i] : std::fabs(e.excess[i]));
+    }
+}
+
+void Equilibrium::fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
+                                Evaluation& e) const {
+    Eigen::VectorXd driving = -controls.external_N;
+    for (std::size_t a = 0; a < actuators_.size(); ++a)
+        actuators_[a].add_gradient(view(state.x), e.multiplier[static_cast<Eigen::Index>(a)], view(driving),
+                                   controls.shares[a]);
+    e.out_of_balance = internal + driving;
+    const double unbalanced = restrict_to_free(e.out_of_balance).norm();
+    const double balancing = std::max({internal.norm(), driving.norm(), force_floor_});
+    e.residual = balancing > 0 && unbalanced > force_rounding_ ? unbalanced / balancing : 0;
+}
+
+double Equilibrium::potential_energy(const State& state, const Controls& controls) const {
+    Controls still = controls;
+    still.friction = nullptr;
+    double springs = 0;
+    for (const SpringPath& spring : springs_) springs += spring.energy(view(state.x));
+    for (const Actuator& actuator : actuators_) {
+        if (actuator.gaps() != nullptr) springs += actuator.gaps()->energy(view(state.x));
+    }
+    return model_->elements().evaluate(view(state.x), {}).energy_J + springs -
+           controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
+}
+
+std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
+    std::vector<double> all(x.data(), x.data() + x.size());
+    all.insert(all.end(), obstacles.data(), obstacles.data() + obstacles.size());
+    return all;
+}
+
+Eigen::VectorXd Equilibrium::obstacles_at(double time) const {
+    const contact::Contact* contact = model_->contact(true);
+    if (contact == nullptr) return {};
+    const int first = contact->robot_node_count();
+    Eigen::VectorXd positions(3 * (contact->node_count() - first));
+    const auto& obstacles = model_->description().contact->obstacles;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+        const Eigen::Vector3d move = obstacles[k].share.at(time) * linalg::vector(obstacles[k].move_m);
+        for (int node = contact->first_node(k); node < contact->first_node(k + 1); ++node) {
+            const auto rest = linalg::view(contact->rest(), node);
+            positions.segment<3>(3 * (node - first)) = rest + move;
+        }
+    }
+    return positions;
+}
+
+double Equilibrium::contact_energy(const Eigen::VectorXd& x, const Controls& controls) const {
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return 0;
+    const std::vector<double> all = with_obstacles(x, controls.obstacles);
+    return contact->energy(contact->find(all), all) + (controls.friction ? controls.friction->energy(all) : 0);
+}
+
+void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
+                              double& energy) const {
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return;
+    const std::vector<double> all = with_obstacles(x, controls.obstacles);
+    const contact::Pairs pairs = contact->find(all);
+    std::vector<double> gradient(all.size(), 0.0);
+    contact->add_gradient(pairs, all, gradient);
+    energy += contact->energy(pairs, all);
+    if (controls.friction) {
+        controls.friction->add_gradient(all, gradient);
+        energy += controls.friction->energy(all);
+    }
+    forces += Eigen::Map<const Eigen::VectorXd>(gradient.data(), forces.size());
+}
+
+double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
+                                 const Eigen::VectorXd& obstacle_motion) const {
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return 1;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(controls.obstacles.size());
+    return contact->largest_step(with_obstacles(x, controls.obstacles),
+                                 with_obstacles(motion, obstacle_motion.size() > 0 ? obstacle_motion : none));
+}
+
+std::shared_ptr<const contact::Friction> Equilibrium::freeze_friction(const State& state, const State& start,
+                                                                      const Controls& controls,
+                                                                      const Controls& start_controls) const {
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return nullptr;
+    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+    return std::make_shared<const contact::Friction>(
+        contact->freeze(contact->find(x), x, with_obstacles(start.x, start_controls.obstacles)));
+}
+
+bool Equilibrium::has_friction() const {
+    const auto& rules = model_->description().contact;
+    if (!rules) return false;
+    return rules->settings.friction > 0 ||
+           std::any_of(rules->obstacles.begin(), rules->obstacles.end(),
+                       [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
+}
+
+bool Equilibrium::meets_itself(const State& state, const Controls& now, const State& next, const Controls& then) const {
+    if (then.met || model_->contact(true) == model_->contact(false)) return false;
+    const contact::Contact& contact = *model_->contact(true);
+    const std::vector<double> x = with_obstacles(state.x, now.obstacles);
+    const std::vector<double> end = with_obstacles(next.x, then.obstacles);
+    std::vector<double> motion(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) motion[i] = end[i] - x[i];
+    if (contact.largest_step(x, motion) < 1) return true;
+    contact.note_clearance(end);
+    return false;
+}
+
+std::optional<Vec3> Equilibrium::crossing(const State& state, const Controls& controls) const {
+    if (const auto* contact = model_->contact(true); contact != nullptr && contact->settings().self)
+        return std::nullopt;
+    const auto found = model_->surfaces().crossing(with_obstacles(state.x, controls.obstacles));
+    return found ? std::optional(found->point_m) : std::nullopt;
+}
+
+contact::Forces Equilibrium::contact_forces(const State& state, const Controls& controls) const {
+    const contact::Contact* contact = this->contact(controls);
+    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+    return contact->forces(contact->find(x), x, controls.friction.get());
+}
+
+std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls) const {
+    std::vector<std::vector<int>> cliques;
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return cliques;
+    const auto add = [&](std::span<const int> nodes) {
+        std::vector<int> clique;
+        for (const int node : nodes) {
+            if (node < model_->node_count()) clique.push_back(model_->free_index()[static_cast<std::size_t>(node)]);
+        }
+        cliques.push_back(std::move(clique));
+    };
+    const contact::Pairs pairs = contact->find(with_obstacles(state.x, controls.obstacles));
+    for (const contact::Pair& pair : pairs) add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count())});
+    if (controls.friction) {
+        for (const contact::FrozenPair& pair : controls.friction->pairs())
+            add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count)});
+    }
+    return cliques;
+}
+
+TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching) const {
+    auto cliques = model_->elements().cliques(model_->free_index());
+    for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
+    for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
+    for (const SpringPath& spring : springs_) spring.append_clique(model_->free_index(), cliques);
+    for (const std::vector<int>& clique : touching) cliques.push_back(clique);
+    TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
+    const Eigen::VectorXd rest = free_positions(rest_);
+    for (Eigen::Index k = 0; k < rest.size(); k += 3)
+        layout.pattern.points.push_back({rest[k], rest[k + 1], rest[k + 2]});
+    layout.element_sums = model_->elements().block_sums(model_->free_index(), layout.pattern);
+    return layout;
+}
+
+void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
+                              std::span<double> values, bool project) const {
+    const linalg::SymmetricPattern& pattern = layout.pattern;
+    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
+    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
+    for (const SpringPath& spring : springs_)
+        spring.add_hessian(view(state.x), model_->free_index(), pattern, values, project);
+    if (controls.inertia) controls.inertia->add_hessian(pattern, values);
+    if (const contact::Contact* contact = this->contact(controls)) {
+        const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+        const auto& free_index = model_->free_index();
+        const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
+            if (a >= model_->node_count() || b >= model_->node_count()) return;
+            const int i = free_index[static_cast<std::size_t>(a)];
+            const int j = free_index[static_cast<std::size_t>(b)];
+            if (j >= 0 && i >= j) pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+        };
+        contact->visit_hessian(contact->find(x), x, project, add);
+        if (controls.friction) controls.friction->visit_hessian(x, add);
+    }
+    for (std::size_t a = 0; a < actuators_.size(); ++a) {
+        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        if (multiplier != 0 || actuators_[a].gaps() != nullptr)
+            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project,
+                                      controls.shares[a]);
+    }
+    decouple_rollers(pattern, values);
+}
+
+void Equilibrium::decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    if (rollers_.empty()) return;
+    std::vector<const Eigen::Matrix3d*> may_move(static_cast<std::size_t>(pattern.nodes), nullptr);
+    for (const FreeRoller& roller : rollers_) may_move[static_cast<std::size_t>(roller.free)] = &roller.may_move;
+    const auto decouple = [&](std::size_t i, std::size_t j, double* entries) {
+        if (may_move[i] == nullptr && may_move[j] == nullptr) return;
+        Eigen::Map<Eigen::Matrix3d> block(entries);
+        const double stiffness = std::fabs(block.trace()) / 3;
+        if (may_move[i] != nullptr) block = (*may_move[i] * block).eval();
+        if (may_move[j] != nullptr) block = (block * *may_move[j]).eval();
+        if (i == j) block += stiffness * (Eigen::Matrix3d::Identity() - *may_move[j]);
+    };
+    parallel_for(may_move.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
+            for (int k = pattern.node_start[j]; k < pattern.node_start[j + 1]; ++k)
+                decouple(static_cast<std::size_t>(pattern.node_row[static_cast<std::size_t>(k)]), j,
+                         values.data() + 9 * static_cast<std::size_t>(k));
+        }
+    });
+}
+
+Eigen::VectorXd Equilibrium::apply_skew(const State& state, const Eigen::VectorXd& v) const {
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(state.x.size());
+    add_free(v, 1, motion);
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(state.x.size());
+    for (const std::size_t a : skew_) {
+        const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
+        actuators_[a].apply_skew(view(state.x), multiplier, view(std::as_const(motion)), view(result));
+    }
+    return restrict_to_free(result);
+}
+
+Eigen::VectorXd Equilibrium::restrict_to_free(const Eigen::VectorXd& full) const {
+    Eigen::VectorXd free = free_positions(full);
+    for (const FreeRoller& roller : rollers_)
+        free.segment<3>(3 * roller.free) = (roller.may_move * free.segment<3>(3 * roller.free)).eval();
+    return free;
+}
+
+Eigen::VectorXd Equilibrium::free_positions(const Eigen::VectorXd& full) const {
+    Eigen::VectorXd free(3 * model_->free_count());
+    const auto& index = model_->free_index();
+    for (std::size_t node = 0; node < index.size(); ++node) {
+        if (index[node] >= 0) free.segment<3>(3 * index[node]) = full.segment<3>(3 * static_cast<Eigen::Index>(node));
+    }
+    return free;
+}
+
+void Equilibrium::add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const {
+    const auto& index = model_->free_index();
+    for (std::size_t node = 0; node < index.size(); ++node) {
+        if (index[node] < 0) continue;
+        full.segment<3>(3 * static_cast<Eigen::Index>(node)) += factor * free.segment<3>(3 * index[node]);
+    }
+    for (const FreeRoller& roller : rollers_) {
+        const Eigen::Vector3d motion = free.segment<3>(3 * roller.free);
+        full.segment<3>(3 * roller.node) -= factor * (motion - roller.may_move * motion);
+    }
+}
+
+}  // namespace pliant::sim

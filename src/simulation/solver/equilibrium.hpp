@@ -1,0 +1,197 @@
+// The equations of one step: forces, actuators and the residual that says how far from equilibrium a state is.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "simulation/actuators/actuator.hpp"
+#include "simulation/actuators/spring.hpp"
+#include "simulation/elements/block_sums.hpp"
+#include "simulation/elements/inertia.hpp"
+#include "simulation/elements/plate.hpp"
+#include "simulation/model/model.hpp"
+
+namespace pliant::sim {
+
+/// Where the program wants the robot at one instant.
+struct Controls {
+    double time = 0;
+    Eigen::VectorXd external_N;         ///< (3n) dead loads and gravity
+    std::vector<double> support_share;  ///< (supports) of their prescribed motion
+    std::vector<Drive> drives;          ///< (actuators)
+    /// (actuators) how the tension of a cable with friction drops along it, frozen at some state of this step; empty
+    /// lists where there is no friction.
+    std::vector<std::vector<double>> shares;
+    Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) where the obstacles are
+    /// Friction as frozen at some state of this step; none before contact.
+    std::shared_ptr<const contact::Friction> friction = nullptr;
+    bool met = false;  ///< the robot has met itself: where its contact with itself waits for that, it acts
+    std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
+};
+
+/// What a solver changes: node positions and the multiplier of every actuator.
+struct State {
+    Eigen::VectorXd x;           ///< (3n) metres
+    Eigen::VectorXd multiplier;  ///< (actuators) tension of cables, N, never negative; minus the pressure of air, Pa
+};
+
+/// Everything that is known about a state at given controls.
+struct Evaluation {
+    /// What no body can do: then only min_J is filled.
+    enum class Flaw {
+        none,
+        inverted,   ///< a tetrahedron is turned inside out
+        pierced,    ///< surfaces touch or have passed through each other
+        collapsed,  ///< a chamber has no volume left
+    };
+    Flaw flaw = Flaw::none;
+    double min_J = 0;
+    double energy_J = 0;             ///< elastic and of given multipliers and gas, minus the work of loads
+    Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + sum m dg/dx; at supports the reaction
+    Eigen::VectorXd multiplier;      ///< (actuators) the state's or, where not the measure is driven, what it must be
+    Eigen::VectorXd excess;          ///< (actuators) (g - wanted g) / rest g; zero where not the measure is driven
+    double residual = 0;             ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
+    double violation = 0;            ///< largest excess that counts: not that of a slack cable
+    [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
+    [[nodiscard]] bool possible() const { return flaw == Flaw::none; }
+};
+
+/// What an impossible state does, for messages: "turns a tetrahedron inside out".
+[[nodiscard]] std::string_view name(Evaluation::Flaw flaw);
+
+/// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
+struct TangentLayout {
+    linalg::SymmetricPattern pattern;  ///< over free nodes, block 3
+    BlockSums element_sums;            ///< of the tets
+};
+
+/// A node that a support holds in one or two directions.
+struct FreeRoller {
+    Eigen::Index node = 0, free = 0;  ///< index among all nodes, and among the free ones
+    Eigen::Matrix3d may_move;         ///< projector onto the directions in which it may move
+};
+
+/// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure
+/// loads, each in the order of the model.
+class Equilibrium {
+public:
+    explicit Equilibrium(const Model& model);
+
+    [[nodiscard]] Controls controls(double time) const;
+    /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
+    /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
+    /// wanted.
+    void freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> wanted, std::span<const Drive> before,
+                               Controls& controls) const;
+    /// Largest error of the true lengths of cables with friction, relative to rest.
+    [[nodiscard]] double cable_friction_error(const State& state, std::span<const Drive> wanted) const;
+    [[nodiscard]] bool has_cable_friction() const;
+    [[nodiscard]] State rest() const;
+    /// Puts the nodes of the supports where `controls` wants them.
+    void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
+
+    [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
+    /// Elastic energy, with that of springs, and contact energy minus the work of dead loads and gravity since rest; 0
+    /// where the laws have none.
+    [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
+
+    /// Node lists that contact couples at one state, as free indices.
+    [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls) const;
+    /// For the body, its actuators and these cliques.
+    [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {}) const;
+    /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
+    /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
+    void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
+                     std::span<double> values, bool project) const;
+
+    /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
+    /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
+    [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
+                                      const Eigen::VectorXd& obstacle_motion = {}) const;
+    /// Friction for a step that began at `start`, with the contact forces of `state`. Nothing without contact.
+    [[nodiscard]] std::shared_ptr<const contact::Friction> freeze_friction(const State& state, const State& start,
+                                                                           const Controls& controls,
+                                                                           const Controls& start_controls) const;
+    /// True if something rubs.
+    [[nodiscard]] bool has_friction() const;
+    /// Where contact of the robot with itself waits until it is needed: true if on the straight way between two states
+    /// its surfaces come so near each other that it is. `now`: the controls of `state`.
+    [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,
+                                    const Controls& then) const;
+    /// From now on controls() say that the robot has met itself, or has not.
+    void set_met(bool met) { met_ = met; }
+    /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
+    /// looked for.
+    [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
+    /// Contact forces of a state, for results. Precondition: the model has contact.
+    [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
+
+    /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
+    /// out.
+    [[nodiscard]] bool has_skew() const { return !skew_.empty(); }
+    /// (3 free) -> (3 free): the skew part of the tangent times v.
+    [[nodiscard]] Eigen::VectorXd apply_skew(const State& state, const Eigen::VectorXd& v) const;
+
+    [[nodiscard]] const Model& model() const { return *model_; }
+    [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
+    [[nodiscard]] const std::vector<SpringPath>& springs() const { return springs_; }
+    [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
+    [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
+    /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
+    [[nodiscard]] double gas_compliance(const Drive& drive, double multiplier) const;
+
+    /// All forces are the gradient of one energy, so that a line search may use it.
+    [[nodiscard]] bool conservative() const { return conservative_; }
+    /// Energies that differ by less than this are the same to rounding.
+    [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
+
+    /// (3n) -> (3 free nodes) and back, of forces and motions: rollers have none along the directions in which they are
+    /// held. The rest of `full` is left alone.
+    [[nodiscard]] Eigen::VectorXd restrict_to_free(const Eigen::VectorXd& full) const;
+    void add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const;
+    /// (3n) -> (3 free nodes), of positions.
+    [[nodiscard]] Eigen::VectorXd free_positions(const Eigen::VectorXd& full) const;
+
+private:
+    void add_actuators();
+    /// Where a node is held in a direction, the tangent couples that direction to nothing else.
+    void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+    void add_plates(double stiffness_Pa, double volume_m3);
+    [[nodiscard]] Eigen::VectorXd external_at(double time) const;
+    [[nodiscard]] std::optional<GapElements> gap_elements_of(std::size_t cable) const;
+    [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
+    [[nodiscard]] bool rim_is_held(const Wall& wall) const;
+    /// Energy of an actuator whose measure is not driven, at measure g > 0.
+    [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
+    [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
+        return model_->contact(controls.met);
+    }
+    /// Robot nodes, then those of the obstacles: what contact knows as x.
+    [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
+    [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
+    void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;
+    [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
+    [[nodiscard]] bool has_collapsed_chamber(const Eigen::VectorXd& x) const;
+    void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
+    void fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
+                       Evaluation& e) const;
+
+    const Model* model_;
+    std::vector<FreeRoller> rollers_;
+    std::vector<Actuator> actuators_;
+    std::vector<Plate> plates_;
+    std::vector<SpringPath> springs_;
+    Eigen::VectorXd rest_;           ///< (3n)
+    Eigen::VectorXd gravity_;        ///< (3n) at full share
+    std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
+    bool conservative_ = true;
+    bool met_ = false;        ///< the robot has met itself
+    double force_floor_ = 0;  ///< forces below this are rounding, not load
+    double energy_rounding_ = 0;
+    double force_rounding_ = 0;  ///< out of balance by no more than this is in balance
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,59 @@
+#include "simulation/solver/friction_rounds.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace pliant::sim {
+namespace {
+
+constexpr double cable_share = 0.1;       // of the tolerance, for the length of a cable with friction
+constexpr double loose_residual = 10;     // of the tolerance, where sliding contact goes back and forth
+constexpr double loose_cable_length = 1;  // likewise
+
+/// How far the friction that was solved with is from that of the state it led to.
+struct Misfit {
+    double residual, length;
+    [[nodiscard]] bool within(double tolerance, double most_residual, double most_length) const {
+        return residual <= most_residual * tolerance && length <= most_length * tolerance;
+    }
+    [[nodiscard]] std::string text(double tolerance) const {
+        std::string out =
+            fmt::format("friction and the forces that it depends on do not settle: residual {:.2g}", residual);
+        if (length > cable_share * tolerance)
+            out += fmt::format(", a cable off by {:.2g} of its length at rest", length);
+        return out + fmt::format(", tolerance {:.2g}", tolerance);
+    }
+};
+
+}  // namespace
+
+StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, const StepSettings& settings, int rounds,
+                            const StepStart& start, Controls& controls, State& next, const Progress& progress,
+                            std::optional<Evaluation> known) {
+    const std::vector<Drive> wanted = controls.drives;
+    const bool cables_drag = system.has_cable_friction(), rubs = cables_drag || system.has_friction();
+    if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
+    controls.friction = system.freeze_friction(start.state, start.state, start.controls, start.controls);
+    if (rubs) known.reset();
+    StepOutcome total;
+    for (int round = 1; round <= rounds; ++round) {
+        StepOutcome outcome =
+            solvers.solve(system, controls, settings, next, progress, std::exchange(known, std::nullopt));
+        outcome.iterations += total.iterations;
+        outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
+        total = std::move(outcome);
+        if (!total.converged || !rubs) break;
+        controls.friction = system.freeze_friction(next, start.state, controls, start.controls);
+        if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
+        total.evaluation = system.evaluate(next, controls);
+        const Misfit misfit{total.evaluation.residual, system.cable_friction_error(next, wanted)};
+        if (misfit.within(settings.tolerance, 1, cable_share)) break;
+        if (round < rounds) continue;
+        total.converged = total.loose = misfit.within(settings.tolerance, loose_residual, loose_cable_length);
+        total.reason = misfit.text(settings.tolerance);
+    }
+    return total;
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,266 @@
+// Solvers that stand in for one that stalls, the record of iterations, and pressures that cannot be reached.
+#include "simulation/solver/solver_chain.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/core/near.hpp"
+#include "simulation/actuators/attach.hpp"
+#include "simulation/run/test_problems.hpp"
+#include "simulation/solver/pressure_limit.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using testing::solve;
+
+namespace {
+
+constexpr double side = 0.01;
+
+/// A bar of 4 x 1 x 1 cm whose free end is moved sideways.
+Description pushed_bar() {
+    Description d;
+    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
+    d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
+    d.material_of_region = {0};
+    d.supports = {
+        {"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}},
+        {"grip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {0, 0, 0.5 * side}}};
+    return d;
+}
+
+/// The bar with a cable along its upper side.
+Description pulled_bar(double length_ratio) {
+    Description d = pushed_bar();
+    d.supports.pop_back();
+    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, {CableTarget::Kind::length_ratio, length_ratio}};
+    for (int k = 1; k <= 4; ++k) {
+        const Vec3 at{k * side, side / 2, side};
+        cable.points.push_back(
+            {reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < 1e-9; }), {1.0}, {}});
+    }
+    d.cables = {cable};
+    return d;
+}
+
+Description hollow_block(ChamberTarget target) {
+    Description d = testing::hollow_block(1);
+    d.chambers[0].target = std::move(target);
+    return d;
+}
+
+/// A solver that finds nothing, or creeps.
+class Hindered final : public Curvature {
+public:
+    Hindered(const FactoredLaplacian& laplacian, bool creeps, int& asked)
+        : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
+    [[nodiscard]] Solver solver() const override { return Solver::newton; }
+    [[nodiscard]] int default_iteration_limit() const override { return 1000; }
+    [[nodiscard]] bool refresh(const State&, const Controls&, Care, Errors) override {
+        ++*asked_;
+        return creeps_;
+    }
+    void solve(Eigen::MatrixXd& columns) override {
+        laplacian_->solve(columns);
+        columns *= 1e-6;
+    }
+
+private:
+    const FactoredLaplacian* laplacian_;
+    bool creeps_;
+    int* asked_;
+};
+
+}  // namespace
+
+TEST_CASE("where the first solver stalls the next one finishes the step, and the first begins again afterwards") {
+    const auto model = Model::create(pushed_bar());
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(system);
+    const Controls controls = system.controls(0.2);
+    Progress silent;
+    for (const bool creeps : {false, true}) {
+        int asked = 0;
+        SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, creeps, asked); }},
+                           {Solver::quasi_newton, [&] { return make_quasi_newton(laplacian); }}});
+        int before = 0;
+        for (int round = 0; round < 2; ++round) {
+            State state = system.rest();
+            system.place_supports(controls, state.x);
+            system.add_free(laplacian.follow(system, state.x - system.rest().x), 1, state.x);
+            chain.restart();
+            const StepOutcome outcome = chain.solve(system, controls, {1e-6, 0}, state, silent);
+            REQUIRE_MESSAGE(outcome.converged, outcome.reason);
+            CHECK(outcome.solver == Solver::quasi_newton);
+            CHECK(outcome.evaluation.residual <= 1e-6);
+            CHECK(asked - before == (creeps ? 30 : 3));  // plain and cautious, or until patience ends
+            before = asked;
+            const auto first_of = [&](Solver solver) {
+                return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
+            };
+            CHECK(first_of(Solver::newton) == outcome.history.begin());
+            CHECK(first_of(Solver::quasi_newton)->iteration == 0);
+            CHECK(outcome.history.back().iteration + (creeps ? 30 : 1) == outcome.iterations);
+        }
+    }
+}
+
+TEST_CASE("where nobody gets there the reasons of all are given, and each has its budget") {
+    const auto model = Model::create(pushed_bar());
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(system);
+    const Controls controls = system.controls(0.2);
+    int asked = 0;
+    SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, false, asked); }},
+                       {Solver::local_global, [&] { return make_local_global(laplacian); }}});
+    State state = system.rest();
+    system.place_supports(controls, state.x);
+    system.add_free(laplacian.follow(system, state.x - system.rest().x), 1, state.x);
+    Progress silent;
+    const StepOutcome outcome = chain.solve(system, controls, {1e-9, 0}, state, silent);
+    CHECK_FALSE(outcome.converged);
+    CHECK(outcome.iterations == 101);
+    CHECK(outcome.reason.starts_with("no step lowers the energy"));
+    CHECK(outcome.reason.find("; with local-global: no convergence in 100 iterations") != std::string::npos);
+}
+
+TEST_CASE("a solver that was asked for by name stays alone") {
+    const Trajectory result =
+        solve(pulled_bar(0.7), {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    CHECK(result.steps.back().substeps > 1);  // it did not get there at once
+    for (const IterationRecord& record : result.iterations) CHECK(record.solver == Solver::newton);
+    CHECK(result.steps.back().solver == Solver::newton);
+}
+
+TEST_CASE("auto: a step for which the iterations of its solver do not suffice is finished by the other, not halved") {
+    Description d = pulled_bar(0.95);
+    d.materials = {{"A", material::shape_blend(1e6, 0.3), 1000}};  // no energy: quasi-newton, then anderson
+    const Trajectory alone = solve(d, {.steps = 1, .tolerance = 1e-5, .solver = Solver::quasi_newton});
+    REQUIRE_MESSAGE(alone.converged, alone.message);
+    const int needed = alone.steps.back().iterations;
+    const Trajectory helped = solve(d, {.steps = 1, .tolerance = 1e-5, .iteration_limit = needed - 1});
+    REQUIRE_MESSAGE(helped.converged, helped.message);
+    CHECK(helped.solver == "quasi-newton");
+    CHECK(helped.steps.back().solver == Solver::anderson);
+    CHECK(helped.steps.back().substeps == 1);
+    CHECK(helped.steps.back().iterations >= needed);
+    CHECK(helped.steps.back().cables[0].tension_N == near(alone.steps.back().cables[0].tension_N, {.relative = 1e-3}));
+}
+
+TEST_CASE("every iteration is recorded as the state that it led to") {
+    for (const Solver solver : {Solver::newton, Solver::anderson}) {
+        const Trajectory result = solve(pulled_bar(0.9), {.steps = 3, .tolerance = 1e-6, .solver = solver});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        int step = 1;
+        int counted = 0;
+        for (std::size_t i = 0; i < result.iterations.size(); ++i) {
+            const IterationRecord& r = result.iterations[i];
+            CHECK(r.solver == solver);
+            CHECK(r.step >= step);
+            step = r.step;
+            CHECK(r.time == near(step / 3.0, {.relative = 1e-12}));
+            CHECK(r.min_J > 0);
+            CHECK((r.alpha > 0) == (r.iteration > 0));
+            CHECK(r.alpha <= 1);
+            if (r.iteration > 0) ++counted;
+            const bool last = i + 1 == result.iterations.size() || result.iterations[i + 1].iteration == 0;
+            if (!last) continue;
+            const Step& reached = result.steps[static_cast<std::size_t>(step)];
+            CHECK(r.residual == reached.residual);
+            CHECK(r.min_J == reached.min_J);
+            CHECK(r.iteration == reached.iterations);
+            CHECK(r.violation <= 1e-8);
+        }
+        int total = 0;
+        for (const Step& s : result.steps) total += s.iterations;
+        CHECK(counted == total);
+        CHECK(result.iterations.front().violation == near(0.1 / 3, {.relative = 1e-12}));
+    }
+}
+
+TEST_CASE("Anderson's mixing needs a fraction of the plain iterations, with a cable and with a chamber") {
+    const auto iterations = [](const Description& d, Solver solver) {
+        const Trajectory result = solve(d, {.steps = 3, .tolerance = 1e-5, .solver = solver});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        int sum = 0;
+        for (const Step& step : result.steps) sum += step.iterations;
+        return sum;
+    };
+    for (const Description& d :
+         {pulled_bar(0.9), hollow_block({ChamberTarget::Kind::volume_ratio, 1.4}), pushed_bar()}) {
+        const int plain = iterations(d, Solver::local_global);
+        const int mixed = iterations(d, Solver::anderson);
+        CAPTURE(plain);
+        CHECK(mixed * 3 < plain);
+    }
+}
+
+TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plain step where caution is asked for") {
+    const auto model = Model::create(pushed_bar());
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(system);
+    const auto mixing = make_anderson(laplacian);
+    const Controls controls = system.controls(0);
+    const State state = system.rest();
+    const Eigen::Index n = 3 * model->free_count();
+    const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(n, -1, 2);
+    const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(n, 1, 0.5).array().square();
+    Eigen::MatrixXd columns(n, 2);
+    columns << u, v;
+    Eigen::MatrixXd inverse = columns;
+    laplacian.solve(inverse);
+    // Learn two exact pairs: y = 5 u for s = L^-1 u, y = 0.2 v for s = L^-1 v.
+    mixing->restart();
+    mixing->learn(inverse.col(0), 5 * u);
+    mixing->learn(inverse.col(1), 0.2 * v);
+    REQUIRE(mixing->refresh(state, controls, Care::usual, {}));
+    Eigen::MatrixXd asked(n, 2);
+    asked << 5 * u, u + v;
+    Eigen::MatrixXd expected(n, 2);
+    expected << inverse.col(0), inverse.col(0) / 5 + inverse.col(1) / 0.2;
+    mixing->solve(asked);
+    CHECK((asked - expected).norm() < 1e-8 * expected.norm());
+    // Cautious: the plain step.
+    REQUIRE(mixing->refresh(state, controls, Care::cautious, {}));
+    Eigen::MatrixXd plain = columns;
+    mixing->solve(plain);
+    CHECK((plain - inverse).norm() == 0);
+    // And what has misled is forgotten.
+    REQUIRE(mixing->refresh(state, controls, Care::usual, {}));
+    plain = columns;
+    mixing->solve(plain);
+    CHECK((plain - inverse).norm() == 0);
+}
+
+TEST_CASE("a pressure beyond a chamber's largest: the message names the limit, and volume passes it") {
+    const Trajectory by_volume =
+        solve(hollow_block({ChamberTarget::Kind::volume_ratio, 12}), {.steps = 60, .tolerance = 1e-5});
+    REQUIRE_MESSAGE(by_volume.converged, by_volume.message);
+    double largest = 0;
+    for (const Step& step : by_volume.steps) largest = std::max(largest, step.chambers[0].pressure_Pa);
+    REQUIRE(by_volume.steps.back().chambers[0].pressure_Pa < 0.99 * largest);  // there is a maximum to be found
+
+    const Trajectory by_pressure =
+        solve(hollow_block({ChamberTarget::Kind::pressure_Pa, 1.3 * largest}), {.steps = 13, .tolerance = 1e-5});
+    CHECK_FALSE(by_pressure.converged);
+    CHECK(by_pressure.message.find("No equilibrium was found above") != std::string::npos);
+    CHECK(by_pressure.message.find("Drive it by volume_ratio") != std::string::npos);
+    const std::string words = "has a maximum of ";
+    const std::size_t at = by_pressure.message.find(words);
+    REQUIRE_MESSAGE(at != std::string::npos, by_pressure.message);
+    CHECK(1e3 * std::stod(by_pressure.message.substr(at + words.size())) == near(largest, {.relative = 5e-3}));
+}
+
+TEST_CASE("a program that stops for another reason is not said to have met a limit of pressure") {
+    Description d = hollow_block({ChamberTarget::Kind::pressure_Pa, 3000});
+    const Trajectory result = solve(d, {.steps = 2, .tolerance = 1e-9, .iteration_limit = 1});
+    CHECK_FALSE(result.converged);
+    CHECK(result.message.find("No equilibrium") == std::string::npos);
+}

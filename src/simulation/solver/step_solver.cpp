@@ -1,0 +1,404 @@
+#include "simulation/solver/step_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+/// The excess length may be no larger than this share of the tolerance: the tension follows it closely.
+constexpr double excess_share = 0.01;
+constexpr std::size_t error_memory = 10;
+constexpr double close = 0.05;  // an error
+
+struct Direction {
+    Eigen::VectorXd dx;          ///< (3 free)
+    Eigen::VectorXd multiplier;  ///< (actuators) that goes with the full step
+    double slope_J = 0;          ///< change of energy along dx, to first order
+};
+
+/// Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
+Eigen::VectorXd solve_small(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right_side) {
+    return matrix.completeOrthogonalDecomposition().solve(right_side);
+}
+
+/// The multipliers m that solve min m^T S m / 2 - m^T b, where those that `only_pull` may not be negative: each cable
+/// either pulls and keeps its length, or is slack and not too long. S = A^T H^-1 A may be singular (parallel cables).
+/// Lawson and Hanson 1974, chapter 23.
+Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b,
+                                      const std::vector<bool>& only_pull) {
+    const Eigen::Index count = b.size();
+    Eigen::VectorXd m = Eigen::VectorXd::Zero(count);
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index i = 0; i < count; ++i) {
+        if (!only_pull[static_cast<std::size_t>(i)]) active.push_back(i);
+    }
+    if (!active.empty()) m(active) = solve_small(S(active, active), b(active));
+    const double rounding = 1e-13 * (b.cwiseAbs().maxCoeff() + 1e-300);
+    for (Eigen::Index round = 0; round < 3 * count + 3; ++round) {
+        const Eigen::VectorXd excess = b - S * m;
+        Eigen::Index worst = -1;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const bool slack = std::find(active.begin(), active.end(), i) == active.end();
+            if (slack && excess[i] > rounding && (worst < 0 || excess[i] > excess[worst])) worst = i;
+        }
+        if (worst < 0) break;
+        active.push_back(worst);
+        while (!active.empty()) {
+            const Eigen::VectorXd wanted = solve_small(S(active, active), b(active));
+            double share = 1;  // of the way from m to wanted that keeps every tension positive
+            for (std::size_t k = 0; k < active.size(); ++k) {
+                const double from = m[active[k]];
+                const double to = wanted[static_cast<Eigen::Index>(k)];
+                if (only_pull[static_cast<std::size_t>(active[k])] && to <= 0)
+                    share = std::min(share, from / (from - to));
+            }
+            for (std::size_t k = 0; k < active.size(); ++k)
+                m[active[k]] += share * (wanted[static_cast<Eigen::Index>(k)] - m[active[k]]);
+            if (share == 1) break;
+            const double zero = 1e-14 * m.cwiseAbs().maxCoeff();
+            std::erase_if(active, [&](Eigen::Index i) {
+                return only_pull[static_cast<std::size_t>(i)] && m[i] <= zero ? (m[i] = 0, true) : false;
+            });
+        }
+    }
+    return m;
+}
+
+class StepSolver {
+public:
+    StepSolver(const Equilibrium& system, Curvature& curvature, const Controls& controls, State& state,
+               std::optional<Evaluation> known)
+        : system_(system),
+          curvature_(curvature),
+          controls_(controls),
+          state_(state),
+          evaluation_(known ? std::move(*known) : system.evaluate(state, controls)) {
+        for (std::size_t a = 0; a < controls.drives.size(); ++a) {
+            if (controls.drives[a].kind == Drive::Kind::multiplier) continue;
+            solved_.push_back(static_cast<Eigen::Index>(a));
+            only_pull_.push_back(system.actuators()[a].only_pulls());
+            by_gaps_ = by_gaps_ || system.actuators()[a].gaps() != nullptr;
+        }
+        prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
+        if (evaluation_.possible()) state_.multiplier = evaluation_.multiplier;
+    }
+
+    [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
+    /// Share of the last direction that was taken.
+    [[nodiscard]] double alpha() const { return alpha_; }
+    /// What the shortest step that was tried last does; none: it is possible, but no better.
+    [[nodiscard]] Evaluation::Flaw obstacle() const { return obstacle_; }
+    [[nodiscard]] bool converged(double tolerance) const {
+        return evaluation_.residual <= tolerance && evaluation_.violation <= excess_share * tolerance;
+    }
+
+    /// One iteration; false if no acceptable step was found.
+    bool iterate(Care care, double tolerance) {
+        const Errors errors{std::max(evaluation_.residual, tolerance), evaluation_.violation, tolerance};
+        if (!curvature_.refresh(state_, controls_, care, errors)) return false;
+        const Direction direction = find_direction();
+        if (!direction.dx.allFinite()) return false;
+        return search(direction);
+    }
+
+private:
+    [[nodiscard]] const Actuator& actuator(Eigen::Index a) const {
+        return system_.actuators()[static_cast<std::size_t>(a)];
+    }
+    [[nodiscard]] static std::span<const double> view(const Eigen::VectorXd& v) {
+        return {v.data(), static_cast<std::size_t>(v.size())};
+    }
+
+    using AddGradient = void (Actuator::*)(std::span<const double>, double, std::span<double>,
+                                           std::span<const double>) const;
+    /// Of the actuators whose multipliers are unknown, on free nodes: (3 free, solved), over the measure at rest.
+    [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient) const {
+        Eigen::MatrixXd gradients(3 * system_.model().free_count(), static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k) {
+            Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
+            const Actuator& one = actuator(solved_[k]);
+            (one.*add_gradient)(view(state_.x), 1 / one.rest_measure(),
+                                {full.data(), static_cast<std::size_t>(full.size())}, {});
+            gradients.col(static_cast<Eigen::Index>(k)) = system_.restrict_to_free(full);
+        }
+        return gradients;
+    }
+
+    /// Rest measures of the solved actuators: multipliers times these are energies, all of one kind.
+    [[nodiscard]] Eigen::VectorXd scales() const {
+        Eigen::VectorXd scale(static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k)
+            scale[static_cast<Eigen::Index>(k)] = actuator(solved_[k]).rest_measure();
+        return scale;
+    }
+
+    /// A sealed gas gives way: a compliance beside the body's own, (solved).
+    [[nodiscard]] Eigen::VectorXd compliances() const {
+        Eigen::VectorXd compliance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(solved_.size()));
+        for (std::size_t k = 0; k < solved_.size(); ++k) {
+            const Eigen::Index a = solved_[k];
+            const Drive& drive = controls_.drives[static_cast<std::size_t>(a)];
+            const double rest = actuator(a).rest_measure();
+            if (drive.kind == Drive::Kind::gas)
+                compliance[static_cast<Eigen::Index>(k)] =
+                    system_.gas_compliance(drive, state_.multiplier[a]) / (rest * rest);
+        }
+        return compliance;
+    }
+
+    [[nodiscard]] Direction find_direction() {
+        const Eigen::VectorXd gradient = system_.restrict_to_free(evaluation_.out_of_balance);
+        const Eigen::MatrixXd forces = gradients_of(&Actuator::add_gradient);
+        const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : forces;
+        Eigen::MatrixXd columns(gradient.size(), 1 + A.cols());
+        columns.col(0) = gradient;
+        columns.rightCols(A.cols()) = forces;
+        curvature_.solve(columns);
+
+        Direction direction;
+        direction.multiplier = state_.multiplier;
+        direction.dx = -columns.col(0);
+        Eigen::VectorXd energy_gradient = gradient;
+        if (!solved_.empty()) {
+            const Eigen::VectorXd scale = scales();
+            const Eigen::VectorXd compliance = compliances();
+            const Eigen::VectorXd now = state_.multiplier(solved_).cwiseProduct(scale);
+            Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
+            // What is too much after the free step; then what it takes beside the present multipliers.
+            const Eigen::VectorXd excess = evaluation_.excess(solved_) - A.transpose() * columns.col(0);
+            S.diagonal() += compliance;
+            const Eigen::VectorXd change = multipliers_that_hold(S, excess + S * now, only_pull_) - now;
+            direction.dx -= columns.rightCols(A.cols()) * change;
+            direction.multiplier(solved_) += change.cwiseQuotient(scale);
+            for (const Eigen::Index a : solved_) {
+                if (actuator(a).only_pulls()) direction.multiplier[a] = std::max(direction.multiplier[a], 0.0);
+            }
+            for (std::size_t k = 0; k < solved_.size(); ++k) {
+                const auto i = static_cast<Eigen::Index>(k);
+                if (drives_measure(solved_[k])) energy_gradient -= forces.col(i) * now[i];
+            }
+        }
+        direction.slope_J = energy_gradient.dot(direction.dx);
+        return direction;
+    }
+
+    [[nodiscard]] bool drives_measure(Eigen::Index a) const {
+        return controls_.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::measure;
+    }
+
+    /// Halves the step until the state is possible and the merit (or the error) goes down.
+    bool search(const Direction& direction) {
+        raise_prices(direction);
+        const double cost = cost_of_excess(evaluation_);  // a full step removes it
+        const double start = evaluation_.energy_J + cost;
+        const double slope = direction.slope_J - cost;
+        const bool conservative = system_.conservative();
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
+        system_.add_free(direction.dx, 1, motion);
+        Way way(*this, motion);
+        for (double alpha = way.longest(); alpha > curvature_.smallest_share() * way.longest(); alpha *= 0.5) {
+            State next = state_;
+            next.x = way.at(alpha);
+            next.multiplier += alpha * (direction.multiplier - state_.multiplier);
+            Evaluation evaluation = system_.evaluate(next, controls_);
+            obstacle_ = evaluation.flaw;
+            if (!evaluation.possible() || !(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
+            // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
+            const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
+            const double merit = evaluation.energy_J + cost_of_excess(evaluation);
+            const bool lower = conservative && merit < start - 1e-4 * alpha * std::fabs(slope) + rounding;
+            const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
+                                             : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
+            if (!lower && !nearer) continue;
+            accept(std::move(next), std::move(evaluation), alpha);
+            return true;
+        }
+        return false;
+    }
+
+    /// Where shares of a motion lead. The solver may turn the body where motion is straight; if it meets something on
+    /// that way, it goes straight, and no further than nothing is met.
+    class Way {
+    public:
+        Way(const StepSolver& solver, const Eigen::VectorXd& motion) : solver_(solver), motion_(motion) {
+            turned_ = free_end(1);
+            if (!turned_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
+        }
+        [[nodiscard]] double longest() const { return longest_; }
+        /// Precondition: alpha is at most longest(), and falls from call to call.
+        [[nodiscard]] Eigen::VectorXd at(double alpha) {
+            if (alpha == 1 && turned_) return *std::exchange(turned_, std::nullopt);
+            if (std::optional<Eigen::VectorXd> end = free_end(alpha)) return std::move(*end);
+            // Straight on, longest() is known to be free only where the whole turned way was not.
+            const double share =
+                longest_ < 1 ? 1 : solver_.system_.largest_step(solver_.state_.x, alpha * motion_, solver_.controls_);
+            return solver_.state_.x + share * alpha * motion_;
+        }
+
+    private:
+        /// Where the solver goes for this share, if it meets nothing.
+        [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
+            const Eigen::VectorXd& x = solver_.state_.x;
+            Eigen::VectorXd end = solver_.curvature_.go(x, alpha * motion_);
+            if (solver_.system_.largest_step(x, end - x, solver_.controls_) < 1) return std::nullopt;
+            return end;
+        }
+
+        const StepSolver& solver_;
+        const Eigen::VectorXd& motion_;
+        std::optional<Eigen::VectorXd> turned_;  ///< the end of the whole way
+        double longest_ = 1;
+    };
+
+    /// What the present excess adds to the merit: a cable that is not too long costs nothing.
+    [[nodiscard]] double cost_of_excess(const Evaluation& evaluation) const {
+        double cost = 0;
+        for (const Eigen::Index a : solved_) {
+            const double excess = evaluation.excess[a];
+            cost += prices_[a] * (actuator(a).only_pulls() ? std::max(excess, 0.0) : std::fabs(excess));
+        }
+        return cost;
+    }
+
+    /// Without an energy only the error can guide. It is a ratio of forces and rises where a cable begins to pull, so
+    /// it may rise for a while: not above the largest of the last steps, nor at first above what any loaded body has
+    /// (the non-monotone search of Grippo, Lampariello and Lucidi 1986).
+    /// Close to equilibrium, and with tangents that know the skew part, a rise means that the step leads off to another
+    /// equilibrium: none is allowed.
+    [[nodiscard]] double allowed_error() const {
+        if (system_.has_skew() && evaluation_.error() < close) return evaluation_.error();
+        return errors_.size() < error_memory ? 2 : *std::max_element(errors_.begin(), errors_.end());
+    }
+
+    /// Excess must cost more than any multiplier that holds it, or the merit would prefer long cables.
+    void raise_prices(const Direction& direction) {
+        for (const Eigen::Index a : solved_) {
+            if (drives_measure(a))
+                prices_[a] = std::max(prices_[a], 2 * std::fabs(direction.multiplier[a]) * actuator(a).rest_measure());
+        }
+    }
+
+    void accept(State next, Evaluation evaluation, double alpha) {
+        // The quasi-Newton pair needs both forces at the same multipliers.
+        next.multiplier = evaluation.multiplier;
+        const Eigen::VectorXd old_force = solved_.empty() ? evaluation_.out_of_balance : force_at(next.multiplier);
+        curvature_.learn(system_.restrict_to_free(next.x - state_.x),
+                         system_.restrict_to_free(evaluation.out_of_balance - old_force));
+        curvature_.judge(evaluation_.error(), evaluation.error());
+        state_ = std::move(next);
+        evaluation_ = std::move(evaluation);
+        alpha_ = alpha;
+        errors_.push_back(evaluation_.error());
+        if (errors_.size() > error_memory) errors_.pop_front();
+    }
+
+    /// Out-of-balance force of the present positions at other multipliers.
+    [[nodiscard]] Eigen::VectorXd force_at(const Eigen::VectorXd& multiplier) const {
+        Eigen::VectorXd force = evaluation_.out_of_balance;
+        for (const Eigen::Index a : solved_) {
+            actuator(a).add_gradient(view(state_.x), multiplier[a] - state_.multiplier[a],
+                                     {force.data(), static_cast<std::size_t>(force.size())},
+                                     controls_.shares[static_cast<std::size_t>(a)]);
+        }
+        return force;
+    }
+
+    const Equilibrium& system_;
+    Curvature& curvature_;
+    const Controls& controls_;
+    State& state_;
+    Evaluation evaluation_;
+    double alpha_ = 0;
+    Evaluation::Flaw obstacle_ = Evaluation::Flaw::none;
+    std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
+    std::vector<bool> only_pull_;       ///< (solved)
+    bool by_gaps_ = false;              ///< the force of one of them is not the gradient of its measure
+    Eigen::VectorXd prices_;            ///< (actuators)
+    std::deque<double> errors_;         ///< of the last steps
+};
+
+/// Counts iterations that brought the error no further.
+class Patience {
+public:
+    Patience(int limit, double error) : limit_(limit), best_(error) {}
+    [[nodiscard]] bool is_at_end(double error) {
+        if (error < 0.9 * best_) {
+            best_ = error;
+            idle_ = 0;
+        } else {
+            ++idle_;
+        }
+        return limit_ > 0 && idle_ >= limit_;
+    }
+
+private:
+    int limit_;
+    double best_;
+    int idle_ = 0;
+};
+
+IterationRecord record(Solver solver, int iteration, const Evaluation& e, double alpha) {
+    return {.solver = solver,
+            .iteration = iteration,
+            .residual = e.residual,
+            .violation = e.violation,
+            .energy_J = e.energy_J,
+            .alpha = alpha,
+            .min_J = e.min_J};
+}
+
+std::string stuck(const StepSolver& solver) {
+    const double residual = solver.evaluation().residual;
+    if (solver.obstacle() == Evaluation::Flaw::none)
+        return fmt::format("no step lowers the energy, residual {:.2e}", residual);
+    return fmt::format("every step that lowers the energy {}, residual {:.2e}", name(solver.obstacle()), residual);
+}
+
+}  // namespace
+
+StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
+                       const StepSettings& settings, State& state, const Progress& progress,
+                       std::optional<Evaluation> known) {
+    StepSolver solver(system, curvature, controls, state, std::move(known));
+    StepOutcome outcome;
+    outcome.solver = curvature.solver();
+    outcome.history.push_back(record(outcome.solver, 0, solver.evaluation(), 0));
+    const int limit = settings.iteration_limit > 0 ? settings.iteration_limit : curvature.default_iteration_limit();
+    Patience patience(settings.patience, solver.evaluation().error());
+    const auto residual = [&] { return solver.evaluation().residual; };
+    while (!(outcome.converged = solver.converged(settings.tolerance))) {
+        if (progress.cancelled()) {
+            outcome.reason = "cancelled";
+            break;
+        }
+        if (outcome.iterations == limit) {
+            outcome.reason = fmt::format("no convergence in {} iterations, residual {:.2e}", limit, residual());
+            break;
+        }
+        ++outcome.iterations;
+        if (!solver.iterate(Care::usual, settings.tolerance) && !solver.iterate(Care::exact, settings.tolerance) &&
+            !solver.iterate(Care::cautious, settings.tolerance)) {
+            outcome.reason = stuck(solver);
+            break;
+        }
+        outcome.history.push_back(record(outcome.solver, outcome.iterations, solver.evaluation(), solver.alpha()));
+        if (patience.is_at_end(solver.evaluation().error()) && !solver.converged(settings.tolerance)) {
+            outcome.reason =
+                fmt::format("no progress in {} iterations, residual {:.2e}", settings.patience, residual());
+            break;
+        }
+    }
+    outcome.evaluation = solver.evaluation();
+    return outcome;
+}
+
+}  // namespace pliant::sim
