@@ -26,12 +26,7 @@ struct Diagnostic {
     bool operator==(const Diagnostic&) const = default;
 };
 /// "FILE:LINE: KEY: TEXT", without what is not known.
-[[nodiscard]] inline std::string shown(const Diagnostic& d) {
-    std::string place = d.file;
-    if (d.line > 0 && !d.file.empty()) place += ":" + std::to_string(d.line);
-    if (!place.empty()) place += ": ";
-    return d.key.empty() ? place + d.text : place + d.key + ": " + d.text;
-}
+[[nodiscard]] std::string shown(const Diagnostic& problem);
 
 struct Error {
     Cause cause = Cause::input;
@@ -39,16 +34,12 @@ struct Error {
     std::vector<Diagnostic> problems{};  ///< the same as data, where it is about places; else empty
 };
 
-/// Of problems, shown one a line.
-[[nodiscard]] inline Error error_of(Cause cause, std::vector<Diagnostic> problems) {
-    std::string lines;
-    for (const Diagnostic& problem : problems) lines += (lines.empty() ? "" : "\n") + shown(problem);
-    return {cause, std::move(lines), std::move(problems)};
-}
-
 template <class T>
 using Result = tl::expected<T, Error>;
 using Status = Result<void>;
+
+/// Of problems, shown one a line.
+[[nodiscard]] Error error_of(Cause cause, std::vector<Diagnostic> problems);
 
 /// `return input_error("{}: ...", file);`
 template <class... Args>

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "geometry/mesh/tri_mesh.hpp"
-#include "geometry/repair/surface_shells.hpp"
 #include "geometry/shapes/solid.hpp"
 
 namespace pliant::mesh::test {

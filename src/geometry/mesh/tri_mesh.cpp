@@ -23,4 +23,10 @@ TriMesh scaled(TriMesh mesh, double factor) {
     return mesh;
 }
 
+void append(TriMesh& surface, const TriMesh& other) {
+    const int offset = static_cast<int>(surface.points.size());
+    surface.points.insert(surface.points.end(), other.points.begin(), other.points.end());
+    for (const auto& [a, b, c] : other.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
+}
+
 }  // namespace pliant::mesh

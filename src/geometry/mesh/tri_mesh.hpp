@@ -23,4 +23,7 @@ struct TriMesh {
 /// Every point multiplied by `factor` (a change of unit).
 [[nodiscard]] TriMesh scaled(TriMesh mesh, double factor);
 
+/// Puts `other` beside what there is.
+void append(TriMesh& surface, const TriMesh& other);
+
 }  // namespace pliant::mesh

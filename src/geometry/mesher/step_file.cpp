@@ -6,10 +6,10 @@
 
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 #include "geometry/mesher/mesh_worker.hpp"
 #include "geometry/mesher/packing.hpp"
-#include "geometry/repair/surface_shells.hpp"
 
 namespace pliant::mesh {
 namespace {

@@ -68,12 +68,6 @@ std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface) {
     return shells;
 }
 
-void append(TriMesh& surface, const TriMesh& other) {
-    const int offset = static_cast<int>(surface.points.size());
-    surface.points.insert(surface.points.end(), other.points.begin(), other.points.end());
-    for (const auto& [a, b, c] : other.triangles) surface.triangles.push_back({a + offset, b + offset, c + offset});
-}
-
 TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles) {
     TriMesh part;
     std::map<int, int> index;

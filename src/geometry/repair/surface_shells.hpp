@@ -18,9 +18,6 @@ namespace pliant::mesh {
 /// The triangles of each shell (what hangs together by edges), shells in the order of their first triangle.
 [[nodiscard]] std::vector<std::vector<std::size_t>> shell_triangles(const TriMesh& surface);
 
-/// Puts `other` beside what there is.
-void append(TriMesh& surface, const TriMesh& other);
-
 /// Some triangles of a surface, in this order, with the points that they use.
 [[nodiscard]] TriMesh part_of(const TriMesh& surface, const std::vector<std::size_t>& triangles);
 

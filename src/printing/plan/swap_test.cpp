@@ -176,5 +176,5 @@ TEST_CASE("a wall's retriever works while the part is sprayed, and the spray doe
     CHECK(late.total > 200);
     machine::Printer long_spray = wall;
     long_spray.cleaning.spray_s = 100;
-    CHECK(swap_seconds(long_spray, 1, 7).clean == near(100, {.relative = 0.02}));
+    CHECK(swap_seconds(long_spray, 1, 7).clean == pliant::near(100, {.relative = 0.02}));
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/repair/surface_shells.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 
 namespace pliant::slice::test {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/core/text.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 #include "geometry/open/open_geometry.hpp"
-#include "geometry/repair/surface_shells.hpp"
 
 namespace pliant::robot {
 namespace {

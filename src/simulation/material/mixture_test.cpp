@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "base/core/near.hpp"
+#include "simulation/material/response.hpp"
 
 using namespace pliant;
 using namespace pliant::material;

@@ -9,6 +9,7 @@
 
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
+#include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_model.hpp"
 
 namespace pliant::robot::testing {
