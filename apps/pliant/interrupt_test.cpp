@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -72,12 +73,20 @@ public:
         listen();
         return said_.find(text) != std::string::npos;
     }
-    [[nodiscard]] bool has_loaded(const std::string& library) const {
-        std::FILE* maps = std::fopen(fmt::format("/proc/{}/maps", process_).c_str(), "r");
-        std::string text;
-        for (int c = 0; maps != nullptr && (c = std::fgetc(maps)) != EOF;) text += static_cast<char>(c);
-        if (maps != nullptr) std::fclose(maps);
-        return text.find(library) != std::string::npos;
+    /// Whether it has started the program of this name.
+    [[nodiscard]] bool has_child(const std::string& name) const {
+        for (const auto& entry : fs::directory_iterator("/proc")) {
+            if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
+            std::ifstream file(entry.path() / "stat");
+            const std::string stat{std::istreambuf_iterator<char>(file), {}};
+            const std::size_t name_end = stat.rfind(')');
+            if (stat.find("(" + name + ")") == std::string::npos || name_end == std::string::npos) continue;
+            std::istringstream rest(stat.substr(name_end + 1));
+            char state = 0;
+            pid_t parent = 0;
+            if (rest >> state >> parent && parent == process_) return true;
+        }
+        return false;
     }
     bool ended() {
         listen();  // or it waits for somebody to read
@@ -150,7 +159,7 @@ TEST_CASE("interrupted while it meshes, it writes nothing and says one line") {
             CAPTURE(command);
             const test::Folder folder("interrupt");
             Program program({command, finger, "-o", folder / "out.vtu", "--set", "mesh.size=0.3 mm"});
-            REQUIRE(wait_for([&] { return program.has_loaded("libgmsh"); }));
+            REQUIRE(wait_for([&] { return program.has_child("pliant-mesh"); }));
             program.send(signal);
             CHECK(program.exit_status() == 1);
             CHECK(program.last_line() == "cancelled");

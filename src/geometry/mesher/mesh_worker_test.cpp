@@ -51,7 +51,12 @@ std::vector<pid_t> meshers() {
         char state = 0;
         pid_t parent = 0;
         rest >> state >> parent;
-        if (parent == ::getpid() && state != 'Z') found.push_back(static_cast<pid_t>(std::stol(number)));
+        if (parent != ::getpid()) continue;
+        // Its first thread may have ended while others, and its end of the socket, are still there.
+        std::error_code gone;
+        const auto threads =
+            std::distance(fs::directory_iterator(entry.path() / "task", gone), fs::directory_iterator());
+        if (state != 'Z' || threads > 1) found.push_back(static_cast<pid_t>(std::stol(number)));
     }
     return found;
 }
@@ -153,8 +158,8 @@ TEST_CASE("time and memory have limits that are told") {
               "(PLIANT_MESH_SECONDS)");
     }
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    const Variable memory("PLIANT_MESH_GIGABYTES", "0.9");
-    const Result<TetMesh> mesh = mesh_cube(0.08, silent);
+    const Variable memory("PLIANT_MESH_GIGABYTES", "0.3");
+    const Result<TetMesh> mesh = mesh_cube(0.15, silent);
     REQUIRE_FALSE(mesh);
     INFO(mesh.error().message);
     const bool told = mesh.error().message.find("memory") != std::string::npos ||
