@@ -17,8 +17,8 @@
 #include "printing/host/journal.hpp"
 #include "printing/operate/programs.hpp"
 #include "printing/plan/plan.hpp"
+#include "printing/rehearse/virtual_devices.hpp"
 #include "printing/twin/inspect.hpp"
-#include "twin_bench.hpp"
 
 namespace pliant::app {
 
@@ -74,7 +74,7 @@ public:
 
 private:
     twin::Twin& twin_;
-    TwinWire wire_;
+    rehearse::TwinWire wire_;
     Life& life_;
 };
 
@@ -101,30 +101,6 @@ private:
     Life& life_;
 };
 
-/// A guard that sees everything, as the process of its own does.
-class SeeingGuard final : public host::Guard {
-public:
-    explicit SeeingGuard(std::function<double()> now) : now_(std::move(now)) {}
-    void announced(long light) override { light_ = light, on_s_ = 0; }
-    void lit(double now_s) override { lit_at_s_ = now_s, on_s_ = std::nullopt; }
-    void dark(double now_s) override { on_s_ = now_s - lit_at_s_; }
-    [[nodiscard]] std::optional<double> lit_s(long light) override {
-        return light == seen_ ? std::optional(seen_on_s_) : std::nullopt;
-    }
-    /// Only then it writes down what it knows.
-    void host_died() {
-        seen_ = light_;
-        seen_on_s_ = on_s_.value_or(now_() - lit_at_s_);
-    }
-
-private:
-    std::function<double()> now_;
-    long light_ = 0, seen_ = -1;
-    double lit_at_s_ = 0;
-    std::optional<double> on_s_;  ///< of that light; nullopt: it is on
-    double seen_on_s_ = 0;
-};
-
 struct ControlBench {
     int layers = 5;
     machine::Printer printer;
@@ -133,7 +109,7 @@ struct ControlBench {
     test::Folder folder{"control"};
     std::unique_ptr<twin::Twin> twin;
     std::unique_ptr<Life> life = std::make_unique<Life>();
-    SeeingGuard guard{[this] { return twin->now(); }};
+    std::unique_ptr<rehearse::TwinGuard> guard;
     bool guarded = true;
     bool sync = false;
     host::LayerHook after_layer;
@@ -141,7 +117,7 @@ struct ControlBench {
     std::vector<host::Given> ended;  ///< lights, as the host has told
     host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
-    std::unique_ptr<TwinClock> clock;
+    std::unique_ptr<rehearse::TwinClock> clock;
     std::unique_ptr<MortalProjector> projector;
     std::unique_ptr<host::Control> control;
     std::string first_error;
@@ -156,6 +132,7 @@ struct ControlBench {
         printer.projector.pixel_um = halves::pixel_um;
         make_job();
         twin = std::make_unique<twin::Twin>(printer, std::move(options));
+        guard = std::make_unique<rehearse::TwinGuard>(*twin);
         new_host();
     }
     ~ControlBench() { control.reset(); }
@@ -174,7 +151,7 @@ struct ControlBench {
     void new_host() {
         control.reset();
         life = std::make_unique<Life>();
-        clock = std::make_unique<TwinClock>(*twin);
+        clock = std::make_unique<rehearse::TwinClock>(*twin);
         projector = std::make_unique<MortalProjector>(*twin, *life);
         host::ControlSetup setup{printer,
                                  [this]() -> Result<std::unique_ptr<host::Wire>> {
@@ -189,10 +166,10 @@ struct ControlBench {
                                  [this](int layer) {
                                      if (after_layer) after_layer(layer);
                                  },
-                                 guarded ? &guard : nullptr,
+                                 guarded ? guard.get() : nullptr,
                                  [this](const host::Given& given) { ended.push_back(given); }};
         life->on_death = [this] {
-            guard.host_died();
+            guard->host_died();
             twin->light_off();
         };
         control = std::make_unique<host::Control>(std::move(setup));

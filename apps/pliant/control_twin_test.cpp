@@ -705,7 +705,7 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
         CHECK_FALSE(b.control->set_exposure(2, 3));
         CHECK_FALSE(b.control->set_exposure(0, 61));  // the machine's limit is 60 s
     });
-    b.life->on_death = [&] { b.guard.host_died(), b.twin->light_off(); };
+    b.life->on_death = [&] { b.guard->host_died(), b.twin->light_off(); };
     b.life->at_deed = [&](long deed) {
         if (person.acted && b.life->dies_at < 0 && b.snapshot().layer == 3) b.life->dies_at = deed + 20;
     };

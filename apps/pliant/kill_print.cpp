@@ -25,13 +25,11 @@
 
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
-#include "halves.hpp"
 #include "printing/job/png.hpp"
-#include "printing/machine/printer.hpp"
 #include "printing/operate/clock_file.hpp"
-#include "printing/plan/plan.hpp"
 #include "printing/twin/inspect.hpp"
 #include "printing/twin/serve.hpp"
+#include "small_job.hpp"
 
 namespace {
 
@@ -63,41 +61,11 @@ T need(Result<T> result) {
     return std::move(*result);
 }
 
-void replace(std::string& text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    if (at == std::string::npos) stop("the printer file has changed: no " + from);
-    text.replace(at, from.size(), to);
-}
+using Job = app::SmallJob;
 
-struct Job {
-    machine::Printer printer;
-    job::Manifest manifest;
-    fs::path file;
-};
-
-/// A small job on the tower of the thesis, with a projector of a few pixels.
+/// A small job on the tower of the thesis.
 Job make_job(const fs::path& folder) {
-    std::string text = need(read_file("examples/printers/tower.toml"));
-    replace(text, "width = 1920", fmt::format("width = {}", width_px));
-    replace(text, "height = 1080", fmt::format("height = {}", height_px));
-    Job made;
-    made.printer = need(machine::parse_printer(text, "printer.toml"));
-    made.manifest = app::halves::job({layers, 1, 6, 1});
-    const job::Manifest& job = made.manifest;
-    made.file = folder / "halves.zip";
-    job::Writer writer = need(job::Writer::create(made.file));
-    for (int layer = 0; layer < layers; ++layer) {
-        for (const job::LayerImage& image : job.layers[static_cast<std::size_t>(layer)].images) {
-            if (!writer.add_image(image.file, *app::halves::image(layer, image.material)))
-                stop("the job cannot be written");
-        }
-    }
-    const plan::Plan plan = need(plan::make_plan(job, made.printer));
-    const bool added = writer.add_file("printer.toml", text) &&
-                       writer.add_file("job.gcode", plan::write_gcode(plan, job, made.printer));
-    if (!added) stop("the job cannot be written");
-    if (const Status done = writer.finish(job); !done) stop(done.error().message);
-    return made;
+    return need(app::write_small_job(folder, need(read_file("examples/printers/tower.toml")), {layers, 1, 6, 1}));
 }
 
 twin::Options booting(machine::MarlinRelease release) {

@@ -1,25 +1,16 @@
 // pliant print: prints a job, on a machine at a serial port or on the virtual printer, which obeys the same G-code and
 // sees the same images.
-#include "printing/host/print.hpp"
-
 #include <fmt/core.h>
 
-#include <map>
 #include <utility>
 
 #include "base/core/files.hpp"
 #include "command.hpp"
-#include "inputs.hpp"
 #include "presentation/print_report/print_report.hpp"
 #include "print_live.hpp"
-#include "print_vats.hpp"
-#include "printing/operate/job_file.hpp"
-#include "printing/operate/programs.hpp"
-#include "printing/operate/proved_job.hpp"
-#include "printing/plan/plan.hpp"
-#include "printing/twin/inspect.hpp"
+#include "print_virtual.hpp"
+#include "printing/twin/finding.hpp"
 #include "printing/wire/serial.hpp"
-#include "twin_bench.hpp"
 
 namespace pliant::app {
 namespace {
@@ -27,38 +18,11 @@ namespace {
 struct Options {
     LiveOptions live;
     std::string report_file;
-    std::vector<std::string> accepted;
+    std::vector<std::string> accepted, faults;
     bool twin = false;
     bool list_ports = false;
     bool given_speed = false;
 };
-
-/// What a journal of this print would hold.
-std::vector<host::JournalRecord> journal_of(const host::PrintRecord& record, const job::Manifest& manifest,
-                                            const std::string& printer) {
-    std::vector<host::JournalRecord> records;
-    const auto add = [&](const char* kind, host::JournalValues values) {
-        records.push_back({static_cast<long>(records.size()) + 1, kind, std::move(values)});
-    };
-    const auto number = [](double value) { return fmt::format("{:.6f}", value); };
-    add("begin", {{"job", manifest.name}, {"printer", printer}});
-    for (const host::Exposure& e : record.exposures) {
-        const job::Layer& layer = manifest.layers.at(static_cast<std::size_t>(e.layer));
-        double planned_s = 0;
-        for (std::size_t k = 0; k < layer.images.size(); ++k) {
-            if (layer.images[k].material == e.material)
-                planned_s = job::exposure_s(manifest, static_cast<std::size_t>(e.layer), k);
-        }
-        add("light", {{"layer", fmt::format("{}", e.layer)},
-                      {"material", fmt::format("{}", e.material)},
-                      {"planned", number(planned_s)},
-                      {"at", number(e.start_s)}});
-        add("dark",
-            {{"light", fmt::format("{}", records.size())}, {"on", number(e.on_s)}, {"done", "1"}, {"by", "host"}});
-    }
-    add("end", {});
-    return records;
-}
 
 /// The page about a print whose journal is there, whoever printed it.
 Result<int> report_on_journal(const LiveOptions& live) {
@@ -67,71 +31,6 @@ Result<int> report_on_journal(const LiveOptions& live) {
     if (!page) return tl::unexpected(page.error());
     if (Status written = write_file(live.report, *page); !written) return tl::unexpected(written.error());
     return exit_done;
-}
-
-/// Does what the plan asks of a person, when the light of `layer` comes: refills its vats, and looks after the solution
-/// for the layer above, whose first cleaning comes before its first light.
-void do_as_asked(twin::Twin& twin, const plan::Plan& plan, int layer, std::size_t& refilled, std::size_t& cared) {
-    for (; refilled < plan.refills.size() && plan.refills[refilled].layer <= layer; ++refilled)
-        twin.fill_vat(plan.refills[refilled].slot);
-    const auto& care = plan.solution.care;
-    for (; cared < care.size() && care[cared].layer <= layer + 1; ++cared) twin.care(care[cared].care);
-}
-
-Result<int> print_on_twin(const Options& options) {
-    auto progress = terminal_progress(options.live.output);
-    const Result<operate::ProvedJob> job = prove_job(options.live.job);
-    if (!job) return tl::unexpected(job.error());
-    const job::Manifest& manifest = job->archive.manifest();
-    show_vats(job->plan, job->warnings, options.live.output);
-    Result<std::optional<job::Image>> mask = operate::mask_of(job->archive, job->printer.projector);
-    if (!mask) return tl::unexpected(mask.error());
-    twin::Options twin_options;
-    twin_options.mask = std::move(*mask);
-    TwinBench bench(plan::filled_printer(job->plan, manifest, job->printer), std::move(twin_options));
-    // What has been shown is remembered: decoding is most of the work.
-    std::map<std::pair<int, int>, twin::Runs> shown;
-    std::size_t refilled = 0, cared = 0;
-    const auto images = [&](int layer, int material) {
-        do_as_asked(bench.twin(), job->plan, layer, refilled, cared);
-        Result<job::Image> image = operate::image_of(job->archive, layer, material);
-        if (image) shown[{layer, material}] = twin::runs_of(*image);
-        return image;
-    };
-    const twin::RunSource runs = [&](int layer, int material) -> Result<twin::Runs> {
-        if (const auto known = shown.find({layer, material}); known != shown.end()) return known->second;
-        return operate::image_of(job->archive, layer, material).map(twin::runs_of);
-    };
-    host::PrintRecord record;
-    const host::LinkOptions link = operate::link_options(job->printer.controller);
-    if (Status printed = host::print_job(job->gcode, images, bench.devices(), *progress, record, link); !printed)
-        return tl::unexpected(printed.error());
-    const twin::Judgement judgement{options.live.accepted};
-    const Result<twin::Report> report = twin::inspect(bench.twin(), manifest, runs, judgement);
-    if (!report) return tl::unexpected(report.error());
-
-    const std::string json = twin::report_json(*report);
-    if (!options.report_file.empty()) {
-        if (Status written = write_file(options.report_file, json + "\n"); !written)
-            return tl::unexpected(written.error());
-    }
-    if (!options.live.report.empty()) {
-        Result<report::CuredBlock> block = report::cured_block(bench.twin(), manifest, runs, judgement);
-        if (!block) return tl::unexpected(block.error());
-        const report::PrintExtras extras{"virtual printer", "", record.lines_sent, record.resends,
-                                         std::make_shared<const report::CuredBlock>(std::move(*block))};
-        const Result<std::string> page =
-            report::print_report(job->archive, job->printer, journal_of(record, manifest, job->printer.name), extras);
-        if (!page) return tl::unexpected(page.error());
-        if (Status written = write_file(options.live.report, *page); !written) return tl::unexpected(written.error());
-    }
-    progress.reset();
-    if (options.live.output.json)
-        fmt::print("{}\n", json);
-    else if (!options.live.output.quiet)
-        fmt::print("{} lines sent, {} exposures\n{}", record.lines_sent, record.exposures.size(),
-                   twin::report_text(*report));
-    return report->passed ? exit_done : exit_failed;
 }
 
 int list_ports() {
@@ -152,11 +51,17 @@ Result<int> print(Options& options) {
     auto accepted = twin::accepted_findings(options.accepted);
     if (!accepted) return input_error("--accept: {}", accepted.error().message);
     options.live.accepted = std::move(*accepted);
+    if (!options.twin && !options.faults.empty()) return input_error("--fault goes with --twin, or with pliant twin");
+    for (const std::string& text : options.faults) {
+        const Result<twin::Fault> fault = twin::parse_fault(text);
+        if (!fault) return tl::unexpected(fault.error());
+        options.live.faults.push_back(*fault);
+    }
     if (options.twin && options.live.resume)
         return input_error("--resume needs a printer that is still there: --port DEVICE");
     if (!options.twin && options.live.projector.empty())
         return input_error("say where the light comes from: --projector FOLDER");
-    if (options.twin && !options.given_speed) return print_on_twin(options);
+    if (options.twin && !options.given_speed) return print_virtual(options.live, options.report_file);
     return print_live(options.live);
 }
 
@@ -173,6 +78,11 @@ void add_print(CLI::App& app, int& status) {
         ->add_option("--accept", options->accepted,
                      "a finding of --twin that does not fail the print: overcure, volume, contamination, cleaning")
         ->type_name("FINDING")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--fault", options->faults,
+                     "with --twin: something that goes wrong, KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
+        ->type_name("FAULT")
         ->allow_extra_args(false);
     command->add_flag("--list-ports", options->list_ports, "list the serial ports");
     command->add_option("--projector", live.projector, "folder whose shown.png is the light");

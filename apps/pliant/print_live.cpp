@@ -21,12 +21,12 @@
 #include "printing/operate/port_station.hpp"
 #include "printing/operate/print_job.hpp"
 #include "printing/plan/plan.hpp"
+#include "printing/rehearse/memory_file.hpp"
 #include "printing/twin/inspect.hpp"
 #include "printing/twin/serve.hpp"
 #include "printing/wire/scaled_time.hpp"
 #include "printing/wire/steady_clock.hpp"
 #include "shared_light.hpp"
-#include "twin_bench.hpp"
 
 namespace pliant::app {
 namespace {
@@ -156,14 +156,6 @@ void attend(host::Control& control, const Output& output) {
     display.clear();
 }
 
-void add_layer_command(const LiveOptions& options, host::ControlSetup& setup) {
-    if (options.after_layer.empty()) return;
-    setup.after_layer = [command = options.after_layer](int layer) {
-        if (const Status status = operate::run_layer_command(command, layer); !status)
-            fmt::print(stderr, "{}\n", status.error().message);
-    };
-}
-
 /// How it ended, and what was known then.
 struct Ended {
     int status = exit_failed;
@@ -184,9 +176,8 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     Ended ended{exit_failed, control.snapshot()};
     control.quit();
     worker.join();
-    if (ended.last.can_resume && !options.output.quiet)
-        fmt::print(stderr, "go on with: pliant print {} {} --resume\n", options.job,
-                   options.port.empty() ? "--twin" : "--port " + options.port);
+    if (ended.last.can_resume && !options.output.quiet && !options.port.empty())
+        fmt::print(stderr, "go on with: pliant print {} --port {} --resume\n", options.job, options.port);
     if (ended.last.finished) ended.status = exit_done;
     return ended;
 }
@@ -231,15 +222,6 @@ Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, co
     return verdict(options, block->report, ended.status);
 }
 
-/// A journal for the report alone, gone with it.
-struct ShortJournal {
-    std::filesystem::path file;
-    ~ShortJournal() {
-        std::error_code ignored;
-        if (!file.empty()) std::filesystem::remove(file, ignored);
-    }
-};
-
 Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
     Result<twin::Pty> pty = twin::Pty::open();
     if (!pty) return tl::unexpected(pty.error());
@@ -247,17 +229,25 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready.archive, ready.printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     wanted.mask = std::move(*mask);
+    wanted.faults = options.faults;
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     // This printer is gone when the program ends: nothing of it can be gone on with.
-    const ShortJournal journal{options.report.empty() ? "" : options.report + ".journal"};
-    ready.job.journal = journal.file;
+    const Result<rehearse::MemoryFile> journal = rehearse::MemoryFile::make();
+    if (!journal) return tl::unexpected(journal.error());
+    ready.job.journal = journal->path();
     ready.job.sync_journal = false;
     host::ControlSetup setup =
         operate::port_setup(machine.device(), options.speed, ready.printer, machine.light, clock, nullptr);
-    add_layer_command(options, setup);
+    setup.after_layer = layer_hook(options);
     host::Control control(std::move(setup));
     const Result<Ended> ended = run(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
+    if (!options.journal.empty()) {
+        const Status kept = read_file(journal->path()).and_then([&](const std::string& text) {
+            return write_file(options.journal, text);
+        });
+        if (!kept) return tl::unexpected(kept.error());
+    }
     return judge(options, ready, *ended, machine.end());
 }
 
@@ -266,7 +256,7 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
         {options.port, options.projector, options.speed, options.clock_file, options.emergency_line}, ready);
     if (!station) return tl::unexpected(station.error());
     host::ControlSetup setup = (*station)->setup(ready.printer);
-    add_layer_command(options, setup);
+    setup.after_layer = layer_hook(options);
     host::Control control(std::move(setup));
     const Result<Ended> ended = run(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
@@ -276,6 +266,14 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
 }
 
 }  // namespace
+
+host::LayerHook layer_hook(const LiveOptions& options) {
+    if (options.after_layer.empty()) return {};
+    return [command = options.after_layer](int layer) {
+        if (const Status status = operate::run_layer_command(command, layer); !status)
+            fmt::print(stderr, "{}\n", status.error().message);
+    };
+}
 
 Result<int> print_live(const LiveOptions& options) {
     if (!(options.speed > 0 && options.speed <= 1e6))

@@ -7,6 +7,8 @@
 
 #include "base/core/error.hpp"
 #include "command.hpp"
+#include "printing/host/control_types.hpp"
+#include "printing/twin/fault.hpp"
 #include "printing/twin/finding.hpp"
 
 namespace pliant::app {
@@ -25,9 +27,13 @@ struct LiveOptions {
     bool yes = false;  ///< the vats are in place: nobody is asked
     double speed = 1;
     std::vector<twin::Finding::Kind> accepted;  ///< what may be wrong with a print on the virtual printer
+    std::vector<twin::Fault> faults;            ///< of the virtual printer
     std::string clock_file;                     ///< of the virtual printer; "": the wall's clock
     Output output;
 };
+
+/// What `--after-layer` asks for; empty: nothing.
+[[nodiscard]] host::LayerHook layer_hook(const LiveOptions& options);
 
 /// The exit status.
 [[nodiscard]] Result<int> print_live(const LiveOptions& options);

@@ -10,7 +10,7 @@
 #include "printing/plan/plan.hpp"
 #include "printing/plan/proof.hpp"
 #include "printing/twin/inspect.hpp"
-#include "twin_bench.hpp"
+#include "virtual_bench.hpp"
 
 using namespace pliant;
 using pliant::test::holds;
@@ -64,11 +64,11 @@ struct Print {
         gcode = plan::write_gcode(plan, job, printer);
     }
     void run(twin::Options options = {}) {
-        app::TwinBench bench(printer, std::move(options));
-        Progress silent;
-        host::PrintRecord record;
-        status = host::print_job(gcode, stripe, bench.devices(), silent, record);
-        report = twin::inspect(bench.twin(), job, stripe).value();
+        rehearse::Options wanted;
+        wanted.printer = std::move(options);
+        app::Printed printed(printer, job, app::print_job(job, gcode, stripe), stripe, std::move(wanted));
+        status = std::move(printed.status);
+        report = std::move(printed.report);
     }
 };
 
@@ -108,7 +108,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a magnet that is switched off on the way is refused by the check, and by the twin, which then misses light") {
+    "a magnet that is switched off on the way is refused by the check, by the host, and by the twin whoever sends it") {
     Print p("tower_magnet");
     const std::size_t pull = p.gcode.find("G1 X0.000", p.gcode.find("M42 P11 S255"));
     p.gcode.insert(p.gcode.find('\n', pull) + 1, "M400\nM42 P11 S0\n");
@@ -117,8 +117,13 @@ TEST_CASE(
     CHECK_MESSAGE(holds(status.error().message, "switched off while it holds a vat outside its slot"),
                   status.error().message);
     p.run();
+    REQUIRE_FALSE(p.status);
+    CHECK(holds(p.status.error().message, "switched off while it holds a vat outside its slot"));
     CHECK_FALSE(p.report.passed);
-    CHECK(holds(p.report.log.violations.front(), "switched off while it holds a vat outside its slot"));
+    twin::Twin machine(p.printer);
+    CHECK_FALSE(app::send_unchecked(machine, p.gcode));
+    REQUIRE_FALSE(machine.log().violations.empty());
+    CHECK(holds(machine.log().violations.front(), "switched off while it holds a vat outside its slot"));
 }
 
 TEST_CASE("without power a magnet on its way drops the vat, one that rests or needs no power does not") {

@@ -15,7 +15,7 @@
 #include "printing/plan/check.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/twin/inspect.hpp"
-#include "twin_bench.hpp"
+#include "virtual_bench.hpp"
 
 using namespace pliant;
 using pliant::test::holds;
@@ -43,7 +43,7 @@ struct Print {
     job::Manifest job = app::halves::job({});
     plan::Plan plan = plan::make_plan(job, printer).value();
     std::string gcode = plan::write_gcode(plan, job, printer);
-    host::PrintRecord record;
+    std::unique_ptr<rehearse::VirtualPrint> print;  ///< once it has run
     Status status;
     twin::Report report;
 
@@ -53,11 +53,17 @@ struct Print {
         gcode.replace(at, from.size(), to);
     }
     void run(twin::Options options = {}) {
-        app::TwinBench bench(printer, std::move(options));
-        Progress silent;
-        status = host::print_job(gcode, image, bench.devices(), silent, record);
-        report = twin::inspect(bench.twin(), job, image).value();
+        rehearse::Options wanted;
+        wanted.printer = std::move(options);
+        run(std::move(wanted));
     }
+    void run(rehearse::Options options) {
+        app::Printed printed(printer, job, app::print_job(job, gcode, image), image, std::move(options));
+        print = std::move(printed.print);
+        status = std::move(printed.status);
+        report = std::move(printed.report);
+    }
+    [[nodiscard]] long resends() const { return print->snapshot().resends; }
     void must_pass() const {
         CHECK_MESSAGE(status, (status ? "" : status.error().message));
         CHECK_MESSAGE(report.passed, twin::report_text(report));
@@ -67,23 +73,22 @@ struct Print {
 /// Counts the lines that have been written and not yet answered by an ok.
 class CountingWire final : public host::Wire {
 public:
-    explicit CountingWire(host::Wire& wire) : wire_(wire) {}
+    CountingWire(std::unique_ptr<host::Wire> wire, int& most) : wire_(std::move(wire)), most_(most) {}
     [[nodiscard]] Status write(std::string_view bytes) override {
         for (std::size_t i = 1; i < bytes.size(); ++i) under_way_ += bytes[i] == '\n' && bytes[i - 1] != '\n' ? 1 : 0;
         most_ = std::max(most_, under_way_);
-        return wire_.write(bytes);
+        return wire_->write(bytes);
     }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
-        Result<std::string> said = wire_.read(timeout_s);
+        Result<std::string> said = wire_->read(timeout_s);
         for (std::size_t at = 0; said && (at = said->find("ok", at)) != std::string::npos; at += 2) --under_way_;
         return said;
     }
-    [[nodiscard]] int most() const { return most_; }
 
 private:
-    host::Wire& wire_;
+    std::unique_ptr<host::Wire> wire_;
     int under_way_ = 0;
-    int most_ = 0;
+    int& most_;
 };
 
 }  // namespace
@@ -97,10 +102,11 @@ TEST_CASE("a two-material job of five layers comes out right") {
     CHECK(p.report.log.swaps == p.plan.swaps);
     CHECK(p.plan.swaps == 5);
     CHECK(p.report.log.bad_lines == 0);
-    CHECK(p.record.resends == 0);
-    REQUIRE(p.record.exposures.size() == 10);
-    for (const host::Exposure& e : p.record.exposures) {
-        CHECK(e.on_s == near(e.layer < 2 ? 12 : 2.5, {.relative = 1e-12}));
+    CHECK(p.resends() == 0);
+    REQUIRE(p.print->lights().size() == 10);
+    for (const host::Given& light : p.print->lights()) {
+        CHECK(light.complete);
+        CHECK(light.seconds == near(light.layer < 2 ? 12 : 2.5, {.relative = 1e-12}));
     }
     const double soft_mm3 = 0.15875 * 0.15875 * (24 + 6 * 100.0 / 255) * 0.25;
     CHECK(p.report.materials[0].cured_mm3 == near(soft_mm3, {.relative = 1e-12}));
@@ -108,17 +114,17 @@ TEST_CASE("a two-material job of five layers comes out right") {
 }
 
 TEST_CASE("no more lines are under way than the printer file allows") {
-    const Print p;
     for (const int lines : {1, 2, 4}) {
-        machine::Printer printer = p.printer;
-        printer.controller.window_lines = lines;
-        app::TwinBench bench(printer);
-        CountingWire wire(bench.devices().wire);
-        Progress silent;
-        host::PrintRecord record;
-        const host::Devices devices{wire, bench.devices().projector, bench.devices().clock};
-        REQUIRE(host::print_job(p.gcode, image, devices, silent, record, operate::link_options(printer.controller)));
-        CHECK(wire.most() == lines);
+        Print p;
+        p.printer.controller.window_lines = lines;
+        int most = 0;
+        rehearse::Options counted;
+        counted.wire = [&](std::unique_ptr<host::Wire> wire) {
+            return std::make_unique<CountingWire>(std::move(wire), most);
+        };
+        p.run(std::move(counted));
+        p.must_pass();
+        CHECK(most == lines);
     }
 }
 
@@ -129,7 +135,7 @@ TEST_CASE("the planned time is the machine's, but for where the axes stand when 
     // The plan homes from the far end. The twin starts half-way up in Z (20 s instead of 40 s), at the print position
     // in X (0 s instead of 358/8 s), half-way in Y (36.5 s instead of 73 s).
     const double homing_less = 20 + 358 / 8.0 + 36.5;
-    CHECK(p.record.seconds == near(p.plan.seconds.total - homing_less, {.relative = 0.002}));
+    CHECK(p.print->twin().now() == near(p.plan.seconds.total - homing_less, {.relative = 0.002}));
 }
 
 TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered line wherever it happens") {
@@ -143,9 +149,9 @@ TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered
                 Print p;
                 p.run({.advanced_ok = n % 2 == 0, .faults = {{kind, n, 0}}, .release = release});
                 p.must_pass();
-                resends += p.record.resends;
-                if (kind == Fault::Kind::lose_line && n > connecting) CHECK(p.record.resends > 0);
-                if (kind == Fault::Kind::lose_ok) CHECK(p.record.resends == 0);
+                resends += p.resends();
+                if (kind == Fault::Kind::lose_line && n > connecting) CHECK(p.resends() > 0);
+                if (kind == Fault::Kind::lose_ok) CHECK(p.resends() == 0);
             }
         }
         CHECK(resends > 100);
@@ -161,14 +167,14 @@ TEST_CASE("a print on each release: a fresh board, one that has counted on, one 
         boots.boot_s = 1.5;
         fresh.run(boots);
         fresh.must_pass();
-        CHECK(fresh.record.resends == 0);
+        CHECK(fresh.resends() == 0);
         Print lossy;
         twin::Options options;
         options.release = release;
         for (int n = 3; n < 1000; n += 10) options.faults.push_back({Fault::Kind::lose_ok, n});
         lossy.run(options);
         lossy.must_pass();
-        CHECK(lossy.record.resends == 0);
+        CHECK(lossy.resends() == 0);
     }
 }
 
@@ -195,7 +201,7 @@ TEST_CASE("a restart in the middle ends the print, and the report says what is m
     CHECK(holds(p.status.error().message, "restarted"));
     CHECK_FALSE(p.report.passed);
     CHECK(p.report.missing_layers > 0);
-    CHECK(p.record.exposures.size() < 10);
+    CHECK(p.print->lights().size() < 10);
 }
 
 TEST_CASE("a command that the machine does not know ends the print") {
@@ -249,16 +255,22 @@ TEST_CASE("an exposure that is too short, and one that comes twice, show") {
     CHECK(twice.report.wrong_dose_pixels == 30);
 }
 
-TEST_CASE("a forbidden move is refused, stops the print and is reported") {
+TEST_CASE(
+    "a forbidden move is refused before anything moves; a host that sends it all the same is stopped by the machine") {
     Print p;
     p.replace(";@expose layer=2", "G1 X100 F600\n;@expose layer=2");
     REQUIRE_FALSE(plan::check_gcode(p.gcode, p.printer));
     p.run();
     REQUIRE_FALSE(p.status);
-    CHECK(holds(p.status.error().message, "interlock"));
+    CHECK(holds(p.status.error().message, "the platform is down"));
     CHECK_FALSE(p.report.passed);
-    REQUIRE(p.report.log.violations.size() == 1);
-    CHECK(holds(p.report.log.violations[0], "the platform is down"));
+    CHECK(p.print->twin().log().homings == 0);
+    twin::Twin machine(p.printer);
+    const Status sent = app::send_unchecked(machine, p.gcode);
+    REQUIRE_FALSE(sent);
+    CHECK(holds(sent.error().message, "interlock"));
+    REQUIRE(machine.log().violations.size() == 1);
+    CHECK(holds(machine.log().violations[0], "the platform is down"));
 }
 
 TEST_CASE("a swap without spray is noticed") {
@@ -398,19 +410,16 @@ TEST_CASE("mutation: any one image that is shown with one pixel changed is notic
     const Print p;
     for (int layer = 0; layer < layers; ++layer) {
         for (int material = 0; material < 2; ++material) {
-            app::TwinBench bench(p.printer);
-            Progress silent;
-            host::PrintRecord record;
             const auto shown = [&](int l, int m) {
                 auto changed = image(l, m);
                 if (l == layer && m == material) changed->pixels[9] ^= 0x40;
                 return changed;
             };
-            REQUIRE(host::print_job(p.gcode, shown, bench.devices(), silent, record));
-            const twin::Report report = twin::inspect(bench.twin(), p.job, twin::ImageSource(image)).value();
-            CHECK_FALSE(report.passed);
-            CHECK(report.wrong_pixels >= 1);
-            CHECK(holds(report.first_deviation, fmt::format("layer {}", layer)));
+            const app::Printed other(p.printer, p.job, app::print_job(p.job, p.gcode, shown), image);
+            REQUIRE(other.status);
+            CHECK_FALSE(other.report.passed);
+            CHECK(other.report.wrong_pixels >= 1);
+            CHECK(holds(other.report.first_deviation, fmt::format("layer {}", layer)));
         }
     }
 }
@@ -460,17 +469,12 @@ twin::Report print_of(const job::Manifest& planned, const RandomJob& asked, cons
                       const Images& archived) {
     const machine::Printer printer = small_tower();
     const plan::Plan plan = plan::make_plan(planned, printer).value();
-    app::TwinBench bench(printer);
-    Progress silent;
-    host::PrintRecord record;
     const auto show = [&](int layer, int material) -> Result<job::Image> { return shown.at({layer, material}); };
-    const Status printed =
-        host::print_job(plan::write_gcode(plan, planned, printer), show, bench.devices(), silent, record);
-    REQUIRE_MESSAGE(printed, (printed ? "" : printed.error().message));
-    return twin::inspect(bench.twin(), asked.job, twin::ImageSource([&](int layer, int material) -> Result<job::Image> {
-                             return archived.at({layer, material});
-                         }))
-        .value();
+    const auto drawn = [&](int layer, int material) -> Result<job::Image> { return archived.at({layer, material}); };
+    const app::Printed printed(printer, asked.job,
+                               app::print_job(planned, plan::write_gcode(plan, planned, printer), show), drawn);
+    REQUIRE_MESSAGE(printed.status, (printed.status ? "" : printed.status.error().message));
+    return printed.report;
 }
 
 bool has(const twin::Report& report, twin::Finding::Kind kind) {

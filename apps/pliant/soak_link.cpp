@@ -24,7 +24,7 @@
 #include "printing/wire/link.hpp"
 #include "printing/wire/serial.hpp"
 #include "printing/wire/steady_clock.hpp"
-#include "twin_bench.hpp"
+#include "virtual_bench.hpp"
 
 namespace {
 
@@ -45,7 +45,10 @@ struct Damage {
 
 class NoisyWire final : public host::Wire {
 public:
-    NoisyWire(twin::Twin& twin, const Noise& noise, unsigned seed) : wire_(twin), noise_(noise), random_(seed) {}
+    NoisyWire(std::unique_ptr<host::Wire> wire, const Noise& noise, unsigned seed)
+        : wire_(std::move(wire)), noise_(noise), random_(seed) {}
+    NoisyWire(twin::Twin& twin, const Noise& noise, unsigned seed)
+        : NoisyWire(std::make_unique<rehearse::TwinWire>(twin), noise, seed) {}
 
     [[nodiscard]] Status write(std::string_view bytes) override {
         std::string line(bytes);
@@ -54,10 +57,10 @@ public:
         } else if (!line.empty()) {
             damage(line, random_() % line.size());
         }
-        return wire_.write(line);
+        return wire_->write(line);
     }
     [[nodiscard]] Result<std::string> read(double timeout_s) override {
-        auto said = wire_.read(timeout_s);
+        auto said = wire_->read(timeout_s);
         if (!said) return said;
         std::string heard;
         for (std::string_view rest = *said; !rest.empty();) {
@@ -85,7 +88,7 @@ private:
         }
     }
 
-    app::TwinWire wire_;
+    std::unique_ptr<host::Wire> wire_;
     Noise noise_;
     std::mt19937 random_;
     Damage damage_;
@@ -151,7 +154,7 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
     twin_options.advanced_ok = advanced_ok;
     twin::Twin twin(printer, twin_options);
     NoisyWire wire(twin, noise, seed);
-    app::TwinClock clock(twin);
+    rehearse::TwinClock clock(twin);
     host::Link link(wire, clock, patient());
     Mover mover(printer, twin, link, seed);
     const auto begin = std::chrono::steady_clock::now();
@@ -188,7 +191,7 @@ Session soak_session(const machine::Printer& printer, long lines, unsigned seed,
     twin_options.release = release;
     twin::Twin twin(printer, twin_options);
     NoisyWire wire(twin, noise, seed);
-    app::TwinClock clock(twin);
+    rehearse::TwinClock clock(twin);
     host::LinkOptions options = patient();
     if (!judged) options.most_refused = 1e9;
     host::Link link(wire, clock, options);
@@ -266,19 +269,19 @@ bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Nois
     long sent = 0, resent = 0;
     int prints = 0, wrong = 0;
     for (; sent < lines; ++prints) {
-        twin::Twin twin(printer);
-        NoisyWire wire(twin, noise, seed + static_cast<unsigned>(prints));
-        app::TwinProjector projector(twin);
-        app::TwinClock clock(twin);
-        Progress silent;
-        host::PrintRecord record;
-        const Status status = host::print_job(gcode, image_of, {wire, projector, clock}, silent, record, patient());
-        const auto report = twin::inspect(twin, job, twin::ImageSource(image_of));
-        sent += record.lines_sent;
-        resent += record.resends;
-        if (status && report && report->passed) continue;
+        rehearse::Options options;
+        options.link = patient();
+        options.wire = [&](std::unique_ptr<host::Wire> wire) {
+            return std::make_unique<NoisyWire>(std::move(wire), noise, seed + static_cast<unsigned>(prints));
+        };
+        const app::Printed printed(printer, job, app::print_job(job, gcode, image_of), image_of, std::move(options));
+        const host::Snapshot last = printed.print->snapshot();
+        sent += std::max(1L, last.lines_sent);
+        resent += last.resends;
+        if (printed.status && printed.report.passed) continue;
         ++wrong;
-        fmt::print("print {}: {}\n", prints, !status ? status.error().message : report->first_deviation);
+        fmt::print("print {}: {}\n", prints,
+                   !printed.status ? printed.status.error().message : printed.report.first_deviation);
     }
     fmt::print("{}: {} prints of {} lines in all, {} resent: {} wrong\n", machine::name_of(release), prints, sent,
                resent, wrong);

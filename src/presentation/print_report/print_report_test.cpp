@@ -88,6 +88,20 @@ TEST_CASE("a print that was broken off and left says so; one that is damaged nam
     CHECK(story_of({}).value().end == PrintEnd::not_begun);
 }
 
+TEST_CASE("a pause tells what somebody was asked to do") {
+    Records records = survived();
+    records.resize(4);  // begin, session, light and dark of layer 0
+    add(records, "pause", {{"asked", "refill the vat of slot 2 with rigid-flex"}});
+    add(records, "resume", {});
+    add(records, "pause", {});
+    const PrintStory story = story_of(records).value();
+    REQUIRE(story.happenings.size() == 3);
+    CHECK(story.happenings[0].text == "paused: refill the vat of slot 2 with rigid-flex");
+    CHECK(story.happenings[1].text == "gone on");
+    CHECK(story.happenings[2].text == "paused");
+    CHECK(story.faults == 0);
+}
+
 TEST_CASE("a plot over the layers has a line for every series, and rounds its scale") {
     const std::string svg = layer_plot("Light", "s", {{"soft <i>", "red", {{0, 0}, {9, 3}}, false}}, 10);
     CHECK(svg.find("points=\"54.0,222.0 590.0,8.0 \"") != std::string::npos);

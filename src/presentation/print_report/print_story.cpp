@@ -138,7 +138,8 @@ Status Teller::take(const host::JournalRecord& record) {
     } else if (kind == "skip") {
         tell(record, false, "layer " + text_of(record, "layer") + " gets no light");
     } else if (kind == "pause") {
-        tell(record, false, "paused");
+        const std::string asked = text_of(record, "asked");
+        tell(record, false, asked.empty() ? "paused" : "paused: " + asked);
     } else if (kind == "resume") {
         tell(record, false, "gone on");
     } else if (kind == "suspend") {

@@ -117,8 +117,7 @@ struct Control::State_ {
     bool run_next_task();
 
     [[nodiscard]] Status open();
-    [[nodiscard]] Status new_session(Journal* journal, const JournalFacts& facts, const Standing& standing,
-                                     const std::string& boot);
+    [[nodiscard]] Status new_session(Journal* journal, const JournalFacts& facts, const Standing& standing);
     void close();
     void do_connect();
     void do_start(const StartOptions& options, bool abandon);
@@ -468,6 +467,10 @@ Snapshot Control::snapshot() const {
     return state_->desk.snapshot();
 }
 
+State Control::state() const {
+    return state_->desk.state();
+}
+
 std::vector<Event> Control::events_since(long number) const {
     return state_->desk.events_since(number);
 }
@@ -645,15 +648,14 @@ void Control::State_::look_at_journal() {
 }
 
 /// Numbers its lines anew, and says so in the journal before the controller hears of it.
-Status Control::State_::new_session(Journal* journal, const JournalFacts& facts, const Standing& standing,
-                                    const std::string& boot) {
+Status Control::State_::new_session(Journal* journal, const JournalFacts& facts, const Standing& standing) {
     const long base = new_base(setup.clock, std::max({last_line, last_base, facts.base}));
     last_base = base;
     machine->stand(standing.state);
     if (journal != nullptr) {
         const auto noted = journal->append("session", {{"base", fmt::format("{}", base)},
                                                        {"before", fmt::format("{}", last_line > 0 ? last_line : -1)},
-                                                       {"boot", boot},
+                                                       {"boot", setup.clock_name ? *setup.clock_name : boot_name()},
                                                        {"state", write_state(standing.state.state())}});
         if (!noted) return tl::unexpected(noted.error());
     }
@@ -694,12 +696,13 @@ Result<Ending> Control::State_::print_anew(Journal* journal) {
         }
         may_be_halted = may_be_halted || facts->halted;
         if (Status status = journal->clear(); !status) return tl::unexpected(status.error());
-        const auto begun = journal->append(
-            "begin", {{"job", job->name}, {"digest", job->digest}, {"printer", setup.printer.name}, {"format", "1"}});
-        if (!begun) return tl::unexpected(begun.error());
+        JournalValues values{
+            {"job", job->name}, {"digest", job->digest}, {"printer", setup.printer.name}, {"format", "1"}};
+        if (!job->vats.empty()) values.emplace_back("vats", job->vats);
+        if (const auto begun = journal->append("begin", values); !begun) return tl::unexpected(begun.error());
     }
     Status ready = open();
-    if (ready) ready = new_session(journal, {}, {machine::Interlock(setup.printer), false}, boot_name());
+    if (ready) ready = new_session(journal, {}, {machine::Interlock(setup.printer), false});
     if (ready) ready = preflight();
     if (!ready) {
         if (journal != nullptr) (void)journal->clear();  // nothing has begun
@@ -731,7 +734,7 @@ Result<Ending> Control::State_::go_on(const StartOptions& options, bool abandon,
     const auto recovery = recovery_of(*facts, script, setup.printer, *standing);
     if (!recovery) return tl::unexpected(recovery.error());
     if (const auto possible = setup.programs.resume(*recovery); !possible) return tl::unexpected(possible.error());
-    if (Status status = new_session(&journal, *facts, {recovery->state, false}, boot_name()); !status)
+    if (Status status = new_session(&journal, *facts, {recovery->state, false}); !status)
         return tl::unexpected(status.error());
     if (Status status = preflight(); !status) return tl::unexpected(status.error());
     PrintRun run({setup, *job, script, times, *machine, &journal, desk}, std::move(*facts));

@@ -89,6 +89,8 @@ public:
     // --- what is known ---
 
     [[nodiscard]] Snapshot snapshot() const;
+    /// That of the snapshot, for those who look often.
+    [[nodiscard]] State state() const;
     /// Events with numbers above `number`, oldest first; the last 2000 are kept.
     [[nodiscard]] std::vector<Event> events_since(long number) const;
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/core/error.hpp"
-#include "printing/host/print.hpp"
 #include "printing/machine/interlock.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/machine/solution.hpp"
@@ -20,6 +19,9 @@
 #include "printing/wire/link.hpp"
 
 namespace pliant::host {
+
+/// The image of a layer and a material (indices into the manifest).
+using ImageSource = std::function<Result<job::Image>(int layer, int material)>;
 
 /// Where an interrupted print stands, and where it has to go on.
 struct Recovery {
@@ -63,7 +65,8 @@ struct PrintJob {
     ImageSource images;
     std::vector<std::string> materials;  ///< their names
     int layers = 0;
-    std::vector<Refill> refills;
+    std::vector<Refill> refills;    ///< by layer
+    std::string vats;               ///< what must be in the slots, for people; goes into the journal
     std::filesystem::path journal;  ///< "": none is kept, and nothing can be resumed
     bool sync_journal = true;       ///< false: a power cut may lose the end of the journal; for tests
 };
@@ -89,9 +92,11 @@ struct ControlSetup {
     Programs programs;
     LinkOptions link;
     EmergencyLine* emergency_line = nullptr;  ///< the hardware's; may be null
-    LayerHook after_layer;                    ///< may be empty
+    LayerHook after_layer{};                  ///< may be empty
     Guard* guard = nullptr;                   ///< who makes dark if this program dies; may be null
     LightHook after_light{};                  ///< may be empty
+    /// Names the run of the clock: sessions of the same one have their times in common. nullopt: the computer's.
+    std::optional<std::string> clock_name{};
 };
 
 /// What to take for granted where the journal proves nothing.

@@ -16,6 +16,11 @@ Snapshot Desk::snapshot() const {
     return snapshot;
 }
 
+State Desk::state() const {
+    const std::scoped_lock lock(mutex_);
+    return snapshot_.state;
+}
+
 std::vector<Event> Desk::events_since(long number) const {
     const std::scoped_lock lock(mutex_);
     std::vector<Event> events;

@@ -29,6 +29,7 @@ public:
 
     // --- any thread ---
     [[nodiscard]] Snapshot snapshot() const;
+    [[nodiscard]] State state() const;
     [[nodiscard]] std::vector<Event> events_since(long number) const;
     void event(std::string_view kind, std::string text);
     /// Changes the snapshot.

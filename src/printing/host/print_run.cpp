@@ -346,7 +346,8 @@ Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begi
     const auto begin = make_begin(before);
     if (!begin) return tl::unexpected(begin.error());
     if (Status status = run_.machine.run(*begin); !status) return status;
-    if (Status status = note("pause", {}); !status) return status;
+    const JournalValues asked = prompt.empty() ? JournalValues{} : JournalValues{{"asked", prompt}};
+    if (Status status = note("pause", asked); !status) return status;
     run_.desk.wish([](Wishes& w) { w.pause_after = w.pause_now = w.resume = false; });
     run_.desk.update([&](Snapshot& s) { s.prompt = prompt; });
     if (!prompt.empty()) run_.desk.event("prompt", prompt);

@@ -50,6 +50,7 @@ Result<ReadyJob> load_job(const std::filesystem::path& path) {
     for (const job::Material& material : manifest.materials) job.materials.push_back(material.name);
     job.layers = static_cast<int>(manifest.layers.size());
     job.refills = refills_of(proved->plan);
+    for (const std::string& line : plan::vat_lines(proved->plan)) job.vats += (job.vats.empty() ? "" : "; ") + line;
     job.journal = path.string() + ".journal";
     machine::Printer filled = plan::filled_printer(proved->plan, manifest, std::move(proved->printer));
     return ReadyJob{std::move(archive), std::move(filled), std::move(proved->plan), std::move(job),

@@ -13,8 +13,8 @@ namespace pliant::host {
 namespace {
 
 constexpr std::size_t longest_command = 80;  // leaves room for N, number and checksum in Marlin's 95
-constexpr double watch_every_s = 0.02;
-constexpr double echo_timeout_s = 4;  // the echo of a fence; `busy` comes every 2 s before it
+constexpr double late_s = 0.02;              // past the deadline of a fence
+constexpr double echo_timeout_s = 4;         // the echo of a fence; `busy` comes every 2 s before it
 constexpr std::size_t longest_answer = 4096;
 constexpr double recent_lines = 200;      // over which the wire is judged
 constexpr long most_number = 2147483647;  // a firmware counts lines in 32 bits
@@ -224,7 +224,7 @@ Status Link::run_until(const std::function<bool()>& done) {
 /// Handles the next answers; a long time without one means that it was lost, whatever else is said meanwhile.
 Status Link::listen() {
     const double patience_s = outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s;
-    const double left_s = std::max(0.0, deadline_s_ - clock_.now()) + watch_every_s;
+    const double left_s = std::max(0.0, deadline_s_ - clock_.now()) + late_s;
     const auto heard = hear(std::min(patience_s, left_s));
     if (left_s < patience_s && heard && !*heard) return {};
     if (!heard) return tl::unexpected(heard.error());
@@ -239,7 +239,7 @@ Result<bool> Link::hear(double timeout_s) {
     const double end = clock_.now() + timeout_s;
     for (;;) {
         if (Status status = watch_(); !status) return tl::unexpected(status.error());
-        const auto heard = hear_once(std::clamp(end - clock_.now(), 0.0, watch_every_s));
+        const auto heard = hear_once(std::clamp(end - clock_.now(), 0.0, options_.watch_every_s));
         if (!heard || *heard) return heard;
         if (clock_.now() >= end) return false;
     }

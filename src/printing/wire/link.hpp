@@ -31,9 +31,10 @@ struct LinkOptions {
     /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
     /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
     double most_refused = 0.2;
-    double talk_s = 60;          ///< how long one that is not busy may say other things before it answers connect()
-    int most_connects = 10;      ///< silences in a row before connect() gives up
-    bool may_be_halted = false;  ///< an emergency stop or a halt came last: what a silence means then
+    double talk_s = 60;           ///< how long one that is not busy may say other things before it answers connect()
+    int most_connects = 10;       ///< silences in a row before connect() gives up
+    double watch_every_s = 0.02;  ///< how often the watch is asked, at least, while something is waited for
+    bool may_be_halted = false;   ///< an emergency stop or a halt came last: what a silence means then
 };
 
 /// What M115 says.
@@ -54,8 +55,8 @@ class Link {
 public:
     Link(Wire& wire, Clock& clock, LinkOptions options = {});
 
-    /// Asked at least every 20 ms while something is waited for; an error ends the waiting and is what the call
-    /// returns.
+    /// Asked at least every LinkOptions::watch_every_s while something is waited for; an error ends the waiting and is
+    /// what the call returns.
     void set_watch(std::function<Status()> watch) { watch_ = std::move(watch); }
     /// Gets every line that is heard and is no `ok`: prompts, reports, echoes.
     void set_listener(std::function<void(std::string_view)> listener) { listener_ = std::move(listener); }

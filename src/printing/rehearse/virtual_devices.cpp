@@ -1,8 +1,6 @@
-#include "twin_bench.hpp"
+#include "printing/rehearse/virtual_devices.hpp"
 
-#include <utility>
-
-namespace pliant::app {
+namespace pliant::rehearse {
 
 Status TwinWire::write(std::string_view bytes) {
     twin_.receive(bytes);
@@ -10,6 +8,7 @@ Status TwinWire::write(std::string_view bytes) {
 }
 
 Result<std::string> TwinWire::read(double timeout_s) {
+    if (look_) look_();
     const double end_s = twin_.now() + timeout_s;
     for (;;) {
         if (std::string said = twin_.take_output(); !said.empty()) return said;
@@ -31,7 +30,27 @@ Status TwinProjector::black() {
     return {};
 }
 
-TwinBench::TwinBench(const machine::Printer& printer, twin::Options options)
-    : twin_(printer, std::move(options)), wire_(twin_), projector_(twin_), clock_(twin_) {}
+void TwinGuard::announced(long light) {
+    light_ = light;
+    on_s_ = 0;
+}
 
-}  // namespace pliant::app
+void TwinGuard::lit(double now_s) {
+    lit_at_s_ = now_s;
+    on_s_.reset();
+}
+
+void TwinGuard::dark(double now_s) {
+    on_s_ = now_s - lit_at_s_;
+}
+
+std::optional<double> TwinGuard::lit_s(long light) {
+    return light == seen_ ? std::optional(seen_on_s_) : std::nullopt;
+}
+
+void TwinGuard::host_died() {
+    seen_ = light_;
+    seen_on_s_ = on_s_.value_or(twin_.now() - lit_at_s_);
+}
+
+}  // namespace pliant::rehearse

@@ -1,0 +1,156 @@
+// The rehearsal is the performance: a print with --twin and one at a port, on the same virtual printer with the same
+// mishap, write the same journal. What differs is what is the clock's: when a light began, how long it was on to the
+// millisecond, and the number with which a session's lines begin.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "printing/host/journal.hpp"
+#include "small_job.hpp"
+
+using namespace pliant;
+using namespace pliant::app;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int layers = 2;
+constexpr double speed = 200;
+
+/// A job in a folder of its own, with the file of its printer beside it.
+struct Bench {
+    test::Folder folder{"one_engine"};
+    SmallJob job;
+
+    explicit Bench(const std::string& printer, const std::function<void(std::string&)>& change = {}) {
+        std::string text = read_file(fmt::format("examples/printers/{}.toml", printer)).value();
+        if (change) change(text);
+        auto made = write_small_job(folder.path(), text, {layers, 1, 6, 1});
+        REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+        job = std::move(*made);
+        REQUIRE(write_file(folder / "printer.toml", job.printer_text));
+    }
+    /// What a command line of the shell leaves in its exit status; PLIANT is the program, `said` gets what it says.
+    [[nodiscard]] int shell(const std::string& line, const std::string& said) const {
+        const std::string all = fmt::format("cd {} && PLIANT={} && {{ {}; }} >{} 2>&1 </dev/null",
+                                            folder.path().string(), PLIANT_PROGRAM, line, said);
+        const int status = std::system(all.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    [[nodiscard]] std::string text(const std::string& name) const { return read_file(folder / name).value_or(""); }
+};
+
+/// The same print twice: by --twin, and at a port behind which `pliant twin` stands in a process of its own.
+struct TwoPrints {
+    int twin_status = -1, port_status = -1;
+    std::vector<host::JournalRecord> twin, port;
+    std::string said;
+
+    TwoPrints(const Bench& b, const std::string& fault) {
+        const std::string with = fault.empty() ? "" : " --fault " + fault;
+        twin_status = b.shell("$PLIANT print halves.zip --twin --journal twin.journal" + with, "twin.said");
+        port_status = b.shell(
+            fmt::format("mkdir light; $PLIANT twin --printer printer.toml --pty port --speed {0} --projector light "
+                        "--clock clock{1} & machine=$!; until [ -e port ] && [ -e clock ]; do sleep 0.02; done; "
+                        "$PLIANT print halves.zip --port port --projector light --clock clock --speed {0} --yes "
+                        "--journal port.journal; status=$?; kill $machine; wait $machine; (exit $status)",
+                        speed, with),
+            "port.said");
+        twin = read(b.text("twin.journal"));
+        port = read(b.text("port.journal"));
+        said = b.text("twin.said") + "\n--- port\n" + b.text("port.said");
+    }
+    static std::vector<host::JournalRecord> read(const std::string& text) {
+        auto journal = host::parse_journal(text, "journal");
+        return journal ? std::move(journal->records) : std::vector<host::JournalRecord>{};
+    }
+};
+
+/// Without what is the clock's; lines count from where their session began.
+std::string timeless(const std::vector<host::JournalRecord>& records) {
+    std::string text;
+    long base = 0;
+    for (const host::JournalRecord& record : records) {
+        if (record.kind == "session") base = record.whole("base").value_or(0);
+        host::JournalValues values;
+        for (const auto& [key, value] : record.values) {
+            if (key == "at" || key == "on" || key == "base" || key == "boot") continue;
+            values.emplace_back(key, key == "line" ? fmt::format("{}", std::atol(value.c_str()) - base) : value);
+        }
+        text += host::write_record(record.number, record.kind, values).substr(9);
+    }
+    return text;
+}
+
+/// How long each piece of light was on, on the machine's clock.
+std::vector<double> lit(const std::vector<host::JournalRecord>& records) {
+    std::vector<double> seconds;
+    for (const host::JournalRecord& record : records) {
+        if (record.kind == "dark") seconds.push_back(record.number_of("on").value_or(-1));
+    }
+    return seconds;
+}
+
+struct Case {
+    std::string printer, fault;
+    std::string ends;  ///< a line of the journal, or part of one, that tells how
+};
+
+const std::vector<Case> cases = {
+    {"tower", "", " end\n"},
+    {"tower", "missed-steps:6:0.02", " end\n"},
+    {"tower", "dark-projector:2", " end\n"},
+    {"tower", "empty-vat:2", " end\n"},
+    {"tower", "stuck-hook:1", " end\n"},
+    {"tower", "lose-line:60", " end\n"},
+    {"tower", "reset:60", "restarted"},
+    {"tower", "dead-switch:2", "homing%20failed"},
+    {"tower", "stuck-switch:1", ""},
+    {"tower_magnet", "weak-magnet:1", " end\n"},
+    {"wall", "stuck-fork:1", " end\n"},
+};
+
+}  // namespace
+
+TEST_CASE("a print with --twin and one over the wire write the same journal, whatever goes wrong") {
+    std::vector<std::unique_ptr<Bench>> benches;
+    std::vector<std::optional<TwoPrints>> prints(cases.size());
+    for (const Case& c : cases) benches.push_back(std::make_unique<Bench>(c.printer));
+    {
+        std::vector<std::jthread> workers;  // they wait most of the time
+        for (std::size_t i = 0; i < cases.size(); ++i)
+            workers.emplace_back([&, i] { prints[i].emplace(*benches[i], cases[i].fault); });
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        CAPTURE(cases[i].printer);
+        CAPTURE(cases[i].fault);
+        const TwoPrints& p = *prints[i];
+        CAPTURE(p.said);
+        const std::string here = timeless(p.twin), there = timeless(p.port);
+        CHECK(here == there);
+        CHECK(here.find(cases[i].ends) != std::string::npos);
+        // A port has no oracle: what is wrong with the part fails only the virtual print.
+        CHECK(p.port_status == (here.find(" end\n") != std::string::npos ? 0 : 1));
+        CHECK(p.twin_status == (cases[i].fault.empty() || cases[i].fault == "lose-line:60" ? 0 : 1));
+        const std::vector<double> seconds = lit(p.twin), over_wire = lit(p.port);
+        REQUIRE(seconds.size() == over_wire.size());
+        for (std::size_t k = 0; k < seconds.size(); ++k) CHECK(over_wire[k] - seconds[k] == near(0, {.absolute = 0.5}));
+    }
+    REQUIRE(lit(prints[0]->twin).size() == 2 * layers);
+    CHECK(lit(prints[0]->twin)[0] == near(6, {.relative = 1e-9}));
+}
+
+TEST_CASE("the same job leaves the same bytes of journal, every time") {
+    const Bench b("tower");
+    REQUIRE(b.shell("$PLIANT print halves.zip --twin --journal a && $PLIANT print halves.zip --twin --journal b",
+                    "said") == 0);
+    CHECK(b.text("a").size() > 1000);
+    CHECK(b.text("a") == b.text("b"));
+    CHECK(test::holds(b.text("a"), "vats=slot%201:%20semi-flex"));
+}

@@ -1,0 +1,219 @@
+// Prints on the virtual printer by the engine that prints on machines: prompts, pauses, the door, interlocks, guard,
+// cancelling.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "halves.hpp"
+#include "printing/plan/plan.hpp"
+#include "virtual_bench.hpp"
+
+using namespace pliant;
+using namespace pliant::app;
+using pliant::test::holds;
+using rehearse::VirtualPrint;
+
+namespace {
+
+constexpr int layers = 5;
+
+struct Bench {
+    machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
+    job::Manifest job = halves::job({layers});
+    std::vector<host::Refill> refills;
+    std::string gcode;
+
+    Bench() {
+        printer.projector.width_px = halves::width_px;
+        printer.projector.height_px = halves::height_px;
+    }
+    Printed run(rehearse::Options options = {}) {
+        gcode = plan::write_gcode(plan::make_plan(job, printer).value(), job, printer);
+        host::PrintJob ready = print_job(job, gcode, halves::image);
+        ready.refills = refills;
+        Printed printed(printer, job, std::move(ready), halves::image, std::move(options));
+        const bool told = printed.status || !printed.status.error().message.empty();
+        CHECK(told);
+        return printed;
+    }
+};
+
+/// The kinds of the journal's records, in order, those named alone.
+std::string kinds(const Printed& printed, const std::vector<std::string>& wanted) {
+    std::string text;
+    for (const host::JournalRecord& record : printed.print->records().value()) {
+        if (std::find(wanted.begin(), wanted.end(), record.kind) != wanted.end()) text += record.kind + " ";
+    }
+    return text;
+}
+
+const host::JournalRecord* first(const std::vector<host::JournalRecord>& records, const std::string& kind) {
+    const auto found = std::find_if(records.begin(), records.end(), [&](auto& r) { return r.kind == kind; });
+    return found == records.end() ? nullptr : &*found;
+}
+
+/// Acts once, when the print has got so far.
+rehearse::Options when(std::function<bool(const host::Snapshot&)> reached, std::function<Status(host::Control&)> act) {
+    rehearse::Options options;
+    options.meanwhile = [reached = std::move(reached), act = std::move(act), done = false](host::Control& c) mutable {
+        if (done || !reached(c.snapshot())) return;
+        done = true;
+        CHECK(act(c));
+    };
+    return options;
+}
+
+bool in_the_light_of_layer_2(const host::Snapshot& s) {
+    return s.lit && s.layer == 2 && s.lit_s > 0.5;
+}
+
+struct CancelAfter final : Progress {
+    explicit CancelAfter(int n) : left(n) {}
+    [[nodiscard]] bool cancelled() const override { return --left < 0; }
+    mutable int left;
+};
+
+}  // namespace
+
+TEST_CASE("a virtual print keeps the journal of a real one: a session, every go and light, the end") {
+    Bench b;
+    const Printed printed = b.run();
+    REQUIRE(printed.status);
+    CHECK(printed.report.passed);
+    const auto records = printed.print->records().value();
+    CHECK(records.front().kind == "begin");
+    CHECK(*records.front().find("digest") == host::job_digest(b.gcode));
+    CHECK(records[1].kind == "session");
+    CHECK(*records[1].find("boot") == "virtual");
+    CHECK(records.back().kind == "end");
+    CHECK(std::count_if(records.begin(), records.end(), [](auto& r) { return r.kind == "light"; }) == 2 * layers);
+    CHECK(first(records, "go") != nullptr);
+    CHECK(first(records, "pause") == nullptr);
+}
+
+TEST_CASE("resin that is asked for on the way is filled in; without somebody who does it the vat runs dry") {
+    Bench b;
+    const double layer_ml = halves::soft_mm2 * 0.05 / 1000;
+    const Printed whole = b.run();
+    // A vat that gives what two layers need, and no more.
+    machine::Vat& vat = b.printer.vats.front();
+    vat.fill_ml = b.printer.vat_shape.least_ml + 2.2 * layer_ml;
+    const auto plan = plan::make_plan(b.job, b.printer).value();
+    REQUIRE_FALSE(plan.refills.empty());
+    const Printed dry = b.run();
+    CHECK(dry.status);  // nobody asked
+    for (const plan::RefillBefore& refill : plan.refills)
+        b.refills.push_back({refill.layer, refill.slot, fmt::format("refill slot {}", refill.slot)});
+    const Printed filled = b.run();
+    REQUIRE(filled.status);
+    CHECK_MESSAGE(filled.report.passed, twin::report_text(filled.report));
+    const auto count = static_cast<long>(plan.refills.size());
+    const auto records = filled.print->records().value();
+    CHECK(std::count_if(records.begin(), records.end(), [](auto& r) { return r.kind == "pause"; }) == count);
+    CHECK(std::count_if(records.begin(), records.end(), [](auto& r) { return r.kind == "resume"; }) == count);
+    const host::JournalRecord* pause = first(records, "pause");
+    REQUIRE(pause != nullptr);
+    CHECK(*pause->find("asked") == "refill slot 1");
+    CHECK(filled.report.resins[0].left_ml > dry.report.resins[0].left_ml);
+    CHECK(filled.lights() == whole.lights());
+}
+
+TEST_CASE("all that is asked for before one layer is done at one pause, and once") {
+    Bench b;
+    const std::string text = "refill the vat of slot 1; refill the vat of slot 2";
+    b.refills = {{2, 1, text}, {2, 2, text}, {4, 1, "refill the vat of slot 1"}};
+    const Printed printed = b.run();
+    REQUIRE(printed.status);
+    CHECK(printed.report.passed);
+    CHECK(kinds(printed, {"pause", "resume"}) == "pause resume pause resume ");
+    const Printed plain = Bench().run();
+    for (const std::size_t resin : {0, 1})
+        CHECK(printed.report.resins[resin].left_ml > plain.report.resins[resin].left_ml);
+}
+
+TEST_CASE("a pause in the light is dark, is resumed, and the rest of the light is given") {
+    Bench b;
+    const Printed printed =
+        b.run(when(in_the_light_of_layer_2, [](host::Control& c) { return c.pause(host::PauseWhen::now); }));
+    REQUIRE(printed.status);
+    CHECK_MESSAGE(printed.report.passed, twin::report_text(printed.report));
+    CHECK(printed.lights() == 2 * layers + 1);
+    CHECK(kinds(printed, {"pause", "resume"}) == "pause resume ");
+    const auto records = printed.print->records().value();
+    CHECK(first(records, "pause")->find("asked") == nullptr);
+    CHECK(std::any_of(records.begin(), records.end(),
+                      [](auto& r) { return r.kind == "dark" && *r.find("done") == "0"; }));
+}
+
+TEST_CASE("the door is opened in the light: dark, still until it is shut, then the rest of the light") {
+    Bench b;
+    b.printer.door.input = "y_max";
+    rehearse::Options options;
+    options.printer.faults = {{twin::Fault::Kind::door_open, 5, 40}};
+    const Printed printed = b.run(std::move(options));
+    REQUIRE(printed.status);
+    CHECK_MESSAGE(printed.report.passed, twin::report_text(printed.report));
+    CHECK(printed.report.log.lit_while_open_s > 0);
+    CHECK(printed.report.log.lit_while_open_s < 0.5);
+    CHECK(kinds(printed, {"door", "pause", "resume"}) == "door pause resume door ");
+    CHECK(holds(*first(printed.print->records().value(), "pause")->find("asked"), "the door is open"));
+}
+
+TEST_CASE("a switch that is stuck ends the virtual print as it ends a real one, and it says why") {
+    Bench b;
+    rehearse::Options options;
+    options.printer.faults = {{twin::Fault::Kind::dead_switch, 2}};
+    const Printed printed = b.run(std::move(options));
+    REQUIRE_FALSE(printed.status);
+    CHECK(printed.status.error().cause == Cause::failed);
+    CHECK(holds(printed.status.error().message, "homing failed"));
+    CHECK(kinds(printed, {"stop", "end"}) == "stop ");
+    CHECK(printed.lights() == 0);
+}
+
+TEST_CASE("cancelled, it parks as a real one does, wherever it was") {
+    for (const int looks : {0, 50, 400, 900, 1500}) {
+        CAPTURE(looks);
+        Bench b;
+        b.gcode = plan::write_gcode(plan::make_plan(b.job, b.printer).value(), b.job, b.printer);
+        const auto print = VirtualPrint::make(b.printer, print_job(b.job, b.gcode, halves::image), {}).value();
+        CancelAfter cancel(looks);
+        const Status status = print->print(cancel);
+        REQUIRE_FALSE(status);
+        CHECK(status.error().cause == Cause::cancelled);
+        CHECK(print->records().value().back().kind == "cancel");
+        CHECK_FALSE(print->twin().interlock().hooked_vat());
+        CHECK_FALSE(print->twin().interlock().pump_runs());
+        CHECK(print->twin().log().violations.empty());
+        CHECK(print->lights().size() < 2 * layers);
+    }
+}
+
+TEST_CASE("the guard hears of every light, and knows how long one was on when its host died") {
+    machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
+    twin::Twin twin(printer);
+    rehearse::TwinGuard guard(twin);
+    guard.announced(7);
+    guard.lit(twin.now());
+    twin.advance_to(1.5);
+    CHECK_FALSE(guard.lit_s(7));  // the host lives
+    guard.host_died();
+    CHECK(guard.lit_s(7).value() == near(1.5, {.relative = 1e-12}));
+    CHECK_FALSE(guard.lit_s(8));
+    guard.announced(9);
+    guard.host_died();
+    CHECK(guard.lit_s(9).value() == 0);
+}
+
+TEST_CASE("after every layer its hook is called, with the platform up") {
+    Bench b;
+    std::vector<int> seen;
+    rehearse::Options options;
+    options.after_layer = [&](int layer) { seen.push_back(layer); };
+    const Printed printed = b.run(std::move(options));
+    REQUIRE(printed.status);
+    CHECK(seen == std::vector<int>{0, 1, 2, 3, 4});
+}

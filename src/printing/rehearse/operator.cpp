@@ -1,0 +1,33 @@
+#include "printing/rehearse/operator.hpp"
+
+#include <utility>
+
+namespace pliant::rehearse {
+
+WillingOperator::WillingOperator(twin::Twin& twin, std::vector<host::Refill> refills)
+    : twin_(twin), refills_(std::move(refills)) {}
+
+void WillingOperator::look(host::Control& control) {
+    if (control.state() != host::State::paused) return;
+    const host::Snapshot now = control.snapshot();
+    do_as_asked(now.prompt);
+    if (!now.door_open.value_or(false)) (void)control.resume();
+}
+
+/// A prompt is all that is asked for before one layer. Each is answered once: what is still to be done begins behind
+/// what was asked for last, and one that asks for something else (a door to be shut) is found nowhere.
+void WillingOperator::do_as_asked(const std::string& prompt) {
+    for (std::size_t first = done_; first < refills_.size(); ++first) {
+        if (refills_[first].text != prompt) continue;
+        const int layer = refills_[first].layer;
+        for (done_ = first; done_ < refills_.size() && refills_[done_].layer == layer; ++done_) {
+            if (refills_[done_].slot > 0)
+                twin_.fill_vat(refills_[done_].slot);
+            else
+                twin_.care(refills_[done_].care);
+        }
+        return;
+    }
+}
+
+}  // namespace pliant::rehearse
