@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <set>
 #include <thread>
 
 #include "base/core/near.hpp"
@@ -104,7 +105,7 @@ struct Case {
 
 const std::vector<Case> cases = {
     {"tower", "", " end\n"},
-    {"tower", "missed-steps:6:0.02", " end\n"},
+    {"tower", "missed-steps:12:0.02", " end\n"},
     {"tower", "dark-projector:2", " end\n"},
     {"tower", "empty-vat:2", " end\n"},
     {"tower", "stuck-hook:1", " end\n"},
@@ -153,4 +154,39 @@ TEST_CASE("the same job leaves the same bytes of journal, every time") {
     CHECK(b.text("a").size() > 1000);
     CHECK(b.text("a") == b.text("b"));
     CHECK(test::holds(b.text("a"), "vats=slot%201:%20semi-flex"));
+}
+
+TEST_CASE("a print that asks for resin on the way is rehearsed to its end; the journal says what was asked") {
+    const Bench b("tower", [](std::string& text) {  // beyond what must stay in a vat: one layer
+        for (std::size_t at = 0; (at = text.find("\"700 ml\"")) != std::string::npos;)
+            text.replace(at, 8, "\"60.00004 ml\"");
+    });
+    const int status = b.shell("$PLIANT print halves.zip --twin --journal journal", "said");
+    CAPTURE(b.text("said"));
+    CHECK(status == 0);
+    const std::string journal = b.text("journal");
+    CHECK(test::holds(journal, " pause asked=refill%20the%20vat%20of%20slot%20"));
+    CHECK(journal.find(" resume\n") > journal.find(" pause "));
+    CHECK(journal.find(" end\n") > journal.find(" resume\n"));
+}
+
+TEST_CASE("killed or cancelled in the middle, a virtual print leaves no file") {
+    const Bench b("tower");
+    const auto names = [&] {
+        std::set<std::string> all;
+        for (const auto& entry : fs::directory_iterator(b.folder.path())) all.insert(entry.path().filename());
+        return all;
+    };
+    // A command after a layer is a moment in the middle.
+    for (const std::string signal : {"KILL", "INT"}) {
+        CAPTURE(signal);
+        const std::set<std::string> before = names();
+        const int status = b.shell(
+            "$PLIANT print halves.zip --twin --journal journal --report page.html -o verdict.json "
+            "--after-layer 'kill -" +
+                signal + " $PPID'",
+            "/dev/null");
+        CHECK(status != 0);
+        CHECK(names() == before);
+    }
 }
