@@ -38,9 +38,9 @@ void batch_tangent(const TetBatch& batch, const material::InvariantForm& law, co
 void batch_projected_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x,
                              double* blocks);
 
-/// A motion in which every tet turns by a rate M instead of growing: from F at `now` to exp(M) F. `end` is where the
-/// nodes would be without that. All positions (3n).
-struct Turning {
+/// A step that applies rotations exactly: from F at `now` to exp(M) F, M being the rate of deformation of the step.
+/// `end` is where the straight step puts the nodes. All positions (3n).
+struct RotatingStep {
     static constexpr std::size_t most_past = 3;
 
     const double* now;
@@ -54,15 +54,15 @@ struct Turning {
 
 /// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * (exp(M) F - F_end) grad N_a.
 /// Precondition: F is regular at `now` and at all states of the past but the first.
-void batch_turning(const TetBatch& batch, const Turning& turning, double stiffness, double* forces);
+void batch_rotation_term(const TetBatch& batch, const RotatingStep& rotating, double stiffness, double* forces);
 
-/// How each point has turned between two states: the rotation nearest to F_now F_before^-1, (points, 9, lanes), by
+/// Rotation of each point between two states: the rotation nearest to F_now F_before^-1, (points, 9, lanes), by
 /// columns. Precondition: det F > 0 in both.
 void batch_rotations(const TetBatch& batch, const double* before, const double* now, double* rotations);
 
 /// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * R grad u grad N_a, with the
 /// rotations R or, to turn `back`, their transposes. `u` (3n).
-void batch_turned(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
-                  double* forces);
+void batch_rotated(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                   double* forces);
 
 }  // namespace pliant::sim

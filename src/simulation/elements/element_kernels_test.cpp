@@ -171,12 +171,12 @@ TEST_CASE("a motion that turns the whole body carries it round without stretchin
                 straight.segment<3>(3 * n) += angle * axis.cross(arm);
                 turned.segment<3>(3 * n) = center + turn * arm;
             }
-            const Eigen::VectorXd found = laplacian.turn(system, {rest.x.data(), straight.data()});
+            const Eigen::VectorXd found = laplacian.rotate(system, {rest.x.data(), straight.data()});
             CHECK((found - turned).norm() < 1e-8 * rest.x.norm());
 
             // And on again, from where it came.
             const Eigen::VectorXd further =
-                laplacian.turn(system, {turned.data(), turned.data(), {rest.x.data()}, {0.5}});
+                laplacian.rotate(system, {turned.data(), turned.data(), {rest.x.data()}, {0.5}});
             Eigen::VectorXd expected = rest.x;
             const Matrix3 half_again = Eigen::AngleAxisd(1.5 * angle, axis).toRotationMatrix();
             for (int n = 0; n < model->node_count(); ++n)
@@ -207,11 +207,11 @@ TEST_CASE("a motion goes on by shares of the turns between the states before it"
     const auto angle = [](double t) { return t + t * t + t * t * t; };
     const Eigen::VectorXd a = turned(angle(0)), b = turned(angle(0.1)), c = turned(angle(0.2)),
                           now = turned(angle(0.3));
-    const Eigen::VectorXd found = laplacian.turn(
+    const Eigen::VectorXd found = laplacian.rotate(
         system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data(), a.data()}, .weights = {3, -3, 1}});
     CHECK((found - turned(angle(0.4))).norm() < 1e-5 * rest.norm());
     // With what two turns know it would be off by the third difference.
-    const Eigen::VectorXd less = laplacian.turn(
+    const Eigen::VectorXd less = laplacian.rotate(
         system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data()}, .weights = {2, -1}});
     CHECK((less - turned(angle(0.4) - 0.006)).norm() < 1e-5 * rest.norm());
 }

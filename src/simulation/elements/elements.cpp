@@ -347,9 +347,9 @@ void Elements::apply_laplacian(std::span<const double> u, std::span<double> resu
     }
 }
 
-void Elements::add_turning(const Turning& turning, std::span<double> result) const {
+void Elements::add_rotation_term(const RotatingStep& rotating, std::span<double> result) const {
     add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
-        batch_turning(batch(b), turning, stiffness, forces);
+        batch_rotation_term(batch(b), rotating, stiffness, forces);
     });
 }
 
@@ -363,11 +363,11 @@ void Elements::find_rotations(std::span<const double> before, std::span<const do
     });
 }
 
-void Elements::add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+void Elements::add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
                           std::span<double> result) const {
     const std::size_t stride = 9 * points() * lanes;
     add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
-        batch_turned(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
+        batch_rotated(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
                      forces);
     });
 }

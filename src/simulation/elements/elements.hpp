@@ -46,17 +46,17 @@ public:
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 
-    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: what a straight motion leaves out of a turning
-    /// one. W as in the Laplacian.
-    void add_turning(const Turning& turning, std::span<double> result) const;
+    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: the second-order term of the rotation, which
+    /// a straight motion of the nodes leaves out. W as in the Laplacian.
+    void add_rotation_term(const RotatingStep& rotating, std::span<double> result) const;
 
-    /// How each point has turned from `before` to `now` (3n), for add_turned. Precondition: min_J > 0 in both.
+    /// Rotation of each point from `before` to `now` (3n), for add_rotated. Precondition: min_J > 0 in both.
     void find_rotations(std::span<const double> before, std::span<const double> now,
                         AlignedArray<double>& rotations) const;
     enum class Direction { on, back };
     /// result (3n) += G^T W R G u, or with R^T: what the Laplacian makes into u turned on or back.
-    void add_turned(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
-                    std::span<double> result) const;
+    void add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
+                     std::span<double> result) const;
 
     /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
     /// block 3, and result (3n) += M u.

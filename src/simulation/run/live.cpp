@@ -36,8 +36,8 @@ constexpr double pull_tolerance = 2e-3;  // of the robot's size: how near to its
 std::span<const double> view(const Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
 }
-/// Everything that leads the state, as numbers that can be gone half-way.
-struct Place {
+/// All inputs of the robot, as numbers between which one can interpolate.
+struct Inputs {
     double time = 0;
     std::vector<Drive> drives;
     Eigen::Vector3d force_N = Eigen::Vector3d::Zero();
@@ -84,7 +84,7 @@ public:
     void return_to_rest() {
         state_ = system_.rest();
         system_.set_met(false);
-        place_ = {0, target_at(0).drives, Eigen::Vector3d::Zero()};
+        inputs_ = {0, target_at(0).drives, Eigen::Vector3d::Zero()};
         controls_ = system_.controls(0);
         evaluation_ = system_.evaluate(state_, controls_);
         before_.reset();
@@ -114,11 +114,11 @@ public:
         const auto start = std::chrono::steady_clock::now();
         take_up(target.pull);
         for (std::size_t a = 0; a < steered(); ++a) {
-            if (place_.drives[a].kind == target.drives[a].kind) continue;
-            place_.drives[a] = hold(a, target.drives[a].kind);
+            if (inputs_.drives[a].kind == target.drives[a].kind) continue;
+            inputs_.drives[a] = hold(a, target.drives[a].kind);
             before_.reset();
         }
-        const Place wanted{target.time, target.drives, wanted_force(target.pull)};
+        const Inputs wanted{target.time, target.drives, wanted_force(target.pull)};
         LiveProgress result;
         const double way = distance(wanted);
         if (way > 0) result = go(wanted, way, progress);
@@ -130,7 +130,7 @@ public:
 
     [[nodiscard]] Step describe() const {
         Step step;
-        step.time = place_.time;
+        step.time = inputs_.time;
         step.iterations = iterations_;
         step.wall_s = wall_s_;
         step.solver = solver_;
@@ -153,7 +153,7 @@ public:
 
     [[nodiscard]] Vec3 pull_force_N() const {
         if (!pulled_) return {};
-        return {place_.force_N[0], place_.force_N[1], place_.force_N[2]};
+        return {inputs_.force_N[0], inputs_.force_N[1], inputs_.force_N[2]};
     }
 
     [[nodiscard]] std::vector<double> rest_measures() const {
@@ -168,14 +168,14 @@ private:
     }
 
     /// How far `wanted` is, in pieces at a stride of 1.
-    [[nodiscard]] double distance(const Place& wanted) const {
-        double most = std::fabs(wanted.time - place_.time) * program_.steps / program_.duration;
+    [[nodiscard]] double distance(const Inputs& wanted) const {
+        double most = std::fabs(wanted.time - inputs_.time) * program_.steps / program_.duration;
         if (stale_) most = std::max(most, 1e-300);
         for (std::size_t a = 0; a < steered(); ++a) {
-            const double change = std::fabs(wanted.drives[a].value - place_.drives[a].value);
+            const double change = std::fabs(wanted.drives[a].value - inputs_.drives[a].value);
             most = std::max(most, change / unit(a, wanted.drives[a].kind));
         }
-        const Eigen::Vector3d change = wanted.force_N - place_.force_N;
+        const Eigen::Vector3d change = wanted.force_N - inputs_.force_N;
         if (change.squaredNorm() > 0 && pulled_)
             most = std::max({most, (compliance_ * change).norm() / (pull_share * size_m_), 1e-300});
         else if (change.squaredNorm() > 0)
@@ -197,31 +197,31 @@ private:
         return 1;
     }
 
-    [[nodiscard]] static Place between(const Place& from, const Place& to, double share) {
+    [[nodiscard]] static Inputs between(const Inputs& from, const Inputs& to, double share) {
         if (share >= 1) return to;
-        Place place = to;
-        place.time = from.time + share * (to.time - from.time);
+        Inputs inputs = to;
+        inputs.time = from.time + share * (to.time - from.time);
         for (std::size_t a = 0; a < to.drives.size(); ++a)
-            place.drives[a].value = from.drives[a].value + share * (to.drives[a].value - from.drives[a].value);
-        place.force_N = from.force_N + share * (to.force_N - from.force_N);
-        return place;
+            inputs.drives[a].value = from.drives[a].value + share * (to.drives[a].value - from.drives[a].value);
+        inputs.force_N = from.force_N + share * (to.force_N - from.force_N);
+        return inputs;
     }
 
-    [[nodiscard]] Controls controls_of(const Place& place) const {
-        Controls controls = system_.controls(place.time);
-        for (std::size_t a = 0; a < steered(); ++a) controls.drives[a] = place.drives[a];
+    [[nodiscard]] Controls controls_of(const Inputs& inputs) const {
+        Controls controls = system_.controls(inputs.time);
+        for (std::size_t a = 0; a < steered(); ++a) controls.drives[a] = inputs.drives[a];
         if (pulled_) {
             for (std::size_t k = 0; k < pulled_->point.nodes.size(); ++k)
                 controls.external_N.segment<3>(3 * pulled_->point.nodes[k]) +=
-                    pulled_->point.weights[k] * place.force_N;
+                    pulled_->point.weights[k] * inputs.force_N;
         }
         return controls;
     }
 
-    LiveProgress go(const Place& wanted, double way, const Progress& progress) {
+    LiveProgress go(const Inputs& wanted, double way, const Progress& progress) {
         LiveProgress result;
         for (;;) {
-            const Place next = between(place_, wanted, std::min(1.0, stride_ / way));
+            const Inputs next = between(inputs_, wanted, std::min(1.0, stride_ / way));
             Controls controls = controls_of(next);
             State state;
             std::optional<Evaluation> known;
@@ -253,12 +253,12 @@ private:
         }
     }
 
-    void accept(const Place& next, Controls controls, State state, StepOutcome outcome) {
+    void accept(const Inputs& next, Controls controls, State state, StepOutcome outcome) {
         learn_compliance(next, state);
-        before_ = Known{place_, std::move(state_)};
+        before_ = Known{inputs_, std::move(state_)};
         stale_ = false;
         state_ = std::move(state);
-        place_ = next;
+        inputs_ = next;
         controls_ = std::move(controls);
         evaluation_ = std::move(outcome.evaluation);
         solver_ = outcome.solver;
@@ -267,7 +267,7 @@ private:
 
     /// On along the way of the last piece where this one goes the same way, or back; else from where it is.
     /// `known` is the evaluation of that state, if it was needed.
-    [[nodiscard]] std::string predict(const Place& next, const Controls& controls, State& state,
+    [[nodiscard]] std::string predict(const Inputs& next, const Controls& controls, State& state,
                                       std::optional<Evaluation>& known) const {
         if (before_) {
             const double onward = onward_share(next);
@@ -287,8 +287,8 @@ private:
         const State& before = before_->state;
         state = {state_.x, state_.multiplier + onward * (state_.multiplier - before.multiplier)};
         system_.place_supports(controls, state.x);
-        const Turning turning{state_.x.data(), state.x.data(), {before.x.data()}, {onward}};
-        state.x = laplacian_.turn(system_, turning);
+        const RotatingStep rotating{state_.x.data(), state.x.data(), {before.x.data()}, {onward}};
+        state.x = laplacian_.rotate(system_, rotating);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             double& tension = state.multiplier[static_cast<Eigen::Index>(c)];
             if (system_.actuators()[c].only_pulls()) tension = std::max(tension, 0.0);
@@ -304,8 +304,8 @@ private:
     }
 
     /// The coming change as a multiple of the last one; 0 where they are not nearly parallel.
-    [[nodiscard]] double onward_share(const Place& next) const {
-        const Eigen::VectorXd last = change(before_->place, place_), coming = change(place_, next);
+    [[nodiscard]] double onward_share(const Inputs& next) const {
+        const Eigen::VectorXd last = change(before_->inputs, inputs_), coming = change(inputs_, next);
         const double length = last.squaredNorm();
         if (!(length > 0) || !(coming.squaredNorm() > 0)) return 0;
         const double share = last.dot(coming) / length;
@@ -314,7 +314,7 @@ private:
         return aside <= straight * coming.norm() && std::fabs(share) <= farthest ? share : 0;
     }
 
-    [[nodiscard]] Eigen::VectorXd change(const Place& from, const Place& to) const {
+    [[nodiscard]] Eigen::VectorXd change(const Inputs& from, const Inputs& to) const {
         Eigen::VectorXd d(4 + static_cast<Eigen::Index>(steered()));
         d[0] = (to.time - from.time) * program_.steps / program_.duration;
         d.segment<3>(1) = (to.force_N - from.force_N) / tension_unit_;
@@ -328,7 +328,7 @@ private:
     StepOutcome solve(Controls& controls, State& state, const Progress& progress, std::optional<Evaluation> known) {
         chain_.restart();
         return settle_friction(system_, chain_, {program_.tolerance, most_iterations}, friction_rounds,
-                               {state_, controls_, place_.drives}, controls, state, progress, std::move(known));
+                               {state_, controls_, inputs_.drives}, controls, state, progress, std::move(known));
     }
 
     /// A new point that is pulled: how the body gives way there tells how stiff the spring is.
@@ -337,9 +337,9 @@ private:
             pulled_->handle_m = pull->handle_m;
             return;
         }
-        if (!pull) return;                                    // the force falls to zero on the way
-        if (place_.force_N.squaredNorm() > 0) stale_ = true;  // it was let go of in one go
-        place_.force_N.setZero();
+        if (!pull) return;                                     // the force falls to zero on the way
+        if (inputs_.force_N.squaredNorm() > 0) stale_ = true;  // it was let go of in one go
+        inputs_.force_N.setZero();
         pulled_ = pull;
         before_.reset();
         compliance_ = compliance_at(pull->point);
@@ -355,7 +355,7 @@ private:
         }
         const Eigen::MatrixXd forces = columns;
         const auto tangent = make_newton(system_, laplacian_);
-        if (tangent->refresh(state_, controls_, Care::cautious, {}))
+        if (tangent->refresh(state_, controls_, TangentChoice::projected, {}))
             tangent->solve(columns);
         else
             laplacian_.solve(columns);
@@ -364,11 +364,11 @@ private:
     }
 
     /// Broyden's rank-one correction: what the last change of force has moved.
-    void learn_compliance(const Place& next, const State& state) {
+    void learn_compliance(const Inputs& next, const State& state) {
         if (!pulled_) return;
-        const Eigen::Vector3d force = next.force_N - place_.force_N;
+        const Eigen::Vector3d force = next.force_N - inputs_.force_N;
         if (!(force.norm() > 1e-9 * tension_unit_)) return;
-        if (change(place_, next).norm() > 1.05 * force.norm() / tension_unit_) return;  // others moved it too
+        if (change(inputs_, next).norm() > 1.05 * force.norm() / tension_unit_) return;  // others moved it too
         const Eigen::Vector3d moved =
             linalg::vector(position(pulled_->point, view(state.x)) - position(pulled_->point, view(state_.x)));
         const Eigen::Matrix3d better =
@@ -379,7 +379,7 @@ private:
 
     [[nodiscard]] Eigen::Vector3d spring_gap(const Pull& pull) const {
         const Vec3 stretch = pull.handle_m - position(pull.point, view(state_.x));
-        return spring_N_m_ * linalg::vector(stretch) - place_.force_N;
+        return spring_N_m_ * linalg::vector(stretch) - inputs_.force_N;
     }
 
     [[nodiscard]] bool spring_settled(const std::optional<Pull>& pull) const {
@@ -389,13 +389,13 @@ private:
     /// The force at which the spring and the body are in balance, as far as the compliance tells.
     [[nodiscard]] Eigen::Vector3d wanted_force(const std::optional<Pull>& pull) const {
         if (!pull) return Eigen::Vector3d::Zero();
-        if (spring_settled(pull)) return place_.force_N;
+        if (spring_settled(pull)) return inputs_.force_N;
         const Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity() + spring_N_m_ * compliance_;
-        return place_.force_N + matrix.inverse() * spring_gap(*pull);
+        return inputs_.force_N + matrix.inverse() * spring_gap(*pull);
     }
 
     struct Known {
-        Place place;
+        Inputs inputs;
         State state;
     };
 
@@ -406,14 +406,14 @@ private:
     SolverChain chain_;
     double tension_unit_ = 1, pressure_unit_ = 1, size_m_ = 1;
     State state_;
-    Place place_;        ///< of the state
+    Inputs inputs_;      ///< of the state
     Controls controls_;  ///< of the state
     Evaluation evaluation_;
     std::optional<Known> before_;  ///< the state before, if the way from it is worth following
     std::optional<Pull> pulled_;
     Eigen::Matrix3d compliance_ = Eigen::Matrix3d::Zero();
     double spring_N_m_ = 0;
-    bool stale_ = false;  ///< the state is not at rest at its place
+    bool stale_ = false;  ///< the state is not in equilibrium with its inputs
     double stride_ = 1;
     std::string loose_;  ///< on which looser terms the state was accepted; empty: it converged
     int iterations_ = 0;

@@ -85,7 +85,7 @@ public:
             if (outcome.converged) {
                 if (program_.dynamics) remember(next, target - time_);
                 past_.push_back({time_, std::move(state_)});
-                if (past_.size() > Turning::most_past) past_.pop_front();
+                if (past_.size() > RotatingStep::most_past) past_.pop_front();
                 state_ = std::move(next);
                 controls_ = solved_controls_;
                 time_ = target;
@@ -162,7 +162,7 @@ public:
 
     /// Of a robot at rest at every instant, after each step: whether it jumped on the way. If the program says by how
     /// much to push it, it also goes on from where it is unstable to where it is stable.
-    void judge(Step& step, std::vector<std::string>& warnings, const Progress& progress) {
+    void check_stability(Step& step, std::vector<std::string>& warnings, const Progress& progress) {
         if (program_.dynamics) return;
         if (jumped(progress)) {
             if (step.index > 1) before_jump_.push_back(static_cast<std::size_t>(step.index) - 1);
@@ -199,7 +199,7 @@ public:
 
     /// At the end: whether the last state is stable, and those before a jump. Of the first that is not, the first step
     /// that was not is sought by halving; a look at every step would take as long as the steps.
-    void judge_end(Trajectory& result) {
+    void check_stability_at_end(Trajectory& result) {
         if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
         before_jump_.push_back(result.steps.size() - 1);
         for (const std::size_t suspect : before_jump_) {
@@ -246,7 +246,7 @@ private:
     [[nodiscard]] bool jumped(const Progress& progress) {
         const double way = (state_.x - reported_.state.x).norm();
         const double before = std::exchange(last_way_, way);
-        if (!stability_.can_judge() || system_.has_cable_friction() || system_.has_friction()) return false;
+        if (!stability_.is_applicable() || system_.has_cable_friction() || system_.has_friction()) return false;
         const double reach = std::sqrt(static_cast<double>(state_.x.size() / 3)) * size_;
         const bool first = !(before > 0);
         if (first ? !program_.checks || way < long_first * reach : way < sudden * before || way < noticeable * reach)
@@ -379,16 +379,16 @@ private:
         const std::vector<double> shares = shares_at(time, count);
         State next{state_.x, shares[0] * state_.multiplier};
         system_.place_supports(controls, next.x);
-        Turning turning{.now = state_.x.data(), .end = next.x.data()};
+        RotatingStep rotating{.now = state_.x.data(), .end = next.x.data()};
         double beyond = 0;  // the shares of all states before the turn in question
         for (std::size_t k = count - 1; k > 0; --k) {
             const State& before = past_[past_.size() - k].state;
             next.multiplier += shares[k] * before.multiplier;
             beyond += shares[k];
-            turning.past[k - 1] = before.x.data();
-            turning.weights[k - 1] = -beyond;
+            rotating.past[k - 1] = before.x.data();
+            rotating.weights[k - 1] = -beyond;
         }
-        next.x = laplacian_.turn(system_, turning);
+        next.x = laplacian_.rotate(system_, rotating);
         for (std::size_t c = 0; c < system_.cable_count(); ++c) {
             double& tension = next.multiplier[static_cast<Eigen::Index>(c)];
             if (system_.actuators()[c].only_pulls()) tension = std::max(tension, 0.0);
@@ -483,7 +483,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
                                                                 message, walk.advice(step.time, progress));
             break;
         }
-        walk.judge(step, result.warnings, progress);
+        walk.check_stability(step, result.warnings, progress);
         walk.describe(step);
         walk.warn_of_closed_gaps(k, result.warnings);
         step.wall_s = seconds_since(begin);
@@ -493,7 +493,7 @@ Trajectory run(const Model& model, const Program& program, Progress& progress) {
     }
     const auto end = std::chrono::steady_clock::now();
     walk.look_for_crossings(result.steps, true);
-    if (!progress.cancelled()) walk.judge_end(result);
+    if (!progress.cancelled()) walk.check_stability_at_end(result);
     result.solve_s += seconds_since(end);
     add_warnings(result);
     result.iterations = walk.take_iterations();

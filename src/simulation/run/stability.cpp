@@ -49,13 +49,13 @@ double largest_motion(const Eigen::VectorXd& v) {
 
 }  // namespace
 
-bool Stability::can_judge() const {
+bool Stability::is_applicable() const {
     return system_->conservative() && system_->model().description().growths.empty() &&
            system_->model().free_count() > 0;
 }
 
 std::optional<Eigen::VectorXd> Stability::falling_motion(const State& state, const Controls& controls) {
-    if (!can_judge() || !system_->contact_cliques(state, controls).empty()) return {};
+    if (!is_applicable() || !system_->contact_cliques(state, controls).empty()) return {};
     assemble(state, controls, false, stiffness_);
     const bool first = inverse_ == nullptr;
     if (first && !take_metric(state, controls)) return {};

@@ -26,7 +26,7 @@ public:
         : system_(&system), layout_(laplacian.tangent_layout()), laplacian_(&laplacian) {}
 
     /// False: the forces have no energy, so that the tangent's sign says nothing.
-    [[nodiscard]] bool can_judge() const;
+    [[nodiscard]] bool is_applicable() const;
 
     /// The motion of the free nodes (3 free; the largest of a node is 1) along which the energy of an equilibrium falls
     /// to second order; nothing where none is found. States in which something touches are not judged.

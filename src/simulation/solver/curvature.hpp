@@ -3,7 +3,7 @@
 //   anderson       the same step, mixed with the last eight so that they cancel as much of it as they can
 //   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
 //   newton         the tangent stiffness with the actuators' own stiffness, factorised anew where the last factor, with
-//                  what was learnt since, does not lead on quickly
+//                  the L-BFGS pairs collected since, is no longer expected to be quicker
 // so that elements, constraints and line search are the same for all.
 #pragma once
 
@@ -17,9 +17,9 @@
 
 namespace pliant::sim {
 
-/// How sure a direction must be: as quick as it can be had; of the state at hand, if that makes a difference; or of a
-/// positive definite H.
-enum class Care { usual, exact, cautious };
+/// Which tangent a direction is computed with: the one that is quickest, which may be an old factor; the exact tangent
+/// of this state, if that makes a difference; or its projection, which is positive definite.
+enum class TangentChoice { quickest, exact, projected };
 
 /// Of a state (see Evaluation), and what residual is wanted. All 0: as near to none as can be had.
 struct Errors {
@@ -38,11 +38,12 @@ public:
     virtual void restart() {}
     /// Called before solve() at a new state, or again where its direction was no good. Both must still be there when
     /// solve() is called. False: no H could be made, or no better one.
-    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, Care care, Errors errors) = 0;
+    [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, TangentChoice choice,
+                                       Errors errors) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
-    /// Where the whole body goes that sets out along `motion` (3n); to first order x + motion.
-    [[nodiscard]] virtual Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
+    /// Retraction: the positions that the direction `motion` (3n) leads to; to first order x + motion.
+    [[nodiscard]] virtual Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
         return x + motion;
     }
     /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed
@@ -51,8 +52,8 @@ public:
         (void)step;
         (void)change;
     }
-    /// After an accepted step: the error before it and after it.
-    virtual void judge(double before, double after) {
+    /// After an accepted step, with the error before it and after it: updates what is known of the rate of convergence.
+    virtual void update_convergence(double before, double after) {
         (void)before;
         (void)after;
     }
@@ -66,10 +67,11 @@ public:
     ~FactoredLaplacian();
     /// columns (3 free, k) <- L^-1 columns.
     void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
-    /// Where the nodes get to, (3n), if every tet turns instead of growing (see Turning) and the Laplacian reconciles
-    /// what each one wants, as the local and the global step of the thesis do. Held nodes go where `turning.end` has
-    /// them. After Huang et al. 2011, "Interactive shape interpolation through controllable dynamic deformation".
-    [[nodiscard]] Eigen::VectorXd turn(const Equilibrium& system, const Turning& turning) const;
+    /// The positions (3n) that result if the rotations of a step are applied exactly at each integration point (see
+    /// RotatingStep) and the Laplacian reconciles the deformation gradients that this gives, as the global step of the
+    /// thesis does. Held nodes take their positions from `rotating.end`. After Huang et al. 2011, "Interactive shape
+    /// interpolation through controllable dynamic deformation".
+    [[nodiscard]] Eigen::VectorXd rotate(const Equilibrium& system, const RotatingStep& rotating) const;
     /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
 

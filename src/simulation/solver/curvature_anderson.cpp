@@ -27,9 +27,9 @@ public:
 
     /// The accelerated step has no descent to promise: cautiously, it is the plain one. What misled is forgotten, or it
     /// would mislead again at every iteration to come, and all steps would be plain ones.
-    [[nodiscard]] bool refresh(const State&, const Controls&, Care care, Errors) override {
-        if (care == Care::exact) return false;  // there is nothing better than the usual
-        if (care == Care::cautious) steps_.clear();
+    [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice choice, Errors) override {
+        if (choice == TangentChoice::exact) return false;  // there is nothing better than the usual
+        if (choice == TangentChoice::projected) steps_.clear();
         mixing_ = !steps_.empty();
         if (mixing_) factorise();
         return true;

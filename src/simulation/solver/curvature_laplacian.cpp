@@ -20,8 +20,8 @@ public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
     [[nodiscard]] Solver solver() const override { return Solver::local_global; }
     [[nodiscard]] int default_iteration_limit() const override { return 20000; }
-    [[nodiscard]] bool refresh(const sim::State&, const Controls&, Care care, Errors) override {
-        return care != Care::exact;
+    [[nodiscard]] bool refresh(const sim::State&, const Controls&, TangentChoice choice, Errors) override {
+        return choice != TangentChoice::exact;
     }
     void solve(Eigen::MatrixXd& columns) override { laplacian_->solve(columns); }
 
@@ -116,10 +116,10 @@ Eigen::VectorXd FactoredLaplacian::follow_on_rollers(const Equilibrium& system, 
     return sum;
 }
 
-Eigen::VectorXd FactoredLaplacian::turn(const Equilibrium& system, const Turning& turning) const {
-    Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(turning.end, 3 * state_->model->node_count());
+Eigen::VectorXd FactoredLaplacian::rotate(const Equilibrium& system, const RotatingStep& rotating) const {
+    Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(rotating.end, 3 * state_->model->node_count());
     Eigen::VectorXd turned = Eigen::VectorXd::Zero(end.size());
-    state_->model->elements().add_turning(turning, {turned.data(), static_cast<std::size_t>(turned.size())});
+    state_->model->elements().add_rotation_term(rotating, {turned.data(), static_cast<std::size_t>(turned.size())});
     Eigen::VectorXd correction = system.restrict_to_free(turned);
     solve(correction);
     system.add_free(correction, 1, end);

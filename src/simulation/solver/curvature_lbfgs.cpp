@@ -14,9 +14,10 @@ public:
     [[nodiscard]] int default_iteration_limit() const override { return 3000; }
     void restart() override { memory_.clear(); }
 
-    [[nodiscard]] bool refresh(const State&, const Controls&, Care care, Errors) override {
-        if (care == Care::exact) return false;        // there is nothing better than the usual
-        if (care == Care::cautious) memory_.clear();  // the last steps misled: start from the Laplacian again
+    [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice choice, Errors) override {
+        if (choice == TangentChoice::exact) return false;  // there is nothing better than the usual
+        if (choice == TangentChoice::projected)
+            memory_.clear();  // the last steps misled: start from the Laplacian again
         return true;
     }
 

@@ -6,7 +6,7 @@
 #include "base/core/parallel.hpp"
 #include "base/linalg/gmres.hpp"
 #include "simulation/elements/elements.hpp"
-#include "simulation/solver/body_turn.hpp"
+#include "simulation/solver/body_rotation.hpp"
 #include "simulation/solver/curvature.hpp"
 #include "simulation/solver/step_memory.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
@@ -25,7 +25,7 @@ public:
           analysis_(laplacian.analysis()),
           two_levels_(!system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work())),
           inverse_(make_inverse()),
-          turn_(system, laplacian) {}
+          rotation_(system, laplacian) {}
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
@@ -42,35 +42,36 @@ public:
         left_at_first_ = hoped_left * std::pow(left_at_first_ / hoped_left, memory_of_first);
     }
 
-    [[nodiscard]] bool refresh(const State& state, const Controls& controls, Care care, Errors errors) override {
-        const bool reuse = care == Care::usual && usable_ && pays(errors.residual / errors.wanted);
-        if (!reuse && care == Care::exact && !reused_) return false;  // it is that of this state
-        if (reused_ && care != Care::usual) judge_old(most_left);
+    [[nodiscard]] bool refresh(const State& state, const Controls& controls, TangentChoice choice,
+                               Errors errors) override {
+        const bool reuse = choice == TangentChoice::quickest && usable_ && pays(errors.residual / errors.wanted);
+        if (!reuse && choice == TangentChoice::exact && !reused_) return false;  // it is that of this state
+        if (reused_ && choice != TangentChoice::quickest) update_old_factor(most_left);
         reused_ = reuse;
         at_ = {&state, &controls};
         const double error = std::max(errors.residual, errors.violation);
         enough_ = solution_error(error, errors.wanted);
         straight_ = left_by_last_ < well_led && error * error < straight_share * errors.wanted;
-        if (!reuse) return take_tangent(care == Care::cautious);
+        if (!reuse) return take_tangent(choice == TangentChoice::projected);
         remember();
-        turn_.follow(state.x);
+        rotation_.follow(state.x);
         return true;
     }
 
     /// What a straight motion stretches grows with its square: a short one need not turn. A small error means a short
     /// one, unless the body gives way to next to no force; there steps do not lead far.
-    [[nodiscard]] Eigen::VectorXd go(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
+    [[nodiscard]] Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
         const Eigen::VectorXd end = x + motion;
-        return straight_ ? end : laplacian_->turn(*system_, {.now = x.data(), .end = end.data()});
+        return straight_ ? end : laplacian_->rotate(*system_, {.now = x.data(), .end = end.data()});
     }
 
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
 
-    void judge(double before, double after) override {
+    void update_convergence(double before, double after) override {
         left_by_last_ = after / before;
         if (reused_) {
             ++uses_;
-            return judge_old(std::clamp(after / before, least_left, most_left));
+            return update_old_factor(std::clamp(after / before, least_left, most_left));
         }
         uses_ = 0;
         left_by_new_ = after < nearby ? after / before : 0;
@@ -82,9 +83,9 @@ public:
 
     void solve(Eigen::MatrixXd& columns) override {
         if (!system_->has_skew()) {
-            turn_.forces_back(columns);
+            rotation_.pull_back_forces(columns);
             memory_.apply(columns, [&](Eigen::MatrixXd& c) { solve_with_inverse(c); });
-            turn_.motions_on(columns);
+            rotation_.push_forward_motions(columns);
             return;
         }
         for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
@@ -104,7 +105,7 @@ private:
     [[nodiscard]] bool pays(double far) const {
         if (system_->has_skew()) return false;
         if (crawls()) return true;
-        return !hasty_ && std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->price();
+        return !hasty_ && std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->factorisation_cost();
     }
 
     /// True where, close to equilibrium, the very tangent hardly leads on: it had to be made positive definite, which
@@ -124,7 +125,7 @@ private:
     }
 
     /// A step with an inverse from an earlier state left so much of the error.
-    void judge_old(double left) {
+    void update_old_factor(double left) {
         left_ = left;
         hasty_ = left > slow;
         if (age_ > 0 && !std::exchange(tried_later_, true)) left_at_first_ = left;
@@ -134,7 +135,7 @@ private:
     void remember() {
         if (learnt_.step.size() == 0) return;
         Eigen::VectorXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
-        turn_.step_back(step, change);
+        rotation_.pull_back_step(step, change);
         memory_.learn(step, change);
     }
 
@@ -162,7 +163,7 @@ private:
         cautious_ = cautious;
         memory_.clear();
         learnt_ = {};
-        turn_.begin(at_.state->x);
+        rotation_.begin(at_.state->x);
         if (system_->has_skew()) state_ = *at_.state;
         positions_ = system_->free_positions(at_.state->x);
         assemble(false, values_);
@@ -273,7 +274,7 @@ private:
     double enough_ = 0;              ///< error of the next solution
     bool straight_ = false;          ///< the next step need not turn
     Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
-    BodyTurn turn_;                  ///< since the factor was made
+    BodyRotation rotation_;          ///< since the factor was made
     StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then
     struct {
         Eigen::VectorXd step, change;

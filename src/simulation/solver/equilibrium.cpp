@@ -222,9 +222,10 @@ double Equilibrium::cable_friction_error(const State& state, std::span<const Dri
     for (std::size_t c = 0; c < cables.size(); ++c) {
         const Drive& wanted = all_wanted[c];
         if (!(cables[c].friction > 0) || wanted.kind != Drive::Kind::measure) continue;
-        const double excess = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
+        const double violation = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
         const bool pulls = state.multiplier[static_cast<Eigen::Index>(c)] > 0;
-        error = std::max(error, pulls ? std::fabs(excess) : excess);  // a slack cable may be shorter than asked for
+        error =
+            std::max(error, pulls ? std::fabs(violation) : violation);  // a slack cable may be shorter than asked for
     }
     return error;
 }
@@ -299,7 +300,7 @@ bool Equilibrium::has_collapsed_chamber(const Eigen::VectorXd& x) const {
 
 void Equilibrium::fill_actuators(const State& state, const Controls& controls, Evaluation& e) const {
     e.multiplier = state.multiplier;
-    e.excess = Eigen::VectorXd::Zero(state.multiplier.size());
+    e.constraint_violation = Eigen::VectorXd::Zero(state.multiplier.size());
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const auto i = static_cast<Eigen::Index>(a);
         const Drive& drive = controls.drives[a];
@@ -309,9 +310,9 @@ void Equilibrium::fill_actuators(const State& state, const Controls& controls, E
         if (drive.kind == Drive::Kind::gas)
             e.multiplier[i] = model_->description().ambient_pressure_Pa - drive.value / g;
         if (drive.kind != Drive::Kind::measure) continue;
-        e.excess[i] = (g - drive.value) / actuators_[a].rest_measure();
+        e.constraint_violation[i] = (g - drive.value) / actuators_[a].rest_measure();
         const bool slack = actuators_[a].only_pulls() && !(e.multiplier[i] > 0);
-        e.violation = std::max(e.violation, slack ? e.excess[i] : std::fabs(e.excess[i]));
+        e.violation = std::max(e.violation, slack ? e.constraint_violation[i] : std::fabs(e.constraint_violation[i]));
     }
 }
 

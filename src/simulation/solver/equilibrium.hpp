@@ -52,9 +52,10 @@ struct Evaluation {
     double energy_J = 0;             ///< elastic and of given multipliers and gas, minus the work of loads
     Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + sum m dg/dx; at supports the reaction
     Eigen::VectorXd multiplier;      ///< (actuators) the state's or, where not the measure is driven, what it must be
-    Eigen::VectorXd excess;          ///< (actuators) (g - wanted g) / rest g; zero where not the measure is driven
-    double residual = 0;             ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
-    double violation = 0;            ///< largest excess that counts: not that of a slack cable
+    Eigen::VectorXd
+        constraint_violation;  ///< (actuators) (g - wanted g) / rest g; zero where not the measure is driven
+    double residual = 0;       ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
+    double violation = 0;      ///< largest constraint violation that counts: not that of a slack cable
     [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
     [[nodiscard]] bool possible() const { return flaw == Flaw::none; }
 };

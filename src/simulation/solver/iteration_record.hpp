@@ -12,10 +12,10 @@ struct IterationRecord {
     Solver solver = Solver::automatic;  ///< the one at work: never `automatic`
     int iteration = 0;                  ///< 0: where it began; a new 0 is a new attempt
     double residual = 0;                ///< as in Step
-    double violation = 0;               ///< largest excess of a length or volume that is asked for, relative to rest
-    double energy_J = 0;                ///< elastic and of given tensions, pressures and gas, minus the work of loads
-    double alpha = 0;                   ///< share of the solver's step that was taken; 0 where it began
-    double min_J = 1;                   ///< smallest det F
+    double violation = 0;  ///< largest constraint violation: of a prescribed length or volume, relative to rest
+    double energy_J = 0;   ///< elastic and of given tensions, pressures and gas, minus the work of loads
+    double alpha = 0;      ///< share of the solver's step that was taken; 0 where it began
+    double min_J = 1;      ///< smallest det F
 };
 
 }  // namespace pliant::sim

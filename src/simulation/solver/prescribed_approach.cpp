@@ -53,7 +53,7 @@ private:
     /// Adds to the supports' motion that of the free nodes which keeps their forces as they are: the change of force
     /// for a small share of it, through the tangent. False: there is no tangent, or nothing is free ahead.
     [[nodiscard]] bool answer(Eigen::VectorXd& motion) {
-        if (!newton_->refresh(state_, now_, Care::usual, {})) return false;
+        if (!newton_->refresh(state_, now_, TangentChoice::quickest, {})) return false;
         const double probe = probe_share * free_share(motion);
         State probed{state_.x + probe * motion, state_.multiplier};
         const Evaluation here = system_.evaluate(state_, now_), there = system_.evaluate(probed, with_obstacles(probe));

@@ -59,7 +59,7 @@ public:
         : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 1000; }
-    [[nodiscard]] bool refresh(const State&, const Controls&, Care, Errors) override {
+    [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice, Errors) override {
         ++*asked_;
         return creeps_;
     }
@@ -220,7 +220,7 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->restart();
     mixing->learn(inverse.col(0), 5 * u);
     mixing->learn(inverse.col(1), 0.2 * v);
-    REQUIRE(mixing->refresh(state, controls, Care::usual, {}));
+    REQUIRE(mixing->refresh(state, controls, TangentChoice::quickest, {}));
     Eigen::MatrixXd asked(n, 2);
     asked << 5 * u, u + v;
     Eigen::MatrixXd expected(n, 2);
@@ -228,12 +228,12 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     mixing->solve(asked);
     CHECK((asked - expected).norm() < 1e-8 * expected.norm());
     // Cautious: the plain step.
-    REQUIRE(mixing->refresh(state, controls, Care::cautious, {}));
+    REQUIRE(mixing->refresh(state, controls, TangentChoice::projected, {}));
     Eigen::MatrixXd plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
     // And what has misled is forgotten.
-    REQUIRE(mixing->refresh(state, controls, Care::usual, {}));
+    REQUIRE(mixing->refresh(state, controls, TangentChoice::quickest, {}));
     plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);

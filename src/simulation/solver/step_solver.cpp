@@ -9,13 +9,14 @@
 #include <optional>
 #include <utility>
 
+#include "base/core/counted.hpp"
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
 namespace {
 
-/// The excess length may be no larger than this share of the tolerance: the tension follows it closely.
-constexpr double excess_share = 0.01;
+/// The constraint violation may be no larger than this share of the tolerance: the tension follows it closely.
+constexpr double violation_share = 0.01;
 constexpr std::size_t error_memory = 10;
 constexpr double close = 0.05;  // an error
 
@@ -44,11 +45,11 @@ Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::Vec
     if (!active.empty()) m(active) = solve_small(S(active, active), b(active));
     const double rounding = 1e-13 * (b.cwiseAbs().maxCoeff() + 1e-300);
     for (Eigen::Index round = 0; round < 3 * count + 3; ++round) {
-        const Eigen::VectorXd excess = b - S * m;
+        const Eigen::VectorXd violation = b - S * m;
         Eigen::Index worst = -1;
         for (Eigen::Index i = 0; i < count; ++i) {
             const bool slack = std::find(active.begin(), active.end(), i) == active.end();
-            if (slack && excess[i] > rounding && (worst < 0 || excess[i] > excess[worst])) worst = i;
+            if (slack && violation[i] > rounding && (worst < 0 || violation[i] > violation[worst])) worst = i;
         }
         if (worst < 0) break;
         active.push_back(worst);
@@ -88,7 +89,7 @@ public:
             only_pull_.push_back(system.actuators()[a].only_pulls());
             by_gaps_ = by_gaps_ || system.actuators()[a].gaps() != nullptr;
         }
-        prices_ = Eigen::VectorXd::Zero(state.multiplier.size());
+        penalty_weights_ = Eigen::VectorXd::Zero(state.multiplier.size());
         if (evaluation_.possible()) state_.multiplier = evaluation_.multiplier;
     }
 
@@ -98,13 +99,13 @@ public:
     /// What the shortest step that was tried last does; none: it is possible, but no better.
     [[nodiscard]] Evaluation::Flaw obstacle() const { return obstacle_; }
     [[nodiscard]] bool converged(double tolerance) const {
-        return evaluation_.residual <= tolerance && evaluation_.violation <= excess_share * tolerance;
+        return evaluation_.residual <= tolerance && evaluation_.violation <= violation_share * tolerance;
     }
 
     /// One iteration; false if no acceptable step was found.
-    bool iterate(Care care, double tolerance) {
+    bool iterate(TangentChoice choice, double tolerance) {
         const Errors errors{std::max(evaluation_.residual, tolerance), evaluation_.violation, tolerance};
-        if (!curvature_.refresh(state_, controls_, care, errors)) return false;
+        if (!curvature_.refresh(state_, controls_, choice, errors)) return false;
         const Direction direction = find_direction();
         if (!direction.dx.allFinite()) return false;
         return search(direction);
@@ -174,9 +175,10 @@ private:
             const Eigen::VectorXd now = state_.multiplier(solved_).cwiseProduct(scale);
             Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
             // What is too much after the free step; then what it takes beside the present multipliers.
-            const Eigen::VectorXd excess = evaluation_.excess(solved_) - A.transpose() * columns.col(0);
+            const Eigen::VectorXd violation =
+                evaluation_.constraint_violation(solved_) - A.transpose() * columns.col(0);
             S.diagonal() += compliance;
-            const Eigen::VectorXd change = multipliers_that_hold(S, excess + S * now, only_pull_) - now;
+            const Eigen::VectorXd change = multipliers_that_hold(S, violation + S * now, only_pull_) - now;
             direction.dx -= columns.rightCols(A.cols()) * change;
             direction.multiplier(solved_) += change.cwiseQuotient(scale);
             for (const Eigen::Index a : solved_) {
@@ -197,8 +199,8 @@ private:
 
     /// Halves the step until the state is possible and the merit (or the error) goes down.
     bool search(const Direction& direction) {
-        raise_prices(direction);
-        const double cost = cost_of_excess(evaluation_);  // a full step removes it
+        raise_penalty_weights(direction);
+        const double cost = constraint_penalty(evaluation_);  // a full step removes it
         const double start = evaluation_.energy_J + cost;
         const double slope = direction.slope_J - cost;
         const bool conservative = system_.conservative();
@@ -214,7 +216,7 @@ private:
             if (!evaluation.possible() || !(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
             // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
             const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
-            const double merit = evaluation.energy_J + cost_of_excess(evaluation);
+            const double merit = evaluation.energy_J + constraint_penalty(evaluation);
             const bool lower = conservative && merit < start - 1e-4 * alpha * std::fabs(slope) + rounding;
             const bool nearer = conservative ? evaluation.error() < 0.5 * evaluation_.error()
                                              : evaluation.error() < (1 - 1e-3 * alpha) * allowed_error();
@@ -230,13 +232,13 @@ private:
     class Way {
     public:
         Way(const StepSolver& solver, const Eigen::VectorXd& motion) : solver_(solver), motion_(motion) {
-            turned_ = free_end(1);
-            if (!turned_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
+            rotated_ = free_end(1);
+            if (!rotated_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
         }
         [[nodiscard]] double longest() const { return longest_; }
         /// Precondition: alpha is at most longest(), and falls from call to call.
         [[nodiscard]] Eigen::VectorXd at(double alpha) {
-            if (alpha == 1 && turned_) return *std::exchange(turned_, std::nullopt);
+            if (alpha == 1 && rotated_) return *std::exchange(rotated_, std::nullopt);
             if (std::optional<Eigen::VectorXd> end = free_end(alpha)) return std::move(*end);
             // Straight on, longest() is known to be free only where the whole turned way was not.
             const double share =
@@ -248,23 +250,23 @@ private:
         /// Where the solver goes for this share, if it meets nothing.
         [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
             const Eigen::VectorXd& x = solver_.state_.x;
-            Eigen::VectorXd end = solver_.curvature_.go(x, alpha * motion_);
+            Eigen::VectorXd end = solver_.curvature_.retract(x, alpha * motion_);
             if (solver_.system_.largest_step(x, end - x, solver_.controls_) < 1) return std::nullopt;
             return end;
         }
 
         const StepSolver& solver_;
         const Eigen::VectorXd& motion_;
-        std::optional<Eigen::VectorXd> turned_;  ///< the end of the whole way
+        std::optional<Eigen::VectorXd> rotated_;  ///< the end of the whole way
         double longest_ = 1;
     };
 
-    /// What the present excess adds to the merit: a cable that is not too long costs nothing.
-    [[nodiscard]] double cost_of_excess(const Evaluation& evaluation) const {
+    /// Penalty that the present constraint violation adds to the merit: a cable that is not too long costs nothing.
+    [[nodiscard]] double constraint_penalty(const Evaluation& evaluation) const {
         double cost = 0;
         for (const Eigen::Index a : solved_) {
-            const double excess = evaluation.excess[a];
-            cost += prices_[a] * (actuator(a).only_pulls() ? std::max(excess, 0.0) : std::fabs(excess));
+            const double violation = evaluation.constraint_violation[a];
+            cost += penalty_weights_[a] * (actuator(a).only_pulls() ? std::max(violation, 0.0) : std::fabs(violation));
         }
         return cost;
     }
@@ -280,10 +282,11 @@ private:
     }
 
     /// Excess must cost more than any multiplier that holds it, or the merit would prefer long cables.
-    void raise_prices(const Direction& direction) {
+    void raise_penalty_weights(const Direction& direction) {
         for (const Eigen::Index a : solved_) {
             if (drives_measure(a))
-                prices_[a] = std::max(prices_[a], 2 * std::fabs(direction.multiplier[a]) * actuator(a).rest_measure());
+                penalty_weights_[a] =
+                    std::max(penalty_weights_[a], 2 * std::fabs(direction.multiplier[a]) * actuator(a).rest_measure());
         }
     }
 
@@ -293,7 +296,7 @@ private:
         const Eigen::VectorXd old_force = solved_.empty() ? evaluation_.out_of_balance : force_at(next.multiplier);
         curvature_.learn(system_.restrict_to_free(next.x - state_.x),
                          system_.restrict_to_free(evaluation.out_of_balance - old_force));
-        curvature_.judge(evaluation_.error(), evaluation.error());
+        curvature_.update_convergence(evaluation_.error(), evaluation.error());
         state_ = std::move(next);
         evaluation_ = std::move(evaluation);
         alpha_ = alpha;
@@ -322,7 +325,7 @@ private:
     std::vector<Eigen::Index> solved_;  ///< actuators whose multiplier is unknown
     std::vector<bool> only_pull_;       ///< (solved)
     bool by_gaps_ = false;              ///< the force of one of them is not the gradient of its measure
-    Eigen::VectorXd prices_;            ///< (actuators)
+    Eigen::VectorXd penalty_weights_;   ///< (actuators)
     std::deque<double> errors_;         ///< of the last steps
 };
 
@@ -381,19 +384,21 @@ StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Co
             break;
         }
         if (outcome.iterations == limit) {
-            outcome.reason = fmt::format("no convergence in {} iterations, residual {:.2e}", limit, residual());
+            outcome.reason = fmt::format("no convergence in {}, residual {:.2e}",
+                                         counted(static_cast<std::size_t>(limit), "iteration"), residual());
             break;
         }
         ++outcome.iterations;
-        if (!solver.iterate(Care::usual, settings.tolerance) && !solver.iterate(Care::exact, settings.tolerance) &&
-            !solver.iterate(Care::cautious, settings.tolerance)) {
+        if (!solver.iterate(TangentChoice::quickest, settings.tolerance) &&
+            !solver.iterate(TangentChoice::exact, settings.tolerance) &&
+            !solver.iterate(TangentChoice::projected, settings.tolerance)) {
             outcome.reason = stuck(solver);
             break;
         }
         outcome.history.push_back(record(outcome.solver, outcome.iterations, solver.evaluation(), solver.alpha()));
         if (patience.is_at_end(solver.evaluation().error()) && !solver.converged(settings.tolerance)) {
-            outcome.reason =
-                fmt::format("no progress in {} iterations, residual {:.2e}", settings.patience, residual());
+            outcome.reason = fmt::format("no progress in {}, residual {:.2e}",
+                                         counted(static_cast<std::size_t>(settings.patience), "iteration"), residual());
             break;
         }
     }

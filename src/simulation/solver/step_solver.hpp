@@ -31,10 +31,10 @@ struct StepOutcome {
 
 /// Minimises the energy subject to length <= allowed length for every cable driven by length and volume = wanted volume
 /// for every chamber driven by volume; the multipliers are tension, so that a cable only pulls, and pressure. Every
-/// accepted state is possible and has a lower merit (energy plus the price of excess) or, where the forces have no
-/// energy, an error that is not above the last ones. `known`: the evaluation of `state` at these controls, if it is at
-/// hand. Precondition: `state` is possible.
-/// Source of the constraint step: Nocedal and Wright, Numerical Optimization, chapter 18.
+/// accepted state is possible and has a lower merit (energy plus a penalty for constraint violation) or, where the
+/// forces have no energy, an error that is not above the last ones. `known`: the evaluation of `state` at these
+/// controls, if it is at hand. Precondition: `state` is possible. Source of the constraint step: Nocedal and Wright,
+/// Numerical Optimization, chapter 18.
 [[nodiscard]] StepOutcome solve_step(const Equilibrium& system, Curvature& curvature, const Controls& controls,
                                      const StepSettings& settings, State& state, const Progress& progress,
                                      std::optional<Evaluation> known = {});

@@ -58,7 +58,7 @@ public:
 
     /// Of a factorisation every number is worked on many times, of a step with one that is there it is read a few
     /// times. Measured, in nanoseconds: 0.05 a multiply-add, and 3.5 an entry; setting up and solving are in both.
-    [[nodiscard]] double price() const override {
+    [[nodiscard]] double factorisation_cost() const override {
         return 1.3 + factor_.factor_work() / (70 * factor_.factor_entries());
     }
 
@@ -108,7 +108,7 @@ public:
     }
 
     /// A new matrix costs next to nothing.
-    [[nodiscard]] double price() const override { return 0; }
+    [[nodiscard]] double factorisation_cost() const override { return 0; }
 
 private:
     static constexpr int most_iterations = 100;  // ten do in a usual body

@@ -26,7 +26,7 @@ public:
     /// falls.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
     /// What it costs to take a matrix and solve with it, in steps with one that is at hand.
-    [[nodiscard]] virtual double price() const = 0;
+    [[nodiscard]] virtual double factorisation_cost() const = 0;
 };
 
 /// `exact`: in double precision throughout.

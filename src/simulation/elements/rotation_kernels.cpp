@@ -1,6 +1,6 @@
 // Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "simulation/elements/turning_kernels.cpp"
+#define HWY_TARGET_INCLUDE "simulation/elements/rotation_kernels.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, as it asks.
 #include <hwy/highway.h>
@@ -121,20 +121,20 @@ HWY_INLINE Matrix logarithm(const Matrix& M) {
 /// Positions of the nodes of several tets in the states of a Turning.
 template <int nodes>
 struct States {
-    V now[nodes][3], end[nodes][3], past[Turning::most_past][nodes][3];
+    V now[nodes][3], end[nodes][3], past[RotatingStep::most_past][nodes][3];
     std::size_t past_count = 0;
 
-    HWY_INLINE States(const TetBatch& batch, const Turning& turning, int part) {
-        load_positions<nodes>(batch, turning.now, part, now);
-        load_positions<nodes>(batch, turning.end, part, end);
-        for (; past_count < Turning::most_past && turning.past[past_count] != nullptr; ++past_count)
-            load_positions<nodes>(batch, turning.past[past_count], part, past[past_count]);
+    HWY_INLINE States(const TetBatch& batch, const RotatingStep& rotating, int part) {
+        load_positions<nodes>(batch, rotating.now, part, now);
+        load_positions<nodes>(batch, rotating.end, part, end);
+        for (; past_count < RotatingStep::most_past && rotating.past[past_count] != nullptr; ++past_count)
+            load_positions<nodes>(batch, rotating.past[past_count], part, past[past_count]);
     }
 };
 
-/// M of a Turning at one point; `F` and `E` are the deformation gradients now and at the end of the straight way.
+/// M of a RotatingStep at one point; `F` and `E` are the deformation gradients now and at the end of the straight way.
 template <int nodes>
-HWY_INLINE Matrix rate_of(const TetBatch& batch, const Turning& turning, const States<nodes>& states, int point,
+HWY_INLINE Matrix rate_of(const TetBatch& batch, const RotatingStep& rotating, const States<nodes>& states, int point,
                           int part, const Matrix& F, const Matrix& E) {
     if (states.past_count == 0) return product(combine(1, E, -1, F), inverse(F));
     Matrix sum = identity(0);
@@ -142,7 +142,7 @@ HWY_INLINE Matrix rate_of(const TetBatch& batch, const Turning& turning, const S
     for (std::size_t k = 0; k < states.past_count; ++k) {
         const Matrix before = deformation_gradient<nodes>(batch, point, part, states.past[k]);
         const Matrix rate = logarithm(combine(1, identity(1), -1, product(before, inverse(after))));
-        sum = combine(1, sum, turning.weights[k], rate);
+        sum = combine(1, sum, rotating.weights[k], rate);
         after = before;
     }
     return sum;
@@ -177,16 +177,16 @@ HWY_INLINE void store(const V (*sums)[3], int part, double* forces) {
 }
 
 template <int nodes>
-void turn(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
+void rotation_term_of(const TetBatch& batch, const RotatingStep& rotating, double stiffness, double* forces) {
     constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
     for (int part = 0; part < batch_lanes; part += N) {
-        const States<nodes> states(batch, turning, part);
+        const States<nodes> states(batch, rotating, part);
         V sums[nodes][3];
         clear<nodes>(sums);
         for (int q = 0; q < batch.points; ++q) {
             const Matrix F = deformation_gradient<nodes>(batch, q, part, states.now);
             const Matrix E = deformation_gradient<nodes>(batch, q, part, states.end);
-            const Matrix rate = rate_of<nodes>(batch, turning, states, q, part, F, E);
+            const Matrix rate = rate_of<nodes>(batch, rotating, states, q, part, F, E);
             const Matrix D = combine(1, product(exponential(rate), F), -1, E);
             add_forces<nodes>(batch, q, part, D, weight_of(batch, q, part, stiffness), sums);
         }
@@ -240,8 +240,8 @@ HWY_INLINE Matrix load_rotation(const double* rotations, int point, int part, bo
 }
 
 template <int nodes>
-void turn_field(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
-                double* forces) {
+void rotate_field(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                  double* forces) {
     constexpr int N = static_cast<int>(hn::MaxLanes(Tag()));
     for (int part = 0; part < batch_lanes; part += N) {
         V field[nodes][3];
@@ -257,11 +257,11 @@ void turn_field(const TetBatch& batch, const double* rotations, bool back, const
     }
 }
 
-void turning_forces(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
+void rotation_term(const TetBatch& batch, const RotatingStep& rotating, double stiffness, double* forces) {
     if (batch.nodes_per_tet == 4)
-        turn<4>(batch, turning, stiffness, forces);
+        rotation_term_of<4>(batch, rotating, stiffness, forces);
     else
-        turn<10>(batch, turning, stiffness, forces);
+        rotation_term_of<10>(batch, rotating, stiffness, forces);
 }
 
 void rotations(const TetBatch& batch, const double* before, const double* now, double* result) {
@@ -271,12 +271,12 @@ void rotations(const TetBatch& batch, const double* before, const double* now, d
         find_rotations<10>(batch, before, now, result);
 }
 
-void turned_forces(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
-                   double* forces) {
+void rotated_forces(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                    double* forces) {
     if (batch.nodes_per_tet == 4)
-        turn_field<4>(batch, rotations, back, u, stiffness, forces);
+        rotate_field<4>(batch, rotations, back, u, stiffness, forces);
     else
-        turn_field<10>(batch, rotations, back, u, stiffness, forces);
+        rotate_field<10>(batch, rotations, back, u, stiffness, forces);
 }
 
 }  // namespace pliant::sim::HWY_NAMESPACE
@@ -285,21 +285,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pliant::sim {
 
-HWY_EXPORT(turning_forces);
+HWY_EXPORT(rotation_term);
 HWY_EXPORT(rotations);
-HWY_EXPORT(turned_forces);
+HWY_EXPORT(rotated_forces);
 
-void batch_turning(const TetBatch& batch, const Turning& turning, double stiffness, double* forces) {
-    HWY_DYNAMIC_DISPATCH(turning_forces)(batch, turning, stiffness, forces);
+void batch_rotation_term(const TetBatch& batch, const RotatingStep& rotating, double stiffness, double* forces) {
+    HWY_DYNAMIC_DISPATCH(rotation_term)(batch, rotating, stiffness, forces);
 }
 
 void batch_rotations(const TetBatch& batch, const double* before, const double* now, double* result) {
     HWY_DYNAMIC_DISPATCH(rotations)(batch, before, now, result);
 }
 
-void batch_turned(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
-                  double* forces) {
-    HWY_DYNAMIC_DISPATCH(turned_forces)(batch, rotations, back, u, stiffness, forces);
+void batch_rotated(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
+                   double* forces) {
+    HWY_DYNAMIC_DISPATCH(rotated_forces)(batch, rotations, back, u, stiffness, forces);
 }
 
 }  // namespace pliant::sim

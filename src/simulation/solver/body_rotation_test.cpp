@@ -1,5 +1,5 @@
 // What is known of a body before it turned, used after: a bar bent to an arc, and one turned as a whole.
-#include "simulation/solver/body_turn.hpp"
+#include "simulation/solver/body_rotation.hpp"
 
 #include <doctest/doctest.h>
 
@@ -48,7 +48,7 @@ struct Bar {
     Equilibrium system{model};
     FactoredLaplacian laplacian{system};
     Eigen::VectorXd rest = system.rest().x;
-    BodyTurn turn{system, laplacian};
+    BodyRotation turn{system, laplacian};
 };
 
 Eigen::VectorXd anything(Eigen::Index size, double seed) {
@@ -93,18 +93,18 @@ TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
     for (const int order : {1, 2}) {
         Bar body(order);
         const Eigen::VectorXd& rest = body.rest;
-        BodyTurn& turn = body.turn;
+        BodyRotation& turn = body.turn;
         const Matrix3 Q = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
         Eigen::VectorXd now = rest;
         for (Eigen::Index i = 0; i < now.size(); i += 3) now.segment<3>(i) = Q * rest.segment<3>(i);
         turn.begin(rest);
         const Eigen::MatrixXd before = anything(body.system.restrict_to_free(rest).size(), 3.1);
         Eigen::MatrixXd motion = before, force = before;
-        turn.motions_on(motion);
+        turn.push_forward_motions(motion);
         CHECK(motion == before);  // it has not turned yet
         turn.follow(now);
-        turn.motions_on(motion);
-        turn.forces_back(force);
+        turn.push_forward_motions(motion);
+        turn.pull_back_forces(force);
         Eigen::VectorXd turned = before, turned_back = before;
         for (Eigen::Index i = 0; i < before.rows(); i += 3) {
             turned.segment<3>(i) = Q * before.col(0).segment<3>(i);
@@ -113,7 +113,7 @@ TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
         CHECK((motion - turned).norm() < 1e-5 * before.norm());
         CHECK((force - turned_back).norm() < 1e-5 * before.norm());
         Eigen::VectorXd step = motion, change = before;
-        turn.step_back(step, change);
+        turn.pull_back_step(step, change);
         CHECK((step - before).norm() < 1e-5 * before.norm());
         CHECK((change - turned_back).norm() < 1e-5 * before.norm());
     }
@@ -122,7 +122,7 @@ TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
 TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one; as it was, it does not") {
     for (const int order : {1, 2}) {
         Bar body(order);
-        BodyTurn& turn = body.turn;
+        BodyRotation& turn = body.turn;
         const Eigen::VectorXd before = bent(body.rest, 0.2), now = bent(body.rest, 0.15);  // the end turns by 8 degrees
         const Tangent old(body.system, before), present(body.system, now);
         turn.begin(before);
@@ -134,9 +134,9 @@ TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one;
         forces(forces.rows() - 1, 0) = 1;
         forces.col(1) = anything(forces.rows(), 7.7);
         Eigen::MatrixXd found = forces;
-        turn.forces_back(found);
+        turn.pull_back_forces(found);
         found = old.factor.solve(found).eval();
-        turn.motions_on(found);
+        turn.push_forward_motions(found);
         for (const Eigen::Index k : {0, 1}) {
             const Eigen::VectorXd exact = present.factor.solve(forces.col(k));
             const Eigen::VectorXd unturned = old.factor.solve(forces.col(k));
@@ -148,8 +148,8 @@ TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one;
         // Forces go back as motions go on: the inverse stays symmetric.
         Eigen::MatrixXd f = anything(forces.rows(), 1.3), u = anything(forces.rows(), 2.9);
         const Eigen::VectorXd f_now = f, u_before = u;
-        turn.forces_back(f);
-        turn.motions_on(u);
+        turn.pull_back_forces(f);
+        turn.push_forward_motions(u);
         CHECK(f.col(0).dot(u_before) == near(f_now.dot(u.col(0)), {.relative = 1e-4}));
     }
 }

@@ -1,4 +1,4 @@
-#include "simulation/solver/body_turn.hpp"
+#include "simulation/solver/body_rotation.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -9,30 +9,30 @@ std::span<const double> view(const Eigen::VectorXd& v) {
 
 }  // namespace
 
-void BodyTurn::begin(const Eigen::VectorXd& x) {
+void BodyRotation::begin(const Eigen::VectorXd& x) {
     before_ = x;
-    turned_ = false;
+    rotated_ = false;
 }
 
-void BodyTurn::follow(const Eigen::VectorXd& x) {
+void BodyRotation::follow(const Eigen::VectorXd& x) {
     system_->model().elements().find_rotations(view(before_), view(x), rotations_);
-    turned_ = true;
+    rotated_ = true;
 }
 
-void BodyTurn::forces_back(Eigen::MatrixXd& columns) const {
-    if (!turned_) return;
+void BodyRotation::pull_back_forces(Eigen::MatrixXd& columns) const {
+    if (!rotated_) return;
     laplacian_->solve(columns);
     apply(Elements::Direction::back, columns);
 }
 
-void BodyTurn::motions_on(Eigen::MatrixXd& columns) const {
-    if (!turned_) return;
+void BodyRotation::push_forward_motions(Eigen::MatrixXd& columns) const {
+    if (!rotated_) return;
     apply(Elements::Direction::on, columns);
     laplacian_->solve(columns);
 }
 
-void BodyTurn::step_back(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
-    if (!turned_) return;
+void BodyRotation::pull_back_step(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
+    if (!rotated_) return;
     Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the price of one
     both << motion, force;
     apply(Elements::Direction::back, both.leftCols(1));
@@ -43,14 +43,14 @@ void BodyTurn::step_back(Eigen::VectorXd& motion, Eigen::VectorXd& force) const 
 }
 
 /// columns <- G^T W R G columns, where held nodes do not move.
-void BodyTurn::apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const {
+void BodyRotation::apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const {
     Eigen::VectorXd motion(before_.size()), forces(before_.size());
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
         motion.setZero();
         forces.setZero();
         system_->add_free(columns.col(k), 1, motion);
-        system_->model().elements().add_turned(rotations_, direction, view(motion),
-                                               {forces.data(), static_cast<std::size_t>(forces.size())});
+        system_->model().elements().add_rotated(rotations_, direction, view(motion),
+                                                {forces.data(), static_cast<std::size_t>(forces.size())});
         columns.col(k) = system_->restrict_to_free(forces);
     }
 }
