@@ -87,7 +87,7 @@ struct Report {
 [[nodiscard]] double border_error_um(double pixel_um, bool grey, bool several_materials);
 
 /// How far the volume of a material in layers of at most `layer_um` may be from its model's of `area_mm2` of surface,
-/// whatever its shape: docs/theory.md, "How well images know a volume".
+/// whatever its shape: docs/theory.md, "Tolerances of the virtual printer".
 [[nodiscard]] double volume_tolerance_mm3(double area_mm2, double border_um, double layer_um);
 
 /// Compares the cured block with the job, voxel by voxel and by volume. The part passes if every layer is there at its
