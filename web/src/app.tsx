@@ -1,5 +1,6 @@
 // The frame around the three sections.
 import { useRef, useState } from 'preact/hooks';
+import { counted } from './counted';
 import { DiscardQuestion, unlessLost } from './discard';
 import { useDismiss } from './dismiss';
 import { Icon } from './icons';
@@ -49,7 +50,7 @@ function Open() {
           ))}
           <p class="quiet">
             <a href="/notices.txt" target="_blank" rel="noopener" data-testid="notices">
-              Licences of this page
+              Third-party licences
             </a>
           </p>
         </div>
@@ -69,7 +70,7 @@ function Helm() {
   if (h.asked)
     return (
       <span class="helm asked" data-testid="helm" data-state="asked">
-        someone wants to steer
+        someone requests control
         <button class="primary small" onClick={() => send({ type: 'steer', action: 'give' })}>
           Hand over
         </button>
@@ -78,17 +79,17 @@ function Helm() {
   if (h.you)
     return h.pages > 1 ? (
       <span class="helm" data-testid="helm" data-state="steering">
-        <Icon name="helm" /> you steer, {h.pages - 1} {h.pages === 2 ? 'looks' : 'look'} on
+        <Icon name="helm" /> you have control, {counted(h.pages - 1, 'viewer')}
       </span>
     ) : (
       <span class="helm" data-testid="helm" data-state="steering" />
     );
   return (
     <span class="helm" data-testid="helm" data-state={h.waiting ? 'waiting' : 'watching'}>
-      {h.waiting ? 'asked; waiting' : 'you look on'}
+      {h.waiting ? 'control requested' : 'View only'}
       {!h.waiting && (
         <button class="small" onClick={() => send({ type: 'steer', action: 'ask' })} data-testid="ask">
-          {h.held ? 'Ask to steer' : 'Steer'}
+          {h.held ? 'Request control' : 'Take control'}
         </button>
       )}
     </span>
@@ -98,7 +99,7 @@ function Helm() {
 export function App() {
   const sections: [Section, string][] = [
     ['simulate', 'Simulate'],
-    ['make', 'Make'],
+    ['make', 'Prepare'],
     ['print', 'Print'],
   ];
   return (
@@ -128,11 +129,11 @@ export function App() {
         <span class="grow" />
         {problems.value.length > 0 && (
           <span class="helm lost" data-testid="file-wrong">
-            <Icon name="warn" /> {problems.value.length} {problems.value.length === 1 ? 'error' : 'errors'} in the file
+            <Icon name="warn" /> {counted(problems.value.length, 'error')} in the file
           </span>
         )}
         <Helm />
-        <button class="bare" aria-label={theme.value === 'dark' ? 'Light colours' : 'Dark colours'} onClick={toggleTheme} data-testid="theme">
+        <button class="bare" aria-label={theme.value === 'dark' ? 'Light theme' : 'Dark theme'} onClick={toggleTheme} data-testid="theme">
           <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
         </button>
       </header>

@@ -9,10 +9,10 @@ export interface Range {
 
 export function rangeText({ from, to, open }: Range, unit: string): string {
   const u = unit && ` ${unit}`;
-  if (from === -Infinity && to === Infinity) return 'a number is needed';
-  if (to === Infinity) return `${open ? 'more than' : 'at least'} ${from}${u} is needed`;
-  if (from === -Infinity) return `${open ? 'less than' : 'at most'} ${to}${u} is needed`;
-  return `${open ? 'between' : 'from'} ${from} ${open ? 'and' : 'to'} ${to}${u} is needed`;
+  if (from === -Infinity && to === Infinity) return 'must be a number';
+  if (to === Infinity) return `must be ${open ? 'more than' : 'at least'} ${from}${u}`;
+  if (from === -Infinity) return `must be ${open ? 'less than' : 'at most'} ${to}${u}`;
+  return `must be ${open ? 'between' : 'from'} ${from} ${open ? 'and' : 'to'} ${to}${u}`;
 }
 
 export function inRange(v: number, { from, to, open }: Range): boolean {

@@ -31,4 +31,4 @@ export function orbitKeys(e: KeyboardEvent, turn: (around: number, up: number, n
   e.preventDefault();
 }
 
-export const orbitHelp = 'Arrow keys turn it, plus and minus come nearer and go away, Home shows all of it.';
+export const orbitHelp = 'Arrow keys rotate the view, plus and minus zoom, Home fits the view.';

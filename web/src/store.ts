@@ -85,7 +85,7 @@ export function wantFields(names: string[]) {
 
 export async function api(path: string, options: RequestInit = {}): Promise<Response> {
   const response = await fetch(path, { ...options, headers: { ...options.headers, 'X-Pliant-Page': page } }).catch(() => {
-    throw new Error('The studio does not answer. Is it still running, and this computer still connected to it?');
+    throw new Error('The studio does not respond. Is it still running, and is this computer still connected to it?');
   });
   if (!response.ok) {
     const body = (await response.json().catch(() => ({}))) as { error?: string };

@@ -77,18 +77,18 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   // Before the start: what is listed is known, and an open door is no beginning.
   await state(page, 'door', 'shut');
   await state(page, 'switch-z_max', 'free').catch(() => state(page, 'switch-z_max', 'pressed'));
-  assert.match(await text(page, 'emergency-line'), /none: an emergency stop is the firmware/);
-  assert.match(await text(page, 'known'), /it will wait for you once: layer 1\d, refill the vat of slot 1/);
+  assert.match(await text(page, 'emergency-line'), /none: an emergency stop relies on the firmware/);
+  assert.match(await text(page, 'known'), /it will pause for you once: layer 1\d, refill the vat of slot 1/);
   for (const box of await page.locator('.checklist input').all()) await box.check();
   await page.getByTestId('move-door').click();
   await state(page, 'door', 'open');
   assert.ok(await page.getByTestId('start').isDisabled());
-  assert.match(await text(page, 'start'), /Shut the door/);
+  assert.match(await text(page, 'start'), /Close the door/);
   const refused = await page.evaluate(async () => {
     const answer = await fetch('/api/print/host/job', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: '{"command":"start"}' });
     return [answer.status, (await answer.json()).error];
   });
-  assert.deepEqual(refused, [409, 'the door is open: shut it, then start']);
+  assert.deepEqual(refused, [409, 'the door is open: close it, then start']);
   await page.getByTestId('move-door').click();
   await state(page, 'door', 'shut');
 
@@ -96,14 +96,14 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   await beyond(page, 2);
   await page.getByTestId('move-door').click();
   await page.getByTestId('resume').waitFor();
-  assert.match(await text(page, 'prompt'), /The door is open.*Shut the door; then the print can go on/);
+  assert.match(await text(page, 'prompt'), /The door is open.*Close the door; then the print can be resumed/);
   assert.ok(await page.getByTestId('resume').isDisabled(), 'nothing goes on behind an open door');
   assert.equal(await page.locator('.picture.lit').count(), 0);
   const stopped = await layer(page);
   await page.waitForTimeout(1500); // five layers on the machine's clock
   assert.equal(await layer(page), stopped);
   await page.getByTestId('move-door').click();
-  await shown(page, () => /shut again/.test(document.querySelector('[data-testid=prompt]').textContent));
+  await shown(page, () => /closed again/.test(document.querySelector('[data-testid=prompt]').textContent));
   assert.equal(await text(page, 'print-state'), 'Paused', 'it does not go on by itself');
   await page.getByTestId('resume').click();
   await beyond(page, stopped);
@@ -111,7 +111,7 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
 
   await shown(page, () => /Resin is needed/.test(document.querySelector('[data-testid=prompt]')?.textContent ?? ''));
   assert.match(await text(page, 'prompt'), /Fill the vat of slot 1 with semi-flex, up to 20 ml/);
-  assert.match(await text(page, 'resume'), /Filled, go on/);
+  assert.match(await text(page, 'resume'), /Filled, resume/);
   const dry = await layer(page);
   await page.getByTestId('resume').click();
   await beyond(page, dry);

@@ -36,7 +36,7 @@ after(async () => {
 async function connect(page, state) {
   await page.getByTestId('device').fill(realpathSync(join(folder, 'printer')));
   await page.getByTestId('projector').fill('light');
-  await page.locator('summary', { hasText: 'virtual printer at the port' }).click();
+  await page.locator('summary', { hasText: 'virtual printer on this port' }).click();
   await page.getByTestId('port-speed').fill('200');
   await page.getByTestId('port-clock').fill('clock');
   const [answer] = await Promise.all([
@@ -96,7 +96,7 @@ test('a print at a port survives the end of the studio and is gone on with from 
   await shown(page, () => document.querySelector('[data-testid=print-state]').textContent === 'Printed');
   // What the first studio had exposed is remembered by the journal: the part is whole.
   await shown(page, () => Math.abs(Number(document.querySelector('[data-testid=part]')?.dataset.height) - window.pliant.job.value.manifest.layers.at(-1).z_um / 1000) < 1e-3);
-  assert.match(await page.getByTestId('part').textContent(), /12\.00 mm exposed; nobody has looked into the vat/);
+  assert.match(await page.getByTestId('part').textContent(), /12\.00 mm exposed; whether it cured is unknown/);
   const journal = readFileSync(join(folder, 'finger.zip.journal'), 'utf8');
   const lights = [...journal.matchAll(/ light step=\d+ layer=(\d+)/g)].map((m) => Number(m[1]));
   const layers = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);

@@ -40,7 +40,7 @@ test('a printer file, a broken job and a file that is no robot are told apart, a
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await open(page, 'machine.toml');
-  await told(page, /machine\.toml is a printer file: choose it under Make/);
+  await told(page, /machine\.toml is a printer file: choose it under Prepare/);
   await open(page, 'broken.zip');
   await told(page, /broken\.zip/);
   assert.match(await page.getByTestId('open').textContent(), /finger/);

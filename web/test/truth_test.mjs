@@ -49,7 +49,7 @@ test('a studio that dies in mid-print and comes back: the page says what it does
   first.child.kill('SIGKILL');
   await page.getByTestId('lost').waitFor(patience);
   assert.match(await text(page, 'lost'), /Connection lost, reconnecting/);
-  assert.equal(await text(page, 'print-state'), 'Not known');
+  assert.equal(await text(page, 'print-state'), 'Unknown');
   assert.equal(await text(page, 'print-layer'), '–');
   assert.ok(await page.getByTestId('pause').isDisabled());
   assert.ok(await page.getByTestId('cancel').isDisabled());
@@ -116,7 +116,7 @@ test('the emergency stop never moves: at every width, whatever is asked and wher
   await page.getByTestId('emergency').click();
   await page.getByTestId('stopped').waitFor(patience);
   assert.equal(await text(page, 'print-state'), 'Emergency stop');
-  assert.match(await text(page, 'stopped'), /light is off.*then (press Resume|connect again)/);
+  assert.match(await text(page, 'stopped'), /light is off.*then press (Resume|Reconnect)/);
   assert.doesNotMatch(await page.locator('.steer .block').first().innerText(), /kill\(\)/);
 });
 
@@ -254,7 +254,7 @@ test('a number that cannot be is said to be out of range, and the last good one 
   const { page } = await openPage(browser, other.address, t);
   await settled(page);
   await type(page, 'number-flexor', '-3');
-  assert.match(await text(page, 'wrong-number-flexor'), /-3: more than 0 is needed/);
+  assert.match(await text(page, 'wrong-number-flexor'), /-3: must be more than 0$/);
   await page.getByTestId('number-flexor').blur();
   assert.equal(await page.getByTestId('number-flexor').inputValue(), '1');
   await page.getByTestId('tab-file').click();
@@ -262,13 +262,13 @@ test('a number that cannot be is said to be out of range, and the last good one 
   const good = await modulus.inputValue();
   await modulus.fill('-1');
   await modulus.press('Enter');
-  assert.match(await page.locator('[data-testid^="wrong-modulus-"]').textContent(), /-1: more than 0 MPa is needed/);
+  assert.match(await page.locator('[data-testid^="wrong-modulus-"]').textContent(), /-1: must be more than 0 MPa/);
   await modulus.blur();
   assert.equal(await modulus.inputValue(), good);
   const poisson = page.locator('[data-testid^="poisson-"]').first();
   await poisson.fill('0.7');
   await poisson.blur();
-  assert.match(await page.locator('[data-testid^="wrong-poisson-"]').textContent(), /from 0 to 0\.4999 is needed/);
+  assert.match(await page.locator('[data-testid^="wrong-poisson-"]').textContent(), /must be from 0 to 0\.4999/);
   assert.notEqual(await poisson.inputValue(), '0.7');
 });
 

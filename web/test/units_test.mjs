@@ -113,9 +113,9 @@ test('the colours of a field are those of the pictures, and stop at the ends', (
 test('times, steps of time, and ranges in words', () => {
   assert.deepEqual([0, 59.6, 3599.5, 360000].map(page.clock), ['0:00:00', '0:01:00', '1:00:00', '100:00:00']);
   for (const [span, most, step] of [[10, 10, 1], [11, 10, 2], [3600, 6, 600], [86400 * 30, 10, 259200]]) assert.equal(page.timeStep(span, most), step);
-  assert.equal(page.rangeText({ from: 0, to: 1 }, 'mm'), 'from 0 to 1 mm is needed');
-  assert.equal(page.rangeText({ from: 0, to: Infinity, open: true }, ''), 'more than 0 is needed');
-  assert.equal(page.rangeText({ from: -Infinity, to: Infinity }, 'N'), 'a number is needed');
+  assert.equal(page.rangeText({ from: 0, to: 1 }, 'mm'), 'must be from 0 to 1 mm');
+  assert.equal(page.rangeText({ from: 0, to: Infinity, open: true }, ''), 'must be more than 0');
+  assert.equal(page.rangeText({ from: -Infinity, to: Infinity }, 'N'), 'must be a number');
   assert.ok(page.inRange(0, { from: 0, to: 1 }) && !page.inRange(0, { from: 0, to: 1, open: true }));
   for (const v of [NaN, Infinity, 1.1]) assert.ok(!page.inRange(v, { from: 0, to: 1 }));
   assert.equal(page.restValue('length_ratio'), 1);
@@ -183,7 +183,7 @@ test('a stop is told by what happened: asked for, the firmware\'s own, or none',
   page.now.value = now('the port is gone');
   assert.equal(page.stopOf(), null);
   page.now.value = now('Error:Printer halted. kill() called!', true, true);
-  assert.deepEqual(page.stopOf(), { title: 'The firmware has stopped the machine', text: 'The light is off and nothing moves. Look at the machine; then press Resume.', cause: 'Error:Printer halted. kill() called!' });
+  assert.deepEqual(page.stopOf(), { title: 'The firmware has stopped the machine', text: 'The light is off and nothing moves. Check the machine; then press Resume.', cause: 'Error:Printer halted. kill() called!' });
   page.events.value = [{ kind: 'error', text: 'emergency stop by the page' }];
   assert.equal(page.stopOf().title, 'Emergency stop');
   // One before the last connection is long over.

@@ -355,14 +355,14 @@ void PrintSession::pour(Machine& machine) {
 
 host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path, std::string_view body) {
     const auto machine = this->machine();
-    if (!machine) return {404, R"({"error":"no machine has been taken"})"};
+    if (!machine) return {404, R"({"error":"no machine is connected"})"};
     if (method == "POST" && path == "/api/job") {
         // Two who start at once: the second must not clear what the first has begun.
         const std::lock_guard one_at_a_time(orders_);
         const std::string command = command_of(body);
         const host::Snapshot now = machine->control.snapshot();
         if (command == "start" && now.door_open.value_or(false))
-            return {409, R"({"error":"the door is open: shut it, then start"})"};
+            return {409, R"({"error":"the door is open: close it, then start"})"};
         if (command == "start" && machine->is_free() && now.state != host::State::connecting) prepare_start(*machine);
         if (command == "resume") pour(*machine);
         return host::handle_api(machine->control, method, path, body);
@@ -405,7 +405,7 @@ std::string PrintSession::describe() const {
 
 Result<std::string> PrintSession::image(int layer, int material) const {
     const auto machine = this->machine();
-    if (!machine) return input_error("no machine has been taken");
+    if (!machine) return input_error("no machine is connected");
     return machine->part.image(layer, material);
 }
 

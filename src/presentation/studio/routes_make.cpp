@@ -268,7 +268,7 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\"} and the options of pliant slice", json,
                       true, slice, json});
     routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
-    routes.push_back({"POST", "/api/job/cancel", "gives up slicing", json, true, cancel});
+    routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
     routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});

@@ -31,7 +31,7 @@ Response take_port(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
     if (!studio.folder().holds(job->file))
-        return error_response(409, "save the job into the folder first: the journal of a print stands beside its job");
+        return error_response(409, "save the job into the folder first: the print journal is stored next to it");
     const Json json = Json::parse(request.body, nullptr, false);
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
@@ -84,7 +84,7 @@ Response report_page(Studio& studio, const Request& request) {
         files = {std::filesystem::path(*journal).replace_extension(), *journal};
         extras = {};
     } else if (files.job.empty()) {
-        return error_response(404, "no machine has been taken");
+        return error_response(404, "no machine is connected");
     }
     std::error_code error;
     if (!std::filesystem::exists(files.journal, error)) return error_response(409, "nothing has been printed yet");
@@ -112,7 +112,7 @@ std::size_t number_of(const Request& request, const char* key) {
 Response part(Studio& studio, const Request& request) {
     std::string packet =
         studio.print().part(static_cast<int>(number_of(request, "revision")), number_of(request, "from"));
-    if (packet.empty()) return error_response(404, "no machine has been taken");
+    if (packet.empty()) return error_response(404, "no machine is connected");
     return {200, "application/octet-stream", std::move(packet)};
 }
 
@@ -144,23 +144,24 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/print", "the machine, its job, where both stand", json, false,
                       [](Studio& s, const Request&) { return json_response(s.print().describe()); }});
     routes.push_back({"POST", "/api/print/twin",
-                      "takes a virtual printer for the job: {\"speed\"} times as fast as the wall's clock", json, true,
+                      "connects a virtual printer to the job: {\"speed\"} is its speed-up factor", json, true,
                       take_twin, json});
     routes.push_back({"GET", "/api/print/ports", "serial ports and displays of this computer", json, false,
                       [](Studio&, const Request&) { return json_response(ports_json()); }});
-    routes.push_back({"POST", "/api/print/port",
-                      "takes the machine at a port for the job: {\"device\", \"projector\", \"speed\", \"clock\"}",
-                      json, true, take_port, json});
+    routes.push_back(
+        {"POST", "/api/print/port",
+         "connects the printer at a serial port to the job: {\"device\", \"projector\", \"speed\", \"clock\"}", json,
+         true, take_port, json});
     routes.push_back({"GET", "/api/print/journals", "the journals of the folder", json, false, journals});
     routes.push_back({"GET", "/api/print/journal", "one of them: ?name=", json, false, journal});
     routes.push_back({"GET", "/api/print/report",
-                      "a page about the print at hand, or of a journal of the folder: ?name=", "text/html", false,
+                      "HTML report of the current print, or of a journal of the folder: ?name=", "text/html", false,
                       report_page});
-    routes.push_back({"POST", "/api/print/speed", "another {\"speed\"} of the virtual printer", json, true,
+    routes.push_back({"POST", "/api/print/speed", "sets the {\"speed\"} of the virtual printer", json, true,
                       [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
-    routes.push_back({"POST", "/api/print/leave", "gives the machine back", json, true,
+    routes.push_back({"POST", "/api/print/leave", "disconnects the machine", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
-    routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or shuts the door of the virtual printer", json,
+    routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or closes the door of the virtual printer", json,
                       true, set_door, json});
     routes.push_back({"GET", "/api/print/verdict",
                       "of a complete print on the virtual printer: {\"passed\"}, whether it cured as drawn; else null",
@@ -173,7 +174,7 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back(
         {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {
              const host::ApiAnswer answer = s.print().ask("POST", "/api/printer/stop", "");
-             return answer.status == 204 ? json_response("{}") : error_response(404, "no machine has been taken");
+             return answer.status == 204 ? json_response("{}") : error_response(404, "no machine is connected");
          }});
     routes.push_back({"GET", "/api/print/host/{what}", "the host's GET /api/{what}", json, false, forward});
     routes.push_back({"POST", "/api/print/host/{what}", "the host's POST /api/{what}", json, true, forward, json});

@@ -156,7 +156,7 @@ struct Server::State {
     }
 
     static Response page_file(const Request& request) {
-        if (request.method != "GET") return error_response(405, "not with this method");
+        if (request.method != "GET") return error_response(405, "method not allowed");
         for (const PageFile& file : page_files()) {
             if (file.path != request.path) continue;
             Response response{200, std::string(file.type), std::string(file.bytes)};
@@ -164,7 +164,7 @@ struct Server::State {
             response.keep = file.path != "/";
             return response;
         }
-        return error_response(404, "there is nothing here");
+        return error_response(404, "not found");
     }
 };
 

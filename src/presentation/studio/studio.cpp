@@ -28,7 +28,7 @@ std::string document_event(const Studio::Document& d) {
 /// A printer file has its own place.
 Status check_kind(const std::string& text, const std::filesystem::path& file) {
     if (!machine::parse_printer(text, file)) return {};
-    return input_error("{} is a printer file: choose it under Make, when the robot is sliced",
+    return input_error("{} is a printer file: choose it under Prepare, when the robot is sliced",
                        file.filename().string());
 }
 
@@ -121,7 +121,7 @@ Status Studio::undo() {
 
 Status Studio::redo() {
     const std::lock_guard lock(mutex_);
-    if (document_.redo.empty()) return input_error("there is nothing to do again");
+    if (document_.redo.empty()) return input_error("there is nothing to redo");
     take_back(document_.redo, document_.undo);
     return {};
 }
@@ -186,10 +186,10 @@ Response Studio::handle(const Request& request) {
         known = true;
         if (route.method != request.method) continue;
         if (route.steers && !hub_.may_steer(request.page))
-            return error_response(423, "another page steers; ask for the helm first");
+            return error_response(423, "another page has control; request control first");
         return route.answer(*this, asked);
     }
-    return known ? error_response(405, "not with this method") : error_response(404, "there is nothing here");
+    return known ? error_response(405, "method not allowed") : error_response(404, "not found");
 }
 
 void Studio::greet(const std::shared_ptr<Connection>& connection) {

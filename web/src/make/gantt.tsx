@@ -167,13 +167,13 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
     <figure class="chart gantt" data-testid="gantt">
       <figcaption class="row">
         <span>
-          The whole print <span class="quiet">{under || `${clock(from)} to ${clock(to)}`}</span>
+          Timeline <span class="quiet">{under || `${clock(from)} to ${clock(to)}`}</span>
         </span>
         <span class="row left">
-          <button class="small" aria-label="Nearer" onClick={() => zoom(0.4)} data-testid="gantt-nearer">
+          <button class="small" aria-label="Zoom in" onClick={() => zoom(0.4)} data-testid="gantt-nearer">
             +
           </button>
-          <button class="small" aria-label="Further" onClick={() => zoom(2.5)}>
+          <button class="small" aria-label="Zoom out" onClick={() => zoom(2.5)}>
             −
           </button>
           <button class="small" onClick={() => setRange([0, line.seconds])}>
@@ -185,7 +185,7 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
         <canvas
           ref={canvas}
           tabIndex={0}
-          aria-label={`Every device over the whole print, ${clock(from)} to ${clock(to)} of ${clock(line.seconds)}. Plus and minus zoom, arrow keys move, Home shows all.`}
+          aria-label={`Every device over the whole print, ${clock(from)} to ${clock(to)} of ${clock(line.seconds)}. Plus and minus zoom, arrow keys scroll, Home shows all.`}
           style={{ height: `${rows * rowHeight + scaleHeight}px` }}
           onWheel={(e) => {
             e.preventDefault();

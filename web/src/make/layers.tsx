@@ -217,7 +217,7 @@ export function Layers({ job }: { job: Job }) {
         <canvas
           ref={canvas}
           tabIndex={0}
-          aria-label={`Layer ${l}. Arrow keys leaf through the layers.`}
+          aria-label={`Layer ${l}. Arrow keys step through the layers.`}
           data-testid="layer-view"
           onWheel={wheel}
           onPointerMove={move}
@@ -233,7 +233,7 @@ export function Layers({ job }: { job: Job }) {
       </div>
       <div class="lookbar second">
         <button class="chip" aria-pressed={difference.value} onClick={() => (difference.value = !difference.value)} data-testid="difference">
-          Difference to the layer below
+          Difference from the layer below
         </button>
         <button class="chip" onClick={() => void fit()}>
           Fit
@@ -254,7 +254,7 @@ export function Layers({ job }: { job: Job }) {
         </span>
         {difference.value && (
           <span class="quiet">
-            <span class="swatch" style={{ background: '#22a05a' }} /> new <span class="swatch" style={{ background: '#d63c3c' }} /> ends
+            <span class="swatch" style={{ background: '#22a05a' }} /> new <span class="swatch" style={{ background: '#d63c3c' }} /> removed
           </span>
         )}
       </div>

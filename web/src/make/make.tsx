@@ -1,6 +1,7 @@
 // From robot to job: slicing, layers, plan.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { job, mayDrive, post, say } from '../store';
 import { goal, Layers, layer } from './layers';
@@ -13,7 +14,7 @@ function Issues() {
   const j = job.value!;
   return (
     <div class="issues">
-      <h3>{j.issues.length ? `${j.issues.length} ${j.issues.length === 1 ? 'remark' : 'remarks'}` : 'Nothing to remark'}</h3>
+      <h3>{j.issues.length ? counted(j.issues.length, 'issue') : 'No issues found'}</h3>
       {j.issues.map((issue) => (
         <button
           class={`issue ${issue.severity ?? ''}`}
@@ -35,7 +36,7 @@ function Issues() {
       ))}
       {j.issues.length === 0 && (
         <p class="quiet">
-          <Icon name="check" /> No island begins in mid-air, no cavity traps resin, every piece hangs together.
+          <Icon name="check" /> No unsupported islands, no trapped resin, no loose pieces.
         </p>
       )}
     </div>
@@ -75,7 +76,7 @@ export function Make() {
   }, [j?.revision]);
   return (
     <main class="make">
-      <h2 class="unseen">Make</h2>
+      <h2 class="unseen">Prepare</h2>
       <aside class="side left">
         <SliceForm />
         {j && (
@@ -89,7 +90,7 @@ export function Make() {
               <form
                 onSubmit={async (e) => {
                   e.preventDefault();
-                  if (await post('/api/job/save', { name })) say(`${name} is in the folder`);
+                  if (await post('/api/job/save', { name })) say(`Saved ${name}`);
                 }}
               >
                 <input placeholder="gripper.zip" aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} />
@@ -107,7 +108,7 @@ export function Make() {
             <nav class="tabs floating" role="tablist">
               {(['layers', 'stack', 'plan'] as const).map((t) => (
                 <button role="tab" aria-selected={tab.value === t} onClick={() => (tab.value = t)} data-testid={`make-${t}`}>
-                  {{ layers: 'Layers', stack: 'In 3D', plan: 'Plan' }[t]}
+                  {{ layers: 'Layers', stack: '3D', plan: 'Plan' }[t]}
                 </button>
               ))}
             </nav>
@@ -119,7 +120,7 @@ export function Make() {
           <div class="empty">
             <h2>No job yet</h2>
             <p>
-              Slice the robot for a printer. Its layers, what may go wrong with them, and the plan of the print will be here.
+              Slice the robot for a printer. Its layers, their issues and the print plan appear here.
             </p>
           </div>
         )}

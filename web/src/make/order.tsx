@@ -134,7 +134,7 @@ function Materials({ materials }: { materials: string[] }) {
     sliceError.value = '';
   };
   return (
-    <Group name="Resins and light" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
+    <Group name="Resins and exposure" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
       <datalist id="resins">
         {p?.resins.map((r) => (
           <option value={r.name} />
@@ -149,16 +149,16 @@ function Materials({ materials }: { materials: string[] }) {
               {m}
             </legend>
             <label>
-              <span>resin</span>
+              <span>Resin</span>
               <input list="resins" aria-label={`Resin of ${m}`} placeholder={resinOf(m)} value={lights.value[m]?.resin ?? ''} onInput={(e) => set(m, { resin: e.currentTarget.value })} />
             </label>
             <label>
-              <span>light, s</span>
-              <input inputMode="decimal" aria-label={`Light of ${m}`} data-testid={`light-${k}`} placeholder={known ? `${known.exposure_s}` : ''} value={lights.value[m]?.time ?? ''} onInput={(e) => set(m, { time: e.currentTarget.value })} />
+              <span>Exposure (s)</span>
+              <input inputMode="decimal" aria-label={`Exposure of ${m}`} data-testid={`light-${k}`} placeholder={known ? `${known.exposure_s}` : ''} value={lights.value[m]?.time ?? ''} onInput={(e) => set(m, { time: e.currentTarget.value })} />
             </label>
             <label>
-              <span>first layers, s</span>
-              <input inputMode="decimal" aria-label={`Light of the first layers of ${m}`} disabled={!lights.value[m]?.time} placeholder={known ? `${known.bottom_exposure_s}` : ''} value={lights.value[m]?.bottom ?? ''} onInput={(e) => set(m, { bottom: e.currentTarget.value })} />
+              <span>Bottom layers (s)</span>
+              <input inputMode="decimal" aria-label={`Exposure of the bottom layers of ${m}`} disabled={!lights.value[m]?.time} placeholder={known ? `${known.bottom_exposure_s}` : ''} value={lights.value[m]?.bottom ?? ''} onInput={(e) => set(m, { bottom: e.currentTarget.value })} />
             </label>
           </fieldset>
         );
@@ -167,7 +167,7 @@ function Materials({ materials }: { materials: string[] }) {
       <Problem option="exposure" />
       {p && (
         <p class="quiet small-print" data-testid="mask">
-          {p.mask ? `The mask of its projector, ${p.mask}, is laid over every image.` : 'Its projector has no mask: the light is taken as even.'}
+          {p.mask ? `The projector mask ${p.mask} is applied to every image.` : 'No projector mask: the light is assumed to be uniform.'}
         </p>
       )}
     </Group>
@@ -193,17 +193,17 @@ function Bonds({ materials }: { materials: string[] }) {
           <div class="row">
             {pick(b.a, (a) => change(k, { a }), 'First material')}
             {pick(b.b, (second) => change(k, { b: second }), 'Second material')}
-            <button type="button" class="bare" aria-label="Take this bond out" onClick={() => (bonds.value = bonds.value.filter((_, i) => i !== k))}>
+            <button type="button" class="bare" aria-label="Remove" onClick={() => (bonds.value = bonds.value.filter((_, i) => i !== k))}>
               <Icon name="close" />
             </button>
           </div>
           <div class="row left">
-            <select value={b.kind} aria-label="Kind" title="overlap: the first lights into the second too; teeth: both reach into each other" onChange={(e) => change(k, { kind: e.currentTarget.value as Bond['kind'] })}>
+            <select value={b.kind} aria-label="Kind" title="overlap: the first material is also exposed within the second; interlock: teeth of both reach into each other" onChange={(e) => change(k, { kind: e.currentTarget.value as Bond['kind'] })}>
               <option value="overlap">overlap</option>
-              <option value="interlock">teeth</option>
+              <option value="interlock">interlock</option>
             </select>
             <label class="inline">
-              <input type="number" min={0} max={1000} step={1} aria-label="Pixels deep" value={b.pixels} onChange={(e) => change(k, { pixels: Number(e.currentTarget.value) })} />
+              <input type="number" min={0} max={1000} step={1} aria-label="Depth in pixels" value={b.pixels} onChange={(e) => change(k, { pixels: Number(e.currentTarget.value) })} />
               px
             </label>
             <label class="inline">
@@ -246,12 +246,12 @@ function Supports({ materials }: { materials: string[] }) {
       <Problem option="support" />
       {support.value && (
         <>
-          <Field option="support-angle" label="Undersides flatter than" hint="45" title="0: islands only" />
-          <Field option="support-spacing" label="Between tips, at most" hint="3" />
-          <Field option="support-tip" label="Tip" hint="0.4" />
-          <Field option="support-pillar" label="Pillar" hint="1" />
-          <Field option="lift" label="Part above the platform" hint="0" />
-          <Field option="raft" label="Raft" hint="none" />
+          <Field option="support-angle" label="Overhang angle" hint="45" title="Undersides flatter than this get supports; 0: islands only" />
+          <Field option="support-spacing" label="Max tip spacing" hint="3" />
+          <Field option="support-tip" label="Tip diameter" hint="0.4" />
+          <Field option="support-pillar" label="Pillar diameter" hint="1" />
+          <Field option="lift" label="Lift above platform" hint="0" />
+          <Field option="raft" label="Raft thickness" hint="none" />
         </>
       )}
     </Group>
@@ -266,15 +266,15 @@ function Placement() {
         <input type="number" min={1} max={1000} step={1} value={copies.value} data-testid="option-copies" onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
       </label>
       <Problem option="copies" />
-      <Field option="spacing" label="Between copies" hint="2" />
+      <Field option="spacing" label="Spacing" hint="2" />
       <label>
-        Turned about x, y, z
+        Rotation about x, y, z
         <span class="number three">
           {[0, 1, 2].map((k) => (
             <input
               type="number"
               step={15}
-              aria-label={`Turned about ${'xyz'[k]}`}
+              aria-label={`Rotation about ${'xyz'[k]}`}
               value={turn.value[k]}
               onChange={(e) => (turn.value = turn.value.map((t, i) => (i === k ? Number(e.currentTarget.value) : t)) as [number, number, number])}
             />
@@ -290,15 +290,15 @@ function Placement() {
 function Fine() {
   return (
     <Group name="Layers and pixels" options={['least-layer', 'least-feature', 'threshold']} given={Boolean(fields.value['least-layer'] || fields.value['least-feature']) || plainPixels.value}>
-      <Field option="least-layer" label="Follow the slope, down to" hint="off" title="Layers as thin as this where the part is flat" />
-      <Field option="least-feature" label="Warn of walls below" hint="off" />
+      <Field option="least-layer" label="Adaptive layers, minimum" hint="off" title="Layers get as thin as this where the surface is flat" />
+      <Field option="least-feature" label="Warn of walls thinner than" hint="off" />
       <label class="tick">
         <input type="checkbox" checked={plainPixels.value} onChange={(e) => (plainPixels.value = e.currentTarget.checked)} />
-        <span>pixels are full or dark, without grey</span>
+        <span>No anti-aliasing</span>
       </label>
       {plainPixels.value && (
         <label>
-          Full from a coverage of
+          Coverage threshold
           <input type="number" min={0.01} max={1} step={0.05} value={fields.value.threshold ?? '0.5'} onChange={(e) => (fields.value = { ...fields.value, threshold: e.currentTarget.value })} />
         </label>
       )}
@@ -310,8 +310,8 @@ function Fine() {
 function Hollow() {
   return (
     <Group name="Hollow" options={['hollow', 'drain']} given={Boolean(fields.value.hollow)}>
-      <Field option="hollow" label="Walls" hint="solid" />
-      <Field option="drain" label="Holes to drain it" hint="none" />
+      <Field option="hollow" label="Wall thickness" hint="solid" />
+      <Field option="drain" label="Drain hole diameter" hint="none" />
     </Group>
   );
 }
@@ -355,7 +355,7 @@ export function SliceForm() {
           ))}
         </select>
       </label>
-      <Field option="layer" label="Layer" hint={printerInfo.value ? String(printerInfo.value.layer_um) : ''} />
+      <Field option="layer" label="Layer height" hint={printerInfo.value ? String(printerInfo.value.layer_um) : ''} />
       <div class="groups">
         <Placement />
         <Materials materials={materials} />
@@ -384,7 +384,7 @@ export function SliceForm() {
           {sliceError.value}
         </p>
       )}
-      {documentState.value.unsaved && <p class="quiet">The robot is sliced as it stands in the editor.</p>}
+      {documentState.value.unsaved && <p class="quiet">The robot is sliced with its unsaved changes.</p>}
     </form>
   );
 }

@@ -25,15 +25,15 @@ function Figures({ plan }: { plan: Plan }) {
       <div class="figures">
         <div>
           <b>{clock(total)}</b>
-          <span>in all</span>
+          <span>total</span>
         </div>
         <div>
           <b>{plan.swaps}</b>
-          <span>swaps, never fewer than {plan.swap_lower_bound}</span>
+          <span>{plan.swaps === 1 ? 'swap' : 'swaps'}, minimum {plan.swap_lower_bound}</span>
         </div>
         <div>
           <b>{Object.values(plan.resin_ml).reduce((a, b) => a + b, 0).toFixed(1)} ml</b>
-          <span>resin, {plan.waste_ml.toFixed(1)} ml washed off</span>
+          <span>resin, {plan.waste_ml.toFixed(1)} ml wasted</span>
         </div>
         <div>
           <b>{plan.solvent_ml.toFixed(0)} ml</b>
@@ -71,7 +71,7 @@ function LayerTimes({ plan }: { plan: Plan }) {
   return (
     <figure class="chart">
       <figcaption>
-        Seconds a layer <span class="quiet">from the platform up; at most {most.toFixed(0)} s</span>
+        Time per layer <span class="quiet">from the platform up; maximum {most.toFixed(0)} s</span>
       </figcaption>
       <svg viewBox={`0 0 ${bins} 40`} preserveAspectRatio="none" class="bars">
         {sums.map((s, b) => {
@@ -91,7 +91,7 @@ function LayerTimes({ plan }: { plan: Plan }) {
 function VatRows({ job, plan }: { job: Job; plan: Plan }) {
   return (
     <figure class="chart">
-      <figcaption>Vats over the layers</figcaption>
+      <figcaption>Vat use by layer</figcaption>
       {plan.vats.map((vat) => {
         const runs: [number, number][] = [];
         plan.order.forEach((slots, l) => {
@@ -112,7 +112,7 @@ function VatRows({ job, plan }: { job: Job; plan: Plan }) {
               ))}
             </svg>
             <span>
-              {(plan.resin_ml[String(vat.slot)] ?? 0).toFixed(1)} ml{vat.refill && <em> fill it</em>}
+              {(plan.resin_ml[String(vat.slot)] ?? 0).toFixed(1)} ml{vat.refill && <em> to be filled</em>}
             </span>
           </div>
         );
@@ -127,7 +127,7 @@ function Swap({ job }: { job: Job }) {
   return (
     <figure class="chart">
       <figcaption>
-        One swap, slot {s.from} to {s.to} <span class="quiet">{s.seconds.toFixed(1)} s, the longest of this job</span>
+        Longest swap <span class="quiet">slot {s.from} to {s.to}, {s.seconds.toFixed(1)} s</span>
       </figcaption>
       {s.devices.map((device) => (
         <div class="gantt-row">
@@ -173,16 +173,16 @@ function Compare({ job, plan }: { job: Job; plan: Plan }) {
       .then(setRows)
       .catch((e: Error) => say(e.message));
   }, [job.revision]);
-  const names: Record<string, string> = { naive: 'as listed', thesis: "the thesis' rule", 'least-cost': 'least time' };
+  const names: Record<string, string> = { naive: 'as listed', thesis: 'thesis rule', 'least-cost': 'minimum time' };
   return (
     <div class="tables">
       <table>
-        <caption>Orders of the vats</caption>
+        <caption>Vat order</caption>
         <thead>
           <tr>
             <th>order</th>
             <th>swaps</th>
-            <th>changing vats</th>
+            <th>swap time</th>
           </tr>
         </thead>
         <tbody>
@@ -202,7 +202,7 @@ function Compare({ job, plan }: { job: Job; plan: Plan }) {
             <th>printer</th>
             <th>swaps</th>
             <th>time</th>
-            <th>washed off</th>
+            <th>wasted</th>
           </tr>
         </thead>
         <tbody>
@@ -211,7 +211,7 @@ function Compare({ job, plan }: { job: Job; plan: Plan }) {
               <td>{r.file.replace(/_/g, ' ')}</td>
               {r.error ? (
                 <td colSpan={3} class="quiet">
-                  {/projector/.test(r.error) ? 'another projector: slice for it' : 'cannot print it'}
+                  {/projector/.test(r.error) ? 'different projector: slice again for it' : 'cannot print it'}
                 </td>
               ) : (
                 <>

@@ -149,7 +149,7 @@ export function Stack({ job }: { job: Job }) {
       </div>
       <div class="layer-info">
         <b>{layer.value === 0 ? `all ${count} layers` : `up to layer ${top}`}</b>
-        <span class="quiet">{done < 100 ? `stacking, ${Math.round(done)} %` : `${((job.manifest.layers[layer.value === 0 ? count - 1 : top]?.z_um ?? 0) / 1000).toFixed(2)} mm`}</span>
+        <span class="quiet">{done < 100 ? `Building preview, ${Math.round(done)} %` : `${((job.manifest.layers[layer.value === 0 ? count - 1 : top]?.z_um ?? 0) / 1000).toFixed(2)} mm`}</span>
       </div>
       <input class="upright" type="range" aria-label="Layer" min={0} max={Math.max(count - 1, 1)} step={1} value={layer.value} style={{ '--at': `${(100 * layer.value) / Math.max(count - 1, 1)}%` }} onInput={(e) => (layer.value = Number(e.currentTarget.value))} />
     </div>

@@ -1,6 +1,7 @@
-// Watching and steering a print.
+// Monitoring and controlling a print.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
 import { post } from '../store';
@@ -26,16 +27,16 @@ function Known() {
     <ul class="checklist known" data-testid="known">
       <li class={connected ? 'good' : 'bad'}>
         <Icon name={connected ? 'check' : 'warn'} />
-        <span>{!known.value ? 'whether the machine answers is not known' : connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'a firmware without a name'}` : 'the machine does not answer'}</span>
+        <span>{!known.value ? 'not known whether the machine answers' : connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'unnamed firmware'}` : 'the machine does not answer'}</span>
       </li>
       <li class={connected ? 'good' : 'bad'}>
         <Icon name={connected ? 'check' : 'warn'} />
-        <span>{!known.value ? 'whether the projector is dark is not known' : !connected ? 'not connected: the projector was told to be dark' : 'the projector is open and dark'}</span>
+        <span>{!known.value ? 'not known whether the projector is dark' : !connected ? 'not connected: the projector was told to be dark' : 'the projector is open and dark'}</span>
       </li>
       <li class="good">
         <Icon name="check" />
         <span>
-          the job is proved and for this machine: {n.job.layers} layers, {clock(i.seconds)}
+          the job is verified for this machine: {counted(n.job.layers, 'layer')}, {clock(i.seconds)}
         </span>
       </li>
       {i.warnings.map((text) => (
@@ -48,7 +49,7 @@ function Known() {
         <li>
           <Icon name="warn" />
           <span>
-            it will wait for you {i.refills.length === 1 ? 'once' : `${i.refills.length} times`}: {i.refills.map((r) => `layer ${r.layer + 1}, ${r.text}`).join('; ')}
+            it will pause for you {i.refills.length === 1 ? 'once' : `${i.refills.length} times`}: {i.refills.map((r) => `layer ${r.layer + 1}, ${r.text}`).join('; ')}
           </span>
         </li>
       )}
@@ -61,14 +62,14 @@ function Checklist() {
   const items: [string, string][] = [
     ...i.vats.map((v): [string, string] => [`slot${v.slot}`, `slot ${v.slot} holds at least ${Math.ceil(v.ml)} ml of ${v.resin}`]),
     ['platform', 'the platform is clean, tight and level'],
-    ['path', 'nothing stands in the way of carriage, tower and platform'],
-    ['solution', 'cleaning solution is filled up, the drain is free'],
+    ['path', 'carriage, tower and platform are free to move'],
+    ['solution', 'the cleaning solution is full, the drain is clear'],
   ];
   const open = items.filter(([key]) => !ticks.value[key]).length;
   const doorOpen = now.value!.machine.door === 'open';
   return (
     <section class="block">
-      <h3>Before it starts</h3>
+      <h3>Before printing</h3>
       <Known />
       <ul class="checklist">
         {items.map(([key, text]) => (
@@ -81,7 +82,7 @@ function Checklist() {
         ))}
       </ul>
       <button class="primary wide-button" data-testid="start" disabled={open > 0 || !maySteer.value || !flags.value.ready || doorOpen} onClick={() => void host('job', { command: 'start' }).then((begun) => begun && (ticks.value = {}))}>
-        {doorOpen ? 'Shut the door first' : open > 0 ? `${open} to check` : 'Start the print'}
+        {doorOpen ? 'Close the door first' : open > 0 ? `Confirm ${counted(open, 'item')}` : 'Start the print'}
       </button>
     </section>
   );
@@ -96,7 +97,7 @@ function GoOn() {
   return (
     <section class="block interrupted" data-testid="interrupted">
       <h3>A print of this job was interrupted</h3>
-      <p>Its journal knows which light has been given. The platform rises, the axes are homed, and the print goes on where it stood.</p>
+      <p>Its journal records which exposures are complete. The platform is raised, the axes are homed, and the print continues where it stopped.</p>
       <div class="row left wrap">
         <button
           class="primary"
@@ -116,9 +117,9 @@ function GoOn() {
         {sure ? (
           <>
             <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void host('job', { command: 'cancel' })}>
-              Discard for good
+              Discard print
             </button>
-            <button onClick={() => setSure(false)}>No</button>
+            <button onClick={() => setSure(false)}>Keep it</button>
           </>
         ) : (
           flags.value.ready ? (
@@ -126,16 +127,16 @@ function GoOn() {
               Discard
             </button>
           ) : (
-            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to discard it, or to look first">
+            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to discard it, or to inspect the machine first">
               Connect only
             </button>
           )
         )}
       </div>
       <details>
-        <summary>If the journal cannot prove it all</summary>
+        <summary>If the journal is incomplete</summary>
         <label class="field-row">
-          <span>The light that broke off was on for</span>
+          <span>The interrupted exposure had lasted</span>
           <span class="number">
             <input type="number" min={0} step="any" value={lit} onInput={(e) => setLit(e.currentTarget.value)} />
             <span class="unit">s</span>
@@ -143,14 +144,14 @@ function GoOn() {
         </label>
         <label class="tick">
           <input type="checkbox" checked={untouched} onChange={(e) => setUntouched(e.currentTarget.checked)} />
-          <span>another program has used the controller since, but has moved no vat</span>
+          <span>another program has used the controller since, but moved no vat</span>
         </label>
       </details>
     </section>
   );
 }
 
-/// Light of each material from the next layer on, and layers to be left out.
+/// Exposure of each material from the next layer on, and layers to be skipped.
 function Light() {
   const n = now.value!;
   const i = info.value!;
@@ -158,7 +159,7 @@ function Light() {
   if (!flags.value.printing && !flags.value.paused) return null;
   return (
     <details class="block fold" data-testid="light">
-      <summary>Change the light</summary>
+      <summary>Adjust exposure</summary>
       {i.materials.map(({ name, colour, exposure_s }, m) => (
         <label class="field-row" key={name}>
           <span>
@@ -182,11 +183,11 @@ function Light() {
           void host('job/skip', { layer: Number(skip) - 1 }).then((done) => done && setSkip(''));
         }}
       >
-        <span>Leave out layer</span>
+        <span>Skip layer</span>
         <span class="number">
           <input type="number" min={(n.progress.layer ?? 0) + 2} max={n.job.layers} step={1} value={skip} onInput={(e) => setSkip(e.currentTarget.value)} />
           <button class="small" disabled={!skip || !maySteer.value}>
-            Leave out
+            Skip
           </button>
         </span>
       </form>
@@ -201,8 +202,8 @@ function Lost() {
       <Icon name="warn" />
       <span>
         <b>Connection lost, reconnecting…</b>
-        This page has lost the studio, and what the machine does is not known. A print goes on without this page as long as the studio runs; if the studio has ended, the light is
-        off and the machine stands still. To stop the machine now, use its own switch.
+        This page has lost the studio, so the state of the machine is unknown. A print continues without this page as long as the studio runs; if the studio has ended, the light
+        is off and the machine stands still. To stop the machine now, use its own switch.
       </span>
     </div>
   );
@@ -218,21 +219,21 @@ function Waiting() {
   const refill = refillOf(prompt);
   const vat = refill && info.value!.machine!.vats.find((v) => v.slot === refill.slot);
   const [title, text] = open
-    ? ['The door is open', 'The light is off, pump and fans stand still, nothing moves. Shut the door; then the print can go on.']
+    ? ['The door is open', 'The light, the pump and the fans are off, nothing moves. Close the door; then the print can be resumed.']
     : refill
       ? ['Resin is needed', `Fill the vat of slot ${refill.slot} with ${vat?.resin ?? 'its resin'}${vat ? `, up to ${Math.round(vat.fill_ml)} ml` : ''}. Nothing moves meanwhile.`]
       : prompt?.startsWith('the door')
-        ? ['The door is shut again', 'What is missing of the light is given when you go on.']
+        ? ['The door is closed again', 'The rest of the exposure is given when you resume.']
         : prompt
-          ? ['The print waits for you', prompt]
-          : ['Paused', 'The part hangs clear of the vat. Nothing moves before you go on.'];
+          ? ['The print is waiting for you', prompt]
+          : ['Paused', 'The part hangs clear of the vat. Nothing moves until you resume.'];
   return (
     <div class={`prompt ${open ? 'bad' : ''}`} role="alert" data-testid="prompt">
       <Icon name={open || prompt ? 'warn' : 'pause'} />
       <span>
         <b>{title}</b>
         {text}
-        {open && !info.value!.twin && ' The switch is not what keeps fingers safe: lamp and motors should lose their power too.'}
+        {open && !info.value!.twin && ' Do not rely on the switch for safety: an open door should also cut the power of lamp and motors.'}
       </span>
     </div>
   );
@@ -258,7 +259,7 @@ function Steering() {
         )}
         {f.paused && (
           <button class="primary" data-testid="resume" disabled={!maySteer.value || n.machine.door === 'open'} onClick={() => host('job', { command: 'resume' })}>
-            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, go on' : 'Resume'}
+            <Icon name="play" /> {refillOf(n.progress.prompt) ? 'Filled, resume' : 'Resume'}
           </button>
         )}
         {busy.value && !sure && (
@@ -268,7 +269,7 @@ function Steering() {
         )}
         {connectable && (
           <button class="primary" disabled={!maySteer.value} data-testid="connect" onClick={() => host('connection', { command: 'connect' })}>
-            Connect again
+            Reconnect
           </button>
         )}
       </div>
@@ -288,7 +289,7 @@ function Steering() {
           <button onClick={() => setSure(false)}>Keep printing</button>
         </div>
       )}
-      {f.printing && <p class="quiet small-print">The print goes on when this page is closed. The studio must keep running, and its computer awake.</p>}
+      {f.printing && <p class="quiet small-print">The print continues when this page is closed. Keep the studio running and its computer awake.</p>}
     </section>
   );
 }
@@ -296,13 +297,13 @@ function Steering() {
 /// What came of it, where that can be known.
 function Verdict() {
   if (!known.value || busy.value || !now.value!.progress.finished) return null;
-  if (!info.value!.twin) return <p class="quiet">Everything has been exposed as planned; whether it cured, only a look at the part tells.</p>;
+  if (!info.value!.twin) return <p class="quiet">Everything was exposed as planned. Inspect the part to see whether it cured.</p>;
   if (!verdict.value) return <p class="quiet">The cured block is compared with the drawing…</p>;
   const { passed } = verdict.value;
   return (
     <p class={`verdict ${passed ? 'good' : 'bad'}`} data-testid="verdict" data-passed={passed}>
       <Icon name={passed ? 'check' : 'warn'} />
-      {passed ? 'As drawn: every pixel of the cured block holds what its image asks for.' : 'Not as drawn: the report says where and how.'}
+      {passed ? 'As drawn: every pixel of the cured block matches its image.' : 'Not as drawn: see the report for where and how.'}
     </p>
   );
 }
@@ -315,11 +316,11 @@ function Headline() {
     <>
       <div class="row">
         <b class="state" data-testid="print-state">
-          {!known.value ? 'Not known' : stop ? stop.title : printed ? 'Printed' : n.state.text}
+          {!known.value ? 'Unknown' : stop ? stop.title : printed ? 'Printed' : n.state.text}
         </b>
         <span class="quiet">{n.job.file.name}</span>
       </div>
-      {!known.value && <p class="quiet">last heard: {n.state.text}</p>}
+      {!known.value && <p class="quiet">last known state: {n.state.text}</p>}
       {stop ? (
         <p class="problems" data-testid="stopped">
           {stop.text} {stop.cause && <span class="quiet">({stop.cause})</span>}
@@ -353,7 +354,7 @@ function Progress() {
       <div class="figures small-figures">
         <div>
           <b data-testid="print-layer">{told(p.layer === null ? '–' : p.layer + 1)}</b>
-          <span>of {n.job.layers} layers</span>
+          <span>of {counted(n.job.layers, 'layer')}</span>
         </div>
         <div>
           <b>{told(clock(p.printTimeLeft ?? 0))}</b>
@@ -380,10 +381,10 @@ function Picture() {
   const name = begun ? i.materials[p.material!]?.name : '';
   return (
     <figure class={`picture ${lit ? 'lit' : ''}`}>
-      {begun ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no light yet</div>}
+      {begun ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no exposure yet</div>}
       <figcaption>
         {name}
-        <span>{!known.value ? 'light not known' : lit ? `light ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
+        <span>{!known.value ? 'light unknown' : lit ? `exposure ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
       </figcaption>
     </figure>
   );
@@ -396,7 +397,7 @@ function PartCaption() {
   const runs = p.slabs.reduce((sum, slab) => sum + slab.runs.length / 3, 0);
   return (
     <p class="part-caption" data-testid="part" data-runs={runs} data-height={p.height}>
-      <b>{p.height.toFixed(2)} mm</b> {p.kind === 'cured' ? 'cured in the virtual printer' : 'exposed; nobody has looked into the vat'}
+      <b>{p.height.toFixed(2)} mm</b> {p.kind === 'cured' ? 'cured in the virtual printer' : 'exposed; whether it cured is unknown'}
     </p>
   );
 }
@@ -456,7 +457,7 @@ function ByHand() {
   const [step, setStep] = useState(5);
   return (
     <section class="block">
-      <h3>By hand</h3>
+      <h3>Manual control</h3>
       <div class="axes">
         {Object.keys(m.axes).map((axis) => (
           <div class="axis" key={axis}>
@@ -465,10 +466,10 @@ function ByHand() {
               {!n.machine.axes[axis]?.homed && <em> not homed</em>}
             </span>
             <output>{(n.machine.axes[axis]?.position ?? 0).toFixed(2)}</output>
-            <button class="bare" aria-label={`${axis} back by ${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: -step })}>
+            <button class="bare" aria-label={`Move ${axis} by −${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: -step })}>
               <Icon name="left" />
             </button>
-            <button class="bare" aria-label={`${axis} on by ${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: step })}>
+            <button class="bare" aria-label={`Move ${axis} by +${step}`} disabled={!ready} onClick={() => host('printer/axes', { command: 'jog', [axis]: step })}>
               <Icon name="right" />
             </button>
           </div>
@@ -499,7 +500,7 @@ function ByHand() {
           </button>
         ))}
         <button class="small" disabled={!ready || n.machine.slot === 0} onClick={() => host('printer/vat', { slot: 0 })}>
-          Put the vat away
+          Return the vat
         </button>
       </div>
     </section>
@@ -599,7 +600,7 @@ export function Print() {
         {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />
         <p class="quiet">
-          {now.value.machine.firmware} · {now.value.machine.linesSent} lines sent · {now.value.machine.resends} sent again
+          {now.value.machine.firmware} · {counted(now.value.machine.linesSent, 'line')} sent · {now.value.machine.resends} resent
         </p>
       </div>
     </main>

@@ -100,7 +100,7 @@ async function load() {
   const loaded = (await (await api('/api/print')).json()) as PrintInfo & { now: Now };
   if (mine !== loading) return;
   loading = 0;
-  if (busy.value && !loaded.machine) say('The studio has been started again: the print that was shown here has ended with the one before.');
+  if (busy.value && !loaded.machine) say('The studio was restarted: the print shown here has ended.');
   batch(() => {
     info.value = loaded;
     events.value = [];

@@ -22,8 +22,8 @@ export function stopOf(): Stop | null {
   const halted = /kill\(\) called|Printer halted/i.test(n.state.message);
   const asked = /^emergency stop/i.test(n.state.message) || askedFor();
   if (!halted && !asked) return null;
-  const next = n.job.canResume ? 'then press Resume' : 'then connect again';
-  const board = info.value?.twin ? 'Look at the machine' : 'Look at the machine, and reset its board (the reset button, or power off and on)';
+  const next = n.job.canResume ? 'then press Resume' : 'then press Reconnect';
+  const board = info.value?.twin ? 'Check the machine' : 'Check the machine and reset its board (the reset button, or power off and on)';
   return {
     title: asked ? 'Emergency stop' : 'The firmware has stopped the machine',
     text: `The light is off and nothing moves. ${board}; ${next}.`,

@@ -1,5 +1,6 @@
 // Before a print: which machine, and what the journals of the folder tell.
 import { useEffect, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { api, job, mayDrive, post, say, section } from '../store';
 import { clock } from '../make/plan';
@@ -31,11 +32,11 @@ function TakeTwin() {
   const [speed, setSpeed] = useState(60);
   return (
     <section class="card">
-      <h3>The virtual printer</h3>
-      <p class="quiet">It obeys the same G-code as the real one, and is dark, wet and slow like it. Nothing can break.</p>
+      <h3>Virtual printer</h3>
+      <p class="quiet">It obeys the same G-code as the real printer. Nothing can break.</p>
       <div class="row left wrap">
         <button class="primary" disabled={!mayDrive.value} data-testid="take-twin" onClick={() => post('/api/print/twin', { speed })}>
-          Take the virtual printer
+          Connect
         </button>
         <label class="inline">
           at
@@ -63,7 +64,7 @@ function SaveFirst() {
         void post('/api/job/save', { name });
       }}
     >
-      <span class="quiet">The journal of a print stands beside its job. Save the job first:</span>
+      <span class="quiet">The print journal is stored next to the job file. Save the job first:</span>
       <input aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} data-testid="save-job-name" />
       <button disabled={!name || !mayDrive.value} data-testid="save-job">
         Save the job
@@ -96,7 +97,7 @@ function TakePort() {
   const wrong = display && (display.width !== j.manifest.width_px || display.height !== j.manifest.height_px);
   return (
     <section class="card">
-      <h3>The machine at a port</h3>
+      <h3>Serial printer</h3>
       {!j.saved ? (
         <SaveFirst />
       ) : (
@@ -112,7 +113,7 @@ function TakePort() {
             <span class="with-button">
               <input list="ports" value={device} placeholder="/dev/ttyACM0" spellcheck={false} onInput={(e) => setDevice(e.currentTarget.value)} data-testid="device" />
               <button type="button" class="small" onClick={() => void look()}>
-                Look again
+                Refresh
               </button>
             </span>
             <datalist id="ports">
@@ -123,13 +124,13 @@ function TakePort() {
           </label>
           <p class="quiet under">
             {known === null
-              ? 'looking…'
+              ? 'searching…'
               : known.ports.length === 0
-                ? 'No serial port has anything behind it. Plug the machine in, and look again.'
+                ? 'No device found on any serial port. Plug in the printer and press Refresh.'
                 : known.ports.map((p) => `${p.device} ${p.name}`).join(' · ')}
           </p>
           <label>
-            <span>Light</span>
+            <span>Projector</span>
             <input list="displays" value={projector} spellcheck={false} onInput={(e) => setProjector(e.currentTarget.value)} data-testid="projector" />
             <datalist id="displays">
               {known?.displays.map((d) => (
@@ -141,22 +142,22 @@ function TakePort() {
             {wrong
               ? `${display.name} has ${display.width} × ${display.height} pixels, the job ${j.manifest.width_px} × ${j.manifest.height_px}.`
               : display
-                ? `Display ${display.number}: ${display.name}, ${display.width} × ${display.height}. It is black but for the light.`
+                ? `Display ${display.number}: ${display.name}, ${display.width} × ${display.height}. It is black except during exposure.`
                 : /^\d+$/.test(projector)
                   ? 'This computer has no such display.'
-                  : `Pictures go into the folder “${projector}”, for a machine that takes them from there. For a projector give the number of its display${known?.displays.length ? `: ${known.displays.map((d) => `${d.number} ${d.name}`).join(', ')}` : ''}.`}
+                  : `Images are written to the folder “${projector}”, for a machine that reads them from there. For a projector, enter the number of its display${known?.displays.length ? `: ${known.displays.map((d) => `${d.number} ${d.name}`).join(', ')}` : ''}.`}
           </p>
           <details>
-            <summary>A virtual printer at the port (pliant twin)</summary>
+            <summary>For a virtual printer on this port (pliant twin)</summary>
             <label>
-              <span>Its speed</span>
+              <span>Speed</span>
               <span class="number">
                 <input type="number" min={0.1} max={10000} step="any" value={speed} onChange={(e) => setSpeed(Number(e.currentTarget.value))} data-testid="port-speed" />
                 <span class="unit">×</span>
               </span>
             </label>
             <label>
-              <span>Its clock</span>
+              <span>Clock file</span>
               <input placeholder="a file in the folder, as for pliant twin --clock" value={ownClock} spellcheck={false} onInput={(e) => setOwnClock(e.currentTarget.value)} data-testid="port-clock" />
             </label>
           </details>
@@ -188,8 +189,8 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
         </button>
       </div>
       <p class="quiet">
-        {journal.job} on {journal.printer}: {journal.lights} lights, {journal.state}
-        {journal.open_light && ', broken off in the light'}.
+        {journal.job} on {journal.printer}: {counted(journal.lights ?? 0, 'exposure')}, {journal.state}
+        {journal.open_light && ', interrupted during an exposure'}.
       </p>
       <ol class="log records">
         {journal.records.map((r) => (
@@ -203,7 +204,7 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
       <div class="row left wrap">
         {journal.state === 'interrupted' && (
           <button class="primary" disabled={!mayDrive.value} data-testid="open-interrupted" onClick={() => post('/api/open', { name: file })}>
-            Open its job to go on
+            Open its job to resume
           </button>
         )}
         <a class="button" href={`/api/print/report?name=${encodeURIComponent(name)}`} download>
@@ -227,7 +228,7 @@ function Journals() {
   const colour = { complete: 'good', interrupted: 'busy', cancelled: '', 'not begun': '', damaged: 'bad' };
   return (
     <section class="card wide-card">
-      <h3>Prints before</h3>
+      <h3>Print history</h3>
       <ul class="journals" data-testid="journals">
         {lines.map((l) => (
           <li key={l.name}>
@@ -252,8 +253,8 @@ export function TakeMachine() {
       {j ? (
         <>
           <p>
-            <b>{j.manifest.name}</b>, {j.manifest.layers.length} layers, for the {j.printer}
-            {j.plan && `: ${clock(j.plan.seconds.total)}, ${j.plan.swaps} swaps`}.
+            <b>{j.manifest.name}</b>, {counted(j.manifest.layers.length, 'layer')}, for the {j.printer}
+            {j.plan && `: ${clock(j.plan.seconds.total)}, ${counted(j.plan.swaps, 'swap')}`}.
           </p>
           <div class="cards">
             <TakeTwin />

@@ -10,7 +10,7 @@ const kinds: Record<string, { label: string; unit: string; step: number }> = {
   shortening_mm: { label: 'Shortening', unit: 'mm', step: 0.1 },
   tension_N: { label: 'Tension', unit: 'N', step: 0.1 },
   volume_ratio: { label: 'Volume ratio', unit: '', step: 0.005 },
-  volume_change_mm3: { label: 'Added volume', unit: 'mm³', step: 1 },
+  volume_change_mm3: { label: 'Volume change', unit: 'mm³', step: 1 },
   pressure_kPa: { label: 'Pressure', unit: 'kPa', step: 0.1 },
   gas_ratio: { label: 'Gas ratio', unit: '', step: 0.005 },
 };
@@ -142,7 +142,7 @@ function Control({ actuator }: { actuator: Actuator }) {
       />
       <div class="row">
         <select
-          aria-label={`What drives ${actuator.name}`}
+          aria-label={`Control mode of ${actuator.name}`}
           value={want.kind}
           disabled={!mayDrive.value}
           onChange={(e) => {
@@ -204,7 +204,7 @@ export function Actuators() {
           />
         </div>
       )}
-      {head.actuators.length === 0 && <p class="quiet">This robot has no cable and no chamber; play its program, or pull at it.</p>}
+      {head.actuators.length === 0 && <p class="quiet">This robot has no cable and no chamber. Play its program, or drag its body.</p>}
     </div>
   );
 }

@@ -32,7 +32,7 @@ async function load() {
     theirs.value = next;
     if (!keep) text.value = next;
   });
-  if (lost && keep) say('The studio was started again without your unsaved text. It is still here under File: Apply brings it back.');
+  if (lost && keep) say('The studio was restarted without your unsaved text. It is still here under File: press Apply to restore it.');
   applied = null;
   savedLine = line;
   wasUnsaved = documentState.value.unsaved;
@@ -62,7 +62,7 @@ export function pinNow(label: string) {
 function change(material: string, key: string, value: string, label: string): boolean | Promise<boolean> {
   const next = setKey(text.value, `material.${material}`, key, value);
   if (next === null) {
-    say(`${material} is not written out in the file: change it there`);
+    say(`the file has no table [material.${material}]: add it, or edit the text`);
     return false;
   }
   pinNow(label);

@@ -180,7 +180,7 @@ function LookBar() {
   const [more, setMore] = useState(false);
   return (
     <div class="lookbar">
-      <select class="chip" aria-label="Colours" data-testid="field" value={look.field.value} onChange={(e) => (look.field.value = e.currentTarget.value as look.FieldName)}>
+      <select class="chip" aria-label="Colour by" data-testid="field" value={look.field.value} onChange={(e) => (look.field.value = e.currentTarget.value as look.FieldName)}>
         {look.fieldNames.map((f) => (
           <option value={f.name} key={f.name}>
             {f.label}
@@ -189,11 +189,11 @@ function LookBar() {
       </select>
       <Toggle on={look.wireframe} label="Mesh" />
       <Toggle on={look.ghost} label="Rest shape" />
-      <Toggle on={look.showInside} label="See through" />
+      <Toggle on={look.showInside} label="Transparent" />
       <button class="chip" aria-pressed={more || look.sectionAxis.value !== ''} aria-expanded={more} onClick={() => setMore(!more)}>
         Section
       </button>
-      <button class="chip icon-only" aria-label="Show all of it" title="Show all of it" onClick={() => view?.lookAt('home')}>
+      <button class="chip icon-only" aria-label="Fit view" title="Fit view" onClick={() => view?.lookAt('home')}>
         <Icon name="frame" />
       </button>
       {more && (
@@ -210,7 +210,7 @@ function LookBar() {
             <input type="range" min={0} max={1} step={0.002} value={look.sectionAt.value} disabled={!look.sectionAxis.value} style={{ '--at': `${100 * look.sectionAt.value}%` }} onInput={(e) => (look.sectionAt.value = Number(e.currentTarget.value))} />
           </label>
           <label>
-            Pull materials apart
+            Explode
             <input type="range" min={0} max={1} step={0.01} value={look.exploded.value} style={{ '--at': `${100 * look.exploded.value}%` }} onInput={(e) => (look.exploded.value = Number(e.currentTarget.value))} />
           </label>
         </div>
@@ -304,12 +304,12 @@ function Export() {
   const head = scene.value?.head;
   if (!head) return null;
   const items: [string, string, () => void][] = [
-    ['Picture', 'PNG', () => void view?.png().then((b) => b && save(b, 'robot.png'))],
-    ['What the plots show', 'CSV', () => save(new Blob([tracksCsv(head)], { type: 'text/csv' }), 'plots.csv')],
-    ['Forces since rest', 'CSV', () => (location.href = '/api/export/steps.csv')],
-    ['Markers since rest', 'CSV', () => (location.href = '/api/export/markers.csv')],
-    ['Motion since rest', 'GLB', () => (location.href = '/api/export/robot.glb')],
-    ['This state with its fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
+    ['Image', 'PNG', () => void view?.png().then((b) => b && save(b, 'robot.png'))],
+    ['Plot data', 'CSV', () => save(new Blob([tracksCsv(head)], { type: 'text/csv' }), 'plots.csv')],
+    ['Force history', 'CSV', () => (location.href = '/api/export/steps.csv')],
+    ['Marker history', 'CSV', () => (location.href = '/api/export/markers.csv')],
+    ['Animation', 'GLB', () => (location.href = '/api/export/robot.glb')],
+    ['Current state with fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
   ];
   return (
     <div class="menu" ref={box}>
@@ -332,12 +332,12 @@ function Export() {
 
 const refine = (accuracy: 'preview' | 'fine') => void post('/api/accuracy', { accuracy });
 
-/// What linear elements are worth: they are too stiff in bending, more so the fewer lie across a wall.
+/// How accurate linear elements are: too stiff in bending, the more so the fewer there are through a wall.
 function Rough() {
   const own = scene.value?.head.accuracy === 'fine'; // the file itself asks for them
   return (
     <span class="rough" data-testid="rough">
-      Linear elements are too stiff: forces can be 1.3 to 3 times too large, motions too small.{' '}
+      Linear elements are too stiff: forces can be 1.3 to 3 times too large, displacements too small.{' '}
       {own ? (
         <>
           The file asks for them: <code>mesh.order = 1</code>.
@@ -361,15 +361,15 @@ function Status() {
       </div>
     );
   if (!head || !s) return <div class="status" data-testid="status" data-state="none" />;
-  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : 'catching up';
+  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : 'solving';
   const warning = head.warnings.join('. ');
   const words = {
     replay: 'replay',
     stuck: 'did not converge',
     arrived: rough.value ? '≈ linear preview' : 'at equilibrium',
-    'catching up': 'Solving…',
+    solving: 'Solving…',
   }[state];
-  const lamp = state === 'arrived' && (warning || rough.value) ? 'warn' : { replay: 'busy', stuck: 'bad', arrived: 'good', 'catching up': 'busy' }[state];
+  const lamp = state === 'arrived' && (warning || rough.value) ? 'warn' : { replay: 'busy', stuck: 'bad', arrived: 'good', solving: 'busy' }[state];
   return (
     <div class="status" role="status" data-testid="status" data-state={state} data-lamp={lamp} title={head.stuck || warning}>
       <span class={`lamp ${lamp}`} /> {words}
@@ -380,7 +380,7 @@ function Status() {
         <span class="wide">
           {/* a rate is one while the robot moves: a single frame of a second says nothing */}
           {frameRate.value >= 5 && ` · ${frameRate.value} frames/s`}
-          {latency.value > 0 && ` · ${latency.value.toFixed(0)} ms to picture`}
+          {latency.value > 0 && ` · ${latency.value.toFixed(0)} ms latency`}
         </span>
       </span>
       {rough.value && <Rough />}
@@ -443,7 +443,7 @@ function Pin() {
     <span class="chip pinned" data-testid="pinned">
       <span class="swatch" style={{ background: '#f2a93b' }} /> {p.label}
       <button class="bare" aria-pressed={look.beside.value} onClick={() => (look.beside.value = !look.beside.value)}>
-        {look.beside.value ? 'over it' : 'side by side'}
+        {look.beside.value ? 'overlay' : 'side by side'}
       </button>
       <button class="bare" aria-label="Unpin" onClick={() => (look.pinned.value = null)}>
         ×
@@ -453,9 +453,9 @@ function Pin() {
 }
 
 const hints = [
-  'Drag a slider: the robot bends to where its cable or its air leads it, and every picture is a state at equilibrium.',
-  'Take hold of the body with the mouse and pull. Drag beside it to turn the view; the wheel comes nearer.',
-  'Change a material under File: the state before stays as a pale ghost to compare with. Then go on to Make.',
+  'Drag a slider to pull a cable or to inflate a chamber. Every frame shown is at equilibrium.',
+  'Drag the body with the mouse to apply a force. Drag the background to rotate the view, scroll to zoom.',
+  'Change a material under File: the previous state stays visible as a ghost for comparison. Then continue under Prepare.',
 ];
 const hintsSeen = signal(Number(localStorage.getItem('pliant_hints') ?? 0));
 
@@ -476,7 +476,7 @@ function Hints() {
         </button>
         {k + 1 < hints.length && (
           <button class="small" onClick={() => next(hints.length)}>
-            I know
+            Skip
           </button>
         )}
       </div>
@@ -487,9 +487,9 @@ function Hints() {
 function Accuracy() {
   const fine = documentState.value.accuracy === 'fine';
   return (
-    <div class="segments" role="group" aria-label="Elements" title="Linear elements answer at once, but their forces can be 1.3 to 3 times too large; quadratic ones are those of pliant simulate">
+    <div class="segments" role="group" aria-label="Elements" title="Linear elements are fast, but their forces can be 1.3 to 3 times too large; quadratic elements are those of pliant simulate">
       <button aria-pressed={!fine} disabled={!mayDrive.value} onClick={() => refine('preview')}>
-        ≈ quick
+        ≈ fast
       </button>
       <button aria-pressed={fine} disabled={!mayDrive.value} onClick={() => refine('fine')} data-testid="fine">
         accurate

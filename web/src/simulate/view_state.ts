@@ -7,9 +7,9 @@ export const fieldNames: { name: FieldName; label: string; unit: string; scale: 
   { name: 'material', label: 'Materials', unit: '', scale: 1 },
   { name: 'displacement', label: 'Displacement', unit: 'mm', scale: 1 },
   { name: 'von_mises', label: 'Von Mises stress', unit: 'kPa', scale: 1e-3 },
-  { name: 'stretch', label: 'Largest stretch', unit: '', scale: 1 },
+  { name: 'stretch', label: 'Maximum stretch', unit: '', scale: 1 },
   { name: 'J', label: 'Volume ratio J', unit: '', scale: 1 },
-  { name: 'energy', label: 'Energy density', unit: 'kJ/m³', scale: 1e-3 },
+  { name: 'energy', label: 'Strain energy density', unit: 'kJ/m³', scale: 1e-3 },
 ];
 
 export const field = signal<FieldName>('material');
