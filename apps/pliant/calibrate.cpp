@@ -266,7 +266,7 @@ void add_ratio(CLI::App& parent, int& status) {
     command->add_option("--ratios", c->options.ratios, "material ratios, stiff over soft")->delimiter(',')->required();
     command->add_option("--strain", c->options.strain, "of the whole bar")->capture_default_str();
     command->add_option("--poisson", c->options.poisson_ratio, "of the neo-Hookean reference")->capture_default_str();
-    command->add_option("--interface", c->interfaces, "where the stiff part ends, 0 to 1; several are put side by side")
+    command->add_option("--interface", c->interfaces, "where the stiff part ends, 0 to 1; several are compared")
         ->delimiter(',')
         ->capture_default_str();
     command->add_option("--cells", c->cells, "of the 100 x 10 x 10 mm bar, six tets each")
@@ -286,7 +286,7 @@ void add_elongation(CLI::App& parent, int& status) {
     command->add_option("--interface", c->interface, "from the held end to the joint, at rest");
     command->add_option("--elongation", c->elongation, "of the bar");
     command->add_option("--joint", c->joint, "how far the joint moves");
-    command->add_flag("--match", c->match, "also the shape parameter with which the simulated bar does the same");
+    command->add_flag("--match", c->match, "also find the shape parameter with which the simulated bar does the same");
     add_files(*command, *c);
     command->footer(
         "Example: pliant calibrate elongation --length 100mm --interface 50mm --elongation 30mm --joint 5.14mm");
@@ -295,13 +295,14 @@ void add_elongation(CLI::App& parent, int& status) {
 
 void add_tensile(CLI::App& parent, int& status) {
     auto c = std::make_shared<TensileCommand>();
-    CLI::App* command = parent.add_subcommand("tensile", "constants of a law from a tensile test");
+    CLI::App* command = parent.add_subcommand("tensile", "fit the constants of a law to a tensile test");
     command->add_option("data", c->file, "CSV: stretch or strain, and nominal stress with its unit")->required();
     command->add_option("--law", c->law, "elastic law")
         ->check(CLI::IsMember({"neo-hookean", "mooney-rivlin", "yeoh", "ogden"}))
         ->capture_default_str();
     command->add_option("--terms", c->options.terms, "of Ogden's law")->check(CLI::Range(1, 3))->capture_default_str();
-    command->add_option("--max-stretch", c->most_stretch, "leave out rows beyond it")->check(CLI::Range(1.0, 100.0));
+    command->add_option("--max-stretch", c->most_stretch, "ignore rows beyond this stretch")
+        ->check(CLI::Range(1.0, 100.0));
     command->add_option("--poisson", c->options.poisson_ratio, "for the robot file; the fit is incompressible")
         ->check(CLI::Range(0.0, 0.4999))
         ->capture_default_str();
@@ -317,7 +318,7 @@ void add_tensile(CLI::App& parent, int& status) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, int& status) {
-    CLI::App* command = app.add_subcommand("calibrate", "constants of materials from tests");
+    CLI::App* command = app.add_subcommand("calibrate", "fit constants of materials to tests");
     command->require_subcommand(1);
     command->footer("Example: pliant calibrate tensile pull.csv --law yeoh");
     add_elongation(*command, status);

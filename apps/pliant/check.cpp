@@ -150,12 +150,12 @@ void add_check(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("check", "validate robot, printer, job, G-code and mesh files");
     command->add_option("files", options->files, "files to check");
     command->add_flag("--firmware", options->firmware,
-                      "ask the board at --port what it was built with; files: answers to M115, M503, M119, M113");
+                      "check how the board at --port was built; files: its answers to M115, M503, M119, M113");
     command->add_option("--port", options->port, "serial port of the board, such as /dev/ttyACM0");
     command->add_option("--printer", options->printer,
-                        "machine that G-code files, and jobs instead of against their own, are checked against");
+                        "printer that G-code files are checked against, and jobs in place of their own");
     command->add_option("--cancel-after", options->cancel_after,
-                        "line of a G-code program after which to end it: prints what would do so safely");
+                        "line of a G-code program to stop after: print the commands that do so safely");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {

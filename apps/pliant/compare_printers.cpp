@@ -42,9 +42,9 @@ Status compare(const Options& options) {
 
 void add_compare_printers(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("compare-printers", "printers beside each other: swaps, cleaning, packing");
+    CLI::App* command = app.add_subcommand("compare-printers", "compare printers: swaps, cleaning, packing");
     command->add_option("printers", options->files, "printer files (TOML)")->required();
-    command->add_option("-o,--output", options->page, "file for the page (.html)");
+    command->add_option("-o,--output", options->page, "HTML report (.html)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant compare-printers examples/printers/*.toml -o printers.html");
     on_call(*command, status, [options] { return compare(*options); });

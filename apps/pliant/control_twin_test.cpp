@@ -595,7 +595,7 @@ TEST_CASE("a host that dies while the door is open is followed by one that waits
     REQUIRE_FALSE(b.start());
     b.new_host();
     b.start({true, {}});
-    CHECK(b.last_error() == "the door is open: shut it");
+    CHECK(b.last_error() == "the door is open: close it");
     CHECK(b.twin->log().violations.empty());
     b.twin->advance_to(b.twin->now() + 100);
     b.must_finish({true, {}});
@@ -628,14 +628,14 @@ TEST_CASE("a print does not begin with an open door, nor does a test light, and 
     b.twin->advance_to(10);
     REQUIRE(b.twin->door_is_open());
     b.start();
-    CHECK(b.last_error() == "the door is open: shut it");
+    CHECK(b.last_error() == "the door is open: close it");
     CHECK_FALSE(b.snapshot().can_resume);
     CHECK(b.twin->log().homings == 0);
     REQUIRE(b.control->connect());
     b.control->serve_until_idle();
     REQUIRE(b.control->expose_test(halves::image(0, 0).value(), 1));
     b.control->serve_until_idle();
-    CHECK(b.snapshot().message == "the door is open: shut it");
+    CHECK(b.snapshot().message == "the door is open: close it");
     CHECK(b.lights() == 1);
 }
 

@@ -31,7 +31,7 @@ Status run(const Options& options) {
 
 void add_export(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("export", "write a job's images as other programs take them");
+    CLI::App* command = app.add_subcommand("export", "export a job's images in formats of other programs");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_option("--as", options->format, "sl1, nanodlp, zip or vats")->required();
     command->add_option("-o,--output", options->folder, "folder for a file per material, or for the vats' folders")

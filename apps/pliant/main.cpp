@@ -71,7 +71,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
 
-    CLI::App app("Pliant takes a multi-material soft robot from a drawing to a moving part.", "pliant");
+    CLI::App app("Pliant simulates multi-material soft robots and prints them on multi-vat DLP printers.", "pliant");
     app.set_version_flag("--version", std::string(PLIANT_VERSION));
     app.require_subcommand(1);
     app.footer(

@@ -35,8 +35,8 @@ Status list(const Options& options) {
 
 void add_materials(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("materials", "the library of materials that robot files may name");
-    command->add_option("names", options->names, "show these with constants and sources");
+    CLI::App* command = app.add_subcommand("materials", "list the library of materials that robot files may name");
+    command->add_option("names", options->names, "show these materials with constants and sources");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant materials ecoflex-00-30");
     on_call(*command, status, [options] { return list(*options); });

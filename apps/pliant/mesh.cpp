@@ -151,7 +151,7 @@ void add_options(CLI::App& command, Options& options) {
         ->required();
     command.add_option("-o,--output", options.output_file,
                        fmt::format("mesh file to write: {}", mesh::tet_writer_list));
-    command.add_option("--picture", options.picture_file, "draw the shapes of the tets: FILE.png");
+    command.add_option("--picture", options.picture_file, "picture of the quality of the tets: FILE.png");
     command.add_option("--from", options.from_unit, "unit of the mesh file that is read, with --to")->type_name("UNIT");
     command.add_option("--to", options.to_unit, "unit of the mesh file that is written")->type_name("UNIT");
     command.add_flag("--text", options.text, "write .vtk and .msh as text instead of binary");

@@ -62,14 +62,15 @@ Status make_plan(const Options& options) {
 
 void add_plan(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("plan", "what a job takes: vats, swaps, times, resin");
+    CLI::App* command = app.add_subcommand("plan", "plan a job: vats, swaps, times, resin");
     command->add_option("job", options->job, "job file (.zip)")->required();
-    command->add_option("--printer", options->printer, "another printer file than the job's own, to compare");
-    command->add_flag("--any-vat", options->any_vat, "as if resins that no vat holds were filled into free ones");
+    command->add_option("--printer", options->printer, "printer file in place of the job's own, to compare");
+    command->add_flag("--any-vat", options->any_vat, "assume that resins that no vat holds are filled into free vats");
     command->add_option("-o,--output", options->picture_file, "file for a picture of the plan (.png)");
-    command->add_flag("--spray", options->spray.wanted, "how clean the machine's sprinklers get the finished part");
+    command->add_flag("--spray", options->spray.wanted,
+                      "report how clean the machine's spray heads get the finished part");
     command->add_option("--optimise-spray", options->spray.cleanness,
-                        "plan with the oscillation and time that take off this share of the film (0.95) with the least "
+                        "plan with the oscillation and time that remove this share of the film (0.95) with the least "
                         "solution");
     command->add_option("--spray-picture", options->spray.picture_file,
                         "file for a picture of what the spray leaves on the part (.png)");

@@ -85,27 +85,28 @@ void add_print(CLI::App& app, int& status) {
         ->type_name("FAULT")
         ->allow_extra_args(false);
     command->add_flag("--list-ports", options->list_ports, "list the serial ports");
-    command->add_option("--projector", live.projector, "folder whose shown.png is the light");
-    command->add_flag("--resume", live.resume, "go on with an interrupted print");
-    command->add_option("--journal", live.journal, "file instead of JOB.zip.journal");
-    command->add_option("--assume-lit", live.assume_lit_s, "seconds that a light was on whose end nobody saw");
+    command->add_option("--projector", live.projector, "folder whose shown.png is what the projector shows");
+    command->add_flag("--resume", live.resume, "resume an interrupted print");
+    command->add_option("--journal", live.journal, "journal file, in place of JOB.zip.journal");
+    command->add_option("--assume-lit", live.assume_lit_s,
+                        "seconds that the interrupted exposure had lasted, where the journal does not know");
     command->add_flag("--assume-vats-untouched", live.assume_vats_untouched,
                       "another program has used the controller since, but moved no vat");
-    command->add_option("--emergency-line", live.emergency_line,
-                        "what an emergency stop pulls, instead of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
-                        "stops), file-low:FILE (0 stops), none");
+    command->add_option(
+        "--emergency-line", live.emergency_line,
+        "line that an emergency stop switches, in place of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
+        "stops), file-low:FILE (0 stops), none");
     command->add_flag("--yes", live.yes, "the vats are in place and filled: do not ask");
     command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
-    command->add_option(
-        "--report", live.report,
-        "file for a page about the print (.html); without --port and --twin: of what the journal tells");
-    CLI::Option* speed = command->add_option(
-        "--speed", live.speed, "seconds of the machine in one of the wall, for virtual printers; 1 is real time");
+    command->add_option("--report", live.report,
+                        "HTML report of the print (.html); without --port and --twin: from the journal");
+    CLI::Option* speed =
+        command->add_option("--speed", live.speed, "speed-up factor, for virtual printers; 1 is real time");
     command->add_option("--clock", live.clock_file, "clock of the virtual printer (twin --clock FILE)");
     command->add_option("-o,--output", options->report_file, "file for the report of --twin (.json)");
     add_output_options(*command, live.output, true);
     command->footer(
-        "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume goes on.\n"
+        "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume continues.\n"
         "Example: pliant print gripper.zip --port /dev/ttyACM0 --projector pictures\n"
         "         pliant print gripper.zip --twin");
     on_call(*command, status, [options, speed] {

@@ -177,7 +177,7 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     control.quit();
     worker.join();
     if (ended.last.can_resume && !options.output.quiet && !options.port.empty())
-        fmt::print(stderr, "go on with: pliant print {} --port {} --resume\n", options.job, options.port);
+        fmt::print(stderr, "resume with: pliant print {} --port {} --resume\n", options.job, options.port);
     if (ended.last.finished) ended.status = exit_done;
     return ended;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "inputs.hpp"
 #include "presentation/print_report/print_report.hpp"
@@ -110,8 +111,8 @@ Result<int> print_virtual(const LiveOptions& options, const std::string& report_
     if (options.output.json)
         fmt::print("{}\n", json);
     else if (!options.output.quiet)
-        fmt::print("{} lines sent, {} exposures\n{}", (*print)->snapshot().lines_sent, (*print)->lights().size(),
-                   twin::report_text(*report));
+        fmt::print("{} sent, {}\n{}", counted(static_cast<std::size_t>((*print)->snapshot().lines_sent), "line"),
+                   counted((*print)->lights().size(), "exposure"), twin::report_text(*report));
     return report->passed ? exit_done : exit_failed;
 }
 

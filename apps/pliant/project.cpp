@@ -71,7 +71,7 @@ Status release(const Options& options) {
     if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
     const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
-    if (!options.output.quiet) fmt::print("{}\n", *released ? "given back" : "nothing held it");
+    if (!options.output.quiet) fmt::print("{}\n", *released ? "released" : "it was not in use");
     return {};
 }
 
@@ -81,7 +81,7 @@ Status calibrate_size(const Options& options, const Setting& setting) {
     if (p.width_px == 0) return input_error("--measured: give --printer, or --size");
     const auto size = host::pixel_size(p.width_px, p.height_px, options.measured_mm[0], options.measured_mm[1]);
     if (!size) return tl::unexpected(size.error());
-    fmt::print("x {:.3f} um, y {:.3f} um a pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
+    fmt::print("x {:.3f} um, y {:.3f} um per pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
                size->off_percent);
     if (p.pixel_um > 0)
         fmt::print("the printer file says {:.3f} um: parts come out {:+.2f} %\n", p.pixel_um,
@@ -199,17 +199,16 @@ void add_project(CLI::App& app, int& status) {
     command->add_option("--printer", options->printer, "printer file: the panel must have its size");
     command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, without a printer file")->expected(2);
     command->add_option("--pattern", options->pattern, "white, black, checkerboard, grid, border, ramp or points");
-    command->add_option("--square", options->square_px, "pixels of a checkerboard's square; 1 if not given");
+    command->add_option("--square", options->square_px, "pixels per square of the checkerboard; 1 if not given");
     command->add_option("--points", options->points, "COLUMNS ROWS of the pattern points; 5 3 if not given")
         ->expected(2);
     command->add_option("--image", options->image, "image file (.png) of the panel's size");
-    command->add_option("--seconds", options->seconds, "how long; until Ctrl-C if not given");
-    command->add_flag("--release", options->release, "give the display back, which otherwise stays black");
-    command
-        ->add_option("--measured", options->measured_mm, "X Y: what the rectangle of the pattern border measures, mm")
+    command->add_option("--seconds", options->seconds, "duration; until Ctrl-C if not given");
+    command->add_flag("--release", options->release, "release the display, which otherwise stays black");
+    command->add_option("--measured", options->measured_mm, "X Y: measured size of the rectangle of pattern border, mm")
         ->expected(2);
-    command->add_option("--mask-from", options->readings, "table of light readings: makes a mask of them");
-    command->add_option("--gamma", options->gamma, "of the projector, for the mask; 1 if not given");
+    command->add_option("--mask-from", options->readings, "table of light readings: make a mask from them");
+    command->add_option("--gamma", options->gamma, "gamma of the projector, for the mask; 1 if not given");
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");

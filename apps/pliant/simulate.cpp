@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "base/core/stopwatch.hpp"
 #include "command.hpp"
@@ -79,9 +80,10 @@ report::Simulation describe(const robot::Robot& robot, const sim::Model& model, 
 void print_summary(const sim::Model& model, const report::Simulation& simulation) {
     const sim::Trajectory& trajectory = simulation.result;
     const sim::Step& last = trajectory.steps.back();
-    fmt::print("{} nodes, {} {} tets, solver {}\n", model.node_count(), model.mesh().tet_count(),
-               model.mesh().order == 2 ? "quadratic" : "linear", trajectory.solver);
-    fmt::print("{} steps in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", trajectory.steps.size() - 1,
+    fmt::print("{}, {}, solver {}\n", counted(model.node_count(), "node"),
+               counted(model.mesh().tet_count(), model.mesh().order == 2 ? "quadratic tet" : "linear tet"),
+               trajectory.solver);
+    fmt::print("{} in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", counted(trajectory.steps.size() - 1, "step"),
                trajectory.solve_s, last.residual, last.min_J);
     for (const auto& c : last.cables)
         fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
@@ -96,7 +98,7 @@ void print_summary(const sim::Model& model, const report::Simulation& simulation
                    c.force_N.y, c.force_N.z);
     }
     if (last.self_contact_N > 0) {
-        fmt::print("self-contact: {:.4f} N in all, nearest {:.4f} mm\n", last.self_contact_N,
+        fmt::print("self-contact: {:.4f} N total, nearest {:.4f} mm\n", last.self_contact_N,
                    1e3 * last.smallest_distance_m);
     }
     for (const auto& s : last.supports) {
@@ -272,21 +274,22 @@ void add_simulate(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("simulate", "run the actuation program of a robot file");
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
-    command->add_option("--steps", options->steps, "number of steps, instead of the file's")
+    command->add_option("--steps", options->steps, "number of steps, in place of the file's")
         ->check(CLI::Range(1, 100000));
     auto* solver = command->add_option("--solver", options->solvers,
-                                       "instead of the file's: auto, newton, quasi-newton, anderson, local-global; "
-                                       "several with commas are compared");
-    command->add_flag("--compare-solvers", options->compare, "runs the program with every solver and compares them")
+                                       "auto, newton, quasi-newton, anderson or local-global, in place of the file's; "
+                                       "several, separated by commas, are compared");
+    command->add_flag("--compare-solvers", options->compare, "run the program with every solver and compare them")
         ->excludes(solver);
-    command->add_option("--pictures", options->pictures,
-                        "none; few: the end over the rest shape; all: also at rest, on the way and the stress (few)");
+    command->add_option(
+        "--pictures", options->pictures,
+        "none; few: the final state over the rest shape; all: also rest, intermediate states and stress (few)");
     command->add_option("--picture-size", options->picture_size,
                         "WIDTHxHEIGHT of the pictures in pixels (800x500 of few, 1600x1000 of all)");
     command->add_option("--view", options->view,
-                        "X,Y,Z: pictures are seen from this direction (default: where the motion is seen best)");
+                        "X,Y,Z: viewing direction of the pictures (default: where the motion is seen best)");
     command->add_option("--measured", options->measured,
-                        "CSV of measured markers, columns as in markers.csv, laid over the simulated ones");
+                        "CSV of measured markers, columns as in markers.csv, compared with the simulated ones");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

@@ -47,7 +47,7 @@ std::string parts_text(const job::Material& material) {
 void print_summary(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
                    const std::vector<std::string>& notes) {
     if (options.output.quiet) return;
-    fmt::print("{}: {} layers of {}, {} x {} px of {:.6g} um\n", options.job, manifest.layers.size(),
+    fmt::print("{}: {} of {}, {} x {} px of {:.6g} um\n", options.job, counted(manifest.layers.size(), "layer"),
                heights_text(manifest), manifest.width_px, manifest.height_px, manifest.pixel_um);
     for (const job::Material& material : manifest.materials) {
         fmt::print("material {}: resin {}, {:.1f} mm^3{}\n", material.name, material.resin, material.model_volume_mm3,
@@ -56,7 +56,7 @@ void print_summary(const SliceOptions& options, const job::Manifest& manifest, c
     for (const std::string& note : notes) fmt::print("{}\n", note);
     for (const std::string& warning : plan.warnings) fmt::print("warning: {}\n", warning);
     for (const std::string& warning : manifest.warnings) fmt::print("warning: {}\n", warning);
-    fmt::print("{}, {} in all\n", counted(static_cast<std::size_t>(plan.swaps), "swap"),
+    fmt::print("{}, {} total\n", counted(static_cast<std::size_t>(plan.swaps), "swap"),
                plan::clock_text(plan.seconds.total));
 }
 
@@ -124,38 +124,39 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("-o,--output", options.job, "job file to write (.zip)")->required();
     command.add_option("--picture", options.picture, "PNG file: the part from the front, and some layers");
     command.add_option("--layer", order.layer, "layer height, as in \"50 um\"; the printer file's where not given");
-    command.add_option("--least-layer", order.least_layer,
-                       "layers follow the slope: as thin as this where it is flat, as thick as --layer where steep");
+    command.add_option(
+        "--least-layer", order.least_layer,
+        "adaptive layers: as thin as this where the surface is flat, as thick as --layer where it is steep");
     const auto each = [&](const char* name, std::vector<std::string>& values, const char* type, const char* text) {
         command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
     };
-    each("--resin", order.resins, "MATERIAL=RESIN", "what a material is printed in");
+    each("--resin", order.resins, "MATERIAL=RESIN", "resin that a material is printed in");
     command.add_flag("--any-vat", order.any_vat,
-                     "a resin that no vat of the printer holds is filled into a free vat before the print");
+                     "fill a resin that no vat of the printer holds into a free vat before the print");
     each("--exposure", order.exposures, "MATERIAL[:FIRST-LAST]=TIME[,BOTTOM]",
-         "light of a material, and of its first layers; or of some layers");
+         "exposure of a material, and of its bottom layers; or of some layers");
     each("--interlock", order.interlocks, "A+B=PIXELS[,LAYERS]",
-         "teeth so deep between two materials, changing sides every so many layers");
+         "interlock two materials by teeth PIXELS deep that change sides every LAYERS layers");
     each("--overlap", order.overlaps, "A+B=PIXELS[,LAYERS]",
-         "A lights so much of B too where they meet, side by side and above each other");
+         "A also exposes B by PIXELS px sideways and LAYERS layers up and down where they meet");
     command.add_option("--least-feature", order.least_feature,
                        "warn of walls and tips narrower than this, as in \"0.3 mm\"");
-    command.add_option("--copies", order.copies, "how many of the part, side by side");
-    command.add_option("--spacing", order.spacing, "between copies, as in \"2 mm\"")->capture_default_str();
-    command.add_option("--turn", order.turn, "X Y Z: degrees about each axis, one after the other")->expected(3);
-    command.add_flag("--no-anti-alias", order.no_anti_alias, "pixels are full or dark");
-    command.add_option("--threshold", order.threshold, "without anti-aliasing: least coverage of a full pixel")
+    command.add_option("--copies", order.copies, "number of copies, side by side");
+    command.add_option("--spacing", order.spacing, "distance between copies, as in \"2 mm\"")->capture_default_str();
+    command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")->expected(3);
+    command.add_flag("--no-anti-alias", order.no_anti_alias, "no anti-aliasing: each pixel is fully lit or dark");
+    command.add_option("--threshold", order.threshold, "without anti-aliasing: minimum coverage of a lit pixel")
         ->capture_default_str();
     command.add_option("--support", order.support, "supports in this material under islands and overhangs");
     command.add_option("--support-angle", order.support_angle,
-                       "undersides flatter than so many degrees are supported; 45, 0: islands only");
-    command.add_option("--support-spacing", order.support_spacing, "between tips, at most; \"3 mm\"");
-    command.add_option("--support-tip", order.support_tip, "diameter where it touches the part; \"0.4 mm\"");
-    command.add_option("--support-pillar", order.support_pillar, "diameter below; \"1 mm\"");
-    command.add_option("--lift", order.lift, "how high above the platform the part begins, on supports");
+                       "overhang angle in degrees below which undersides are supported (45); 0: islands only");
+    command.add_option("--support-spacing", order.support_spacing, "maximum distance between tips (\"3 mm\")");
+    command.add_option("--support-tip", order.support_tip, "diameter of a tip where it touches the part (\"0.4 mm\")");
+    command.add_option("--support-pillar", order.support_pillar, "diameter of a pillar (\"1 mm\")");
+    command.add_option("--lift", order.lift, "height of the part above the platform, on supports");
     command.add_option("--raft", order.raft, "thickness of a plate under the supports");
-    command.add_option("--hollow", order.hollow, "hollow the part out, down to walls of this, as in \"2 mm\"");
-    command.add_option("--drain", order.drain, "diameter of the holes that let the resin out of a hollow part");
+    command.add_option("--hollow", order.hollow, "hollow the part, leaving walls of this thickness, as in \"2 mm\"");
+    command.add_option("--drain", order.drain, "diameter of the drain holes of a hollow part");
     each("--set", order.assignments, "KEY=VALUE", "change any key of the robot file");
     add_output_options(command, options.output, false);
 }
@@ -164,7 +165,8 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
 
 void add_slice(CLI::App& app, int& status) {
     auto options = std::make_shared<SliceOptions>();
-    CLI::App* command = app.add_subcommand("slice", "make the job of a robot for a printer: images, plan, G-code");
+    CLI::App* command =
+        app.add_subcommand("slice", "slice a robot for a printer: layer images, plan and G-code in one job file");
     options->order.version = PLIANT_VERSION;
     add_slice_options(*command, *options);
     command->footer(

@@ -1,4 +1,4 @@
-// pliant studio: the page on which a robot bends live, is sliced and printed.
+// pliant studio: the web interface in which a robot is simulated live, sliced and printed.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -66,7 +66,7 @@ Result<int> run_studio(const Options& options) {
 
 void add_studio(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("studio", "a page on which a robot bends live, is sliced and printed");
+    CLI::App* command = app.add_subcommand("studio", "web interface: simulate a robot live, slice it and print it");
     command->add_option("file", options->file, "robot file (TOML) or job (.zip); without it an example");
     command->add_option("--port", options->port, "port to listen on; 0: any (7117, or any if that is taken)")
         ->check(CLI::Range(0, 65535));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -92,9 +93,11 @@ private:
 };
 
 void print_end(twin::Twin& twin) {
+    const auto number = [](int count, std::string_view word) { return counted(static_cast<std::size_t>(count), word); };
     const twin::Log& log = twin.log();
-    fmt::print("{:.1f} s on the machine's clock, {} swaps, {} exposures, {} bad lines, {} resets, {} layers cured\n",
-               twin.now(), log.swaps, log.exposures, log.bad_lines, log.resets, twin.cured().layers().size());
+    fmt::print("{:.1f} s on the machine's clock, {}, {}, {}, {}, {} cured\n", twin.now(), number(log.swaps, "swap"),
+               number(log.exposures, "exposure"), number(log.bad_lines, "bad line"), number(log.resets, "reset"),
+               counted(twin.cured().layers().size(), "layer"));
     for (const std::string& violation : log.violations) fmt::print("  interlock: {}\n", violation);
     for (const std::string& mishap : log.mishaps) fmt::print("  fault: {}\n", mishap);
     for (const std::string& fault : twin.cured().faults()) fmt::print("  light: {}\n", fault);
@@ -146,26 +149,27 @@ Status run_twin(const Options& options) {
 
 void add_twin(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("twin", "the virtual printer as a serial device: speaks Marlin, real time or faster");
+    CLI::App* command = app.add_subcommand(
+        "twin", "run the virtual printer as a serial device that speaks Marlin, in real time or faster");
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
-    command->add_option("--pty", options->link, "name of a link to the device, such as /tmp/printer");
+    command->add_option("--pty", options->link, "symbolic link to make to the device, such as /tmp/printer");
     command->add_option("--projector", options->projector, "folder whose shown.png is what the projector shows");
     command->add_option("--clock", options->clock,
-                        "file for its clock, for print --clock: both agree on how long light was on");
-    command->add_option("--speed", options->speed, "seconds of the machine in one of the wall; 1 is real time");
-    command->add_option("--seconds", options->seconds, "ends after so long on the machine's clock");
+                        "file for its clock, for print --clock: both then measure exposures by the same clock");
+    command->add_option("--speed", options->speed, "speed-up factor; 1 is real time");
+    command->add_option("--seconds", options->seconds, "end after this time on the machine's clock");
     command->add_option("--fault", options->faults, "KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
         ->allow_extra_args(false);
     command->add_option("--release", options->release,
-                        "release of Marlin, 2.1.1, 2.1.2 (any 2.1.2.x) or 2.1.3, instead of the printer file's");
-    command->add_flag("--home-first", options->homes_first, "leave out moves of axes that are not homed");
+                        "release of Marlin, 2.1.1, 2.1.2 (any 2.1.2.x) or 2.1.3, in place of the printer file's");
+    command->add_flag("--home-first", options->homes_first, "ignore moves of axes that are not homed");
     command->add_flag("--advanced-ok", options->advanced_ok, "answer ok N12 P15 B3");
     command->add_flag("--z-sync", options->z_sync, "block on moves of the platform and say Z_move_comp");
     command->add_flag("--report-fans", options->report_fans, "say M106 P0 S255 when a fan changes");
     command->add_flag("--wait", options->waits, "say wait every second while idle");
-    command->add_flag("--no-emergency-parser", options->no_emergency_parser, "M112, M108 and M410 wait their turn");
-    command->add_flag("--trace", options->trace, "print what goes over the wire to standard error");
+    command->add_flag("--no-emergency-parser", options->no_emergency_parser,
+                      "M112, M108 and M410 are queued like any other command");
+    command->add_flag("--trace", options->trace, "log all serial traffic to standard error");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant twin --printer examples/printers/tower.toml --pty /tmp/printer --speed 100");
     on_call(*command, status, [options] { return run_twin(*options); });

@@ -319,8 +319,8 @@ void Reader::finish() {
     for (const auto& [name, value] : std::get<Table>(table_->data)) {
         if (std::find(marks_->asked.begin(), marks_->asked.end(), name) != marks_->asked.end()) continue;
         const std::string near = nearest_name(name, marks_->asked);
-        problem(name, near.empty() ? "nobody reads this key; known here: " + join_names(marks_->asked)
-                                   : fmt::format("nobody reads this key; did you mean \"{}\"?", near));
+        problem(name, near.empty() ? "unknown key; known here: " + join_names(marks_->asked)
+                                   : fmt::format("unknown key; did you mean \"{}\"?", near));
     }
 }
 

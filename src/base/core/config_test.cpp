@@ -64,7 +64,7 @@ TEST_CASE("an unread key is an error that names the line and the nearest key") {
     (void)root.text("name");
     (void)root.text("geometry", "");
     root.finish();
-    CHECK(message(problems) == "test.toml:3: geometri: nobody reads this key; did you mean \"geometry\"?");
+    CHECK(message(problems) == "test.toml:3: geometri: unknown key; did you mean \"geometry\"?");
 }
 
 TEST_CASE("wrong types and missing keys give one line each and no crash") {

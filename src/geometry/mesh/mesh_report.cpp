@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/core/counted.hpp"
 #include "geometry/mesh/curved_tets.hpp"
 
 namespace pliant::mesh {
@@ -115,13 +116,14 @@ MeshReport report_on(const TetMesh& mesh) {
 std::string report_text(const MeshReport& report) {
     const Vec3 size = report.box.size();
     std::string text = fmt::format(
-        "{} nodes, {} {} tets, {:.6g} x {:.6g} x {:.6g}, quality worst {:.3f} median {:.3f}, "
+        "{}, {}, {:.6g} x {:.6g} x {:.6g}, quality worst {:.3f} median {:.3f}, "
         "smallest dihedral angle {:.1f} degrees",
-        report.points, report.tets, report.order == 2 ? "quadratic" : "linear", size.x, size.y, size.z,
-        report.worst_quality, report.median_quality, report.min_dihedral_deg);
+        counted(report.points, "node"), counted(report.tets, report.order == 2 ? "quadratic tet" : "linear tet"),
+        size.x, size.y, size.z, report.worst_quality, report.median_quality, report.min_dihedral_deg);
     if (report.order == 2) text += fmt::format(", smallest J {:.3f}", report.worst_jacobian);
     for (const RegionReport& region : report.regions)
-        text += fmt::format("\n  region \"{}\": {} tets, volume {:.6g}", region.name, region.tets, region.volume);
+        text += fmt::format("\n  region \"{}\": {}, volume {:.6g}", region.name, counted(region.tets, "tet"),
+                            region.volume);
     for (const std::string& note : report.notes) text += "\n  note: " + note;
     return text;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/core/base64.hpp"
+#include "base/core/counted.hpp"
 #include "presentation/draw/colour.hpp"
 #include "presentation/print_report/cured_block.hpp"
 #include "presentation/report/html.hpp"
@@ -25,8 +26,8 @@ std::vector<std::string> accepted(const twin::Report& r) {
 std::string verdict(const twin::Report& r) {
     if (r.passed) {
         return fmt::format(
-            "<p><span class=\"pill good\">{}</span> {} layers; every pixel holds what its image asks for.</p>\n",
-            r.findings.empty() ? "as drawn" : "accepted", r.layers);
+            "<p><span class=\"pill good\">{}</span> {}; every pixel of the cured block matches its image.</p>\n",
+            r.findings.empty() ? "as drawn" : "accepted", counted(r.layers, "layer"));
     }
     return fmt::format(
         "<p><span class=\"pill bad\">not as drawn</span></p>\n<p class=\"message\">First deviation: {}</p>\n",
@@ -50,7 +51,8 @@ std::string tiles(const twin::Report& r) {
 
 std::string materials(const twin::Report& r) {
     std::string out =
-        "<div class=\"scroll\"><table><thead><tr><th>material</th><th>drawn</th><th>asked by the images</th><th>cured"
+        "<div class=\"scroll\"><table><thead><tr><th>material</th><th>drawn</th><th>requested by the "
+        "images</th><th>cured"
         "</th><th>in another resin</th><th>missing</th><th>tolerance</th><th></th></tr></thead><tbody>\n";
     int index = 0;
     for (const twin::MaterialReport& m : r.materials) {
@@ -68,7 +70,7 @@ std::string materials(const twin::Report& r) {
 /// Vats that have cured anything.
 std::string resins(const twin::Report& r) {
     std::string out =
-        "<div class=\"scroll\"><table><thead><tr><th>resin</th><th>cured</th><th>left in the vat</th><th>of it foreign"
+        "<div class=\"scroll\"><table><thead><tr><th>resin</th><th>cured</th><th>left in the vat</th><th>foreign share"
         "</th><th>overcured below overhangs</th></tr></thead><tbody>\n";
     for (const twin::ResinReport& resin : r.resins) {
         if (resin.cured_mm3 <= 0) continue;

@@ -46,8 +46,8 @@ void draw_axis(Canvas& canvas, double top, double bottom, double length, double 
 void draw_heading(Canvas& canvas, const plan::Plan& plan) {
     canvas.text({60, 62}, fmt::format("{} on {}", plan.job, plan.printer), {.size = 34, .colour = ink, .bold = true});
     canvas.text({60, 98},
-                fmt::format("{}, {} (no order needs fewer than {}), {}", counted(plan.layers, "layer"),
-                            counted(plan.swaps, "swap"), plan.swap_lower_bound, plan::clock_text(plan.seconds.total)),
+                fmt::format("{}, {} (minimum {}), {}", counted(plan.layers, "layer"), counted(plan.swaps, "swap"),
+                            plan.swap_lower_bound, plan::clock_text(plan.seconds.total)),
                 {.size = 22, .colour = ink});
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/core/base64.hpp"
+#include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "presentation/print_report/job_picture.hpp"
 #include "presentation/print_report/layer_plot.hpp"
@@ -126,11 +127,11 @@ std::string heading(const Printed& p) {
     const job::Manifest& m = p.archive.manifest();
     return fmt::format(
         "<div class=\"head\"><h1>{}</h1><span class=\"pill {}\">{}</span></div>\n<p class=\"faint\">printed on {}{}{}; "
-        "{} layers, {} x {} px of {:.6g} um</p>\n",
+        "{}, {} x {} px of {:.6g} um</p>\n",
         html_escaped(m.name), good ? "good" : "bad", end_text(p.story.end), html_escaped(p.printer.name),
         p.extras.machine.empty() ? "" : html_escaped(", " + p.extras.machine),
-        p.extras.firmware.empty() ? "" : html_escaped(", " + p.extras.firmware), m.layers.size(), m.width_px,
-        m.height_px, m.pixel_um);
+        p.extras.firmware.empty() ? "" : html_escaped(", " + p.extras.firmware), counted(m.layers.size(), "layer"),
+        m.width_px, m.height_px, m.pixel_um);
 }
 
 std::string tiles(const Printed& p) {
@@ -145,16 +146,16 @@ std::string tiles(const Printed& p) {
     for (const Resin& resin : resin_of(p)) resin_ml += resin.printed_ml;
     const double planned_s = *std::max_element(p.planned_at_s.begin(), p.planned_at_s.end());
     std::string out = "<section class=\"tiles\">\n";
-    out += html_tile(fmt::format("{} of {}", whole, images), "images given all their light");
+    out += html_tile(fmt::format("{} of {}", whole, images), "images fully exposed");
     out += html_tile(plan::clock_text(last_s),
-                     fmt::format("first to last light; planned {}", plan::clock_text(planned_s)));
-    out += html_tile(plan::clock_text(lit_s), "light in all");
+                     fmt::format("first to last exposure; planned {}", plan::clock_text(planned_s)));
+    out += html_tile(plan::clock_text(lit_s), "exposure time");
     out += html_tile(fmt::format("{:.2f} ml", resin_ml), "resin cured, as drawn");
     out += html_tile(fmt::format("{}", p.plan.swaps), "swaps planned");
     out += html_tile(fmt::format("{}", p.story.faults), p.story.faults == 1 ? "fault" : "faults");
     if (p.extras.lines_sent >= 0)
         out += html_tile(fmt::format("{}", p.extras.lines_sent),
-                         fmt::format("lines sent by the last host, {} again", std::max(p.extras.resends, 0L)));
+                         fmt::format("lines sent by the last host, {} resent", std::max(p.extras.resends, 0L)));
     return out + "</section>\n";
 }
 
@@ -177,7 +178,7 @@ std::string materials(const Printed& p) {
     const std::vector<Resin> resin = resin_of(p);
     std::string out =
         "<h2>Materials and resin</h2>\n<div class=\"scroll\"><table><thead><tr><th>material</th><th>resin</th>"
-        "<th>slot</th><th>exposure</th><th>first layers</th><th>cured</th><th>planned</th></tr></thead><tbody>\n";
+        "<th>slot</th><th>exposure</th><th>bottom layers</th><th>cured</th><th>planned</th></tr></thead><tbody>\n";
     for (std::size_t k = 0; k < m.materials.size(); ++k) {
         const job::Material& material = m.materials[k];
         const int vat = p.plan.vat_of_material[k];
@@ -188,11 +189,10 @@ std::string materials(const Printed& p) {
             vat < 0 ? "–" : fmt::format("{}", p.printer.vats[static_cast<std::size_t>(vat)].slot), material.exposure_s,
             material.bottom_exposure_s, resin[k].printed_ml, resin[k].all_ml);
     }
-    return out +
-           fmt::format(
-               "</tbody></table></div>\n<p class=\"faint\">As drawn. The plan counts {:.2f} ml more that cling to "
-               "the part and are washed off, and {:.0f} ml of cleaning solution used up.</p>\n",
-               p.plan.waste_ml, p.plan.solvent_ml);
+    return out + fmt::format(
+                     "</tbody></table></div>\n<p class=\"faint\">As drawn. The plan counts {:.2f} ml more that "
+                     "cling to the part and are wasted, and {:.0f} ml of cleaning solution used up.</p>\n",
+                     p.plan.waste_ml, p.plan.solvent_ml);
 }
 
 // --- plots ---------------------------------------------------------------------------------------------------------

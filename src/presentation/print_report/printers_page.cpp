@@ -171,7 +171,8 @@ std::string bed_table(const std::vector<Printer>& printers) {
     }
     return "<h2>How a swap follows from bed and motors</h2>\n" + text + "</table>\n" +
            fmt::format(
-               "<p class=\"note\">{}: the way of its vats grows with the bed, accelerations and cleaning stay.</p>\n",
+               "<p class=\"note\">{}: the travel of its vats grows with the bed; accelerations and cleaning stay the "
+               "same.</p>\n",
                html_escaped(p->name));
 }
 
@@ -262,7 +263,7 @@ Result<std::string> printers_page(const std::vector<Printer>& printers) {
         "length or a turntable's disc that vats fill.</p>\n";
     page += figures_table(printers);
     page += "<h2>One swap, device by device</h2>\n" + swaps(printers);
-    page += "<h2>How a swap grows with the store</h2>\n" + *plot;
+    page += "<h2>Swap time over the size of the store</h2>\n" + *plot;
     page +=
         "<p class=\"note\">The same machines with a longer tower, a longer row, and a wider turntable whose rim is no "
         "faster than before.</p>\n";

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/core/base64.hpp"
+#include "base/core/counted.hpp"
 #include "presentation/draw/canvas.hpp"
 #include "presentation/report/assets.hpp"
 #include "presentation/report/convergence.hpp"
@@ -61,8 +62,8 @@ std::string heading(const Simulation& s) {
     const Verdict verdict = verdict_of(result);
     std::string out = fmt::format(
         "<div class=\"head\"><h1>{}</h1><span class=\"pill {}\">{}</span></div>\n"
-        "<p class=\"faint\">{} steps by {}, {} nodes, {} {} tets, solved in {}</p>\n",
-        html_escaped(s.robot), verdict.kind, verdict.text, result.steps.size() - 1,
+        "<p class=\"faint\">{} by {}, {} nodes, {} {} tets, solved in {}</p>\n",
+        html_escaped(s.robot), verdict.kind, verdict.text, counted(result.steps.size() - 1, "step"),
         html_escaped(result.solver.empty() ? "the solver" : result.solver), grouped(s.mesh.points.size()),
         grouped(s.mesh.tet_count()), s.mesh.order == 2 ? "quadratic" : "linear", seconds(result.solve_s));
     if (!result.message.empty()) out += "<p class=\"message\">" + html_escaped(result.message) + "</p>\n";
@@ -104,7 +105,7 @@ std::string tiles(const Simulation& s) {
     out += html_tile(fmt::format("{:.3f}", least), "smallest det F");
     const auto steps = static_cast<double>(s.result.steps.size()) - 1;
     if (s.result.solve_s > 0) out += html_tile(fmt::format("{:.3g} /s", steps / s.result.solve_s), "steps solved");
-    out += html_tile(grouped(static_cast<std::size_t>(std::max(0, iterations))), "iterations in all");
+    out += html_tile(grouped(static_cast<std::size_t>(std::max(0, iterations))), "iterations total");
     out += html_tile(fmt::format("{:.0f} MB", s.peak_memory_MB), "peak memory");
     return out + "</section>\n";
 }

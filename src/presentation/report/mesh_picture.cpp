@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "base/core/counted.hpp"
 #include "presentation/draw/canvas.hpp"
 
 namespace pliant::report {
@@ -65,8 +66,10 @@ std::string regions_text(const mesh::MeshReport& report) {
     constexpr std::size_t most = 6;
     std::string text;
     for (std::size_t r = 0; r < std::min(most, report.regions.size()); ++r)
-        text += fmt::format("{}{}: {} tets", r == 0 ? "" : ",  ", report.regions[r].name, report.regions[r].tets);
-    if (report.regions.size() > most) text += fmt::format(" and {} more regions", report.regions.size() - most);
+        text += fmt::format("{}{}: {}", r == 0 ? "" : ",  ", report.regions[r].name,
+                            counted(report.regions[r].tets, "tet"));
+    if (report.regions.size() > most)
+        text += fmt::format(" and {}", counted(report.regions.size() - most, "more region"));
     return text;
 }
 
@@ -79,8 +82,8 @@ Result<std::string> mesh_picture_png(std::string_view title, const mesh::MeshRep
     const std::string jacobian =
         report.order == 2 ? fmt::format(", smallest J {:.3f}", report.worst_jacobian) : std::string();
     canvas.text({70, 118},
-                fmt::format("{} nodes, {} {} tets{}", report.points, report.tets,
-                            report.order == 2 ? "quadratic" : "linear", jacobian),
+                fmt::format("{}, {}{}", counted(report.points, "node"),
+                            counted(report.tets, report.order == 2 ? "quadratic tet" : "linear tet"), jacobian),
                 {24, ink});
     canvas.text({70, 156}, regions_text(report), {24, ink});
     draw_histogram(canvas, {70, 310, half, 600},

@@ -244,7 +244,7 @@ Status Control::pause(PauseWhen when) {
 Status Control::resume() {
     const Snapshot now = snapshot();
     if (now.state != State::paused) return failure("not now: the print is not paused");
-    if (now.door_open.value_or(false)) return failure("not now: the door is open; shut it first");
+    if (now.door_open.value_or(false)) return failure("not now: the door is open; close it first");
     state_->desk.wish([](Wishes& w) { w.resume = true; });
     return {};
 }
@@ -669,14 +669,14 @@ Status Control::State_::new_session(Journal* journal, const JournalFacts& facts,
 /// Before anything moves: the switches as they must be, the door shut.
 Status Control::State_::preflight() const {
     if (Status status = machine->look_at_switches(); !status) return status;
-    return machine->door_open().value_or(false) ? Status(failure("the door is open: shut it")) : Status{};
+    return machine->door_open().value_or(false) ? Status(failure("the door is open: close it")) : Status{};
 }
 
 Status Control::State_::check_journal(const JournalFacts& facts) const {
     const std::string where = job->journal.string();
     if (!facts.begun || facts.ended || facts.cancelled) {
         const char* why = !facts.begun ? "it has not begun" : facts.ended ? "it is complete" : "it was cancelled";
-        return input_error("{}: nothing to go on with: {}; start it without --resume", where, why);
+        return input_error("{}: nothing to resume: {}; start it without --resume", where, why);
     }
     if (facts.digest != job->digest)
         return input_error("{}: this journal is of another job, or the job has changed since", where);

@@ -68,7 +68,7 @@ Result<Ending> PrintRun::print() {
 }
 
 Result<Ending> PrintRun::resume(const Recovery& recovery) {
-    run_.desk.state(State::printing, "going on: homing, bringing the vat");
+    run_.desk.state(State::printing, "resuming: homing, fetching the vat");
     if (Status status = projector_.black(); !status) return tl::unexpected(status.error());
     const auto program = run_.setup.programs.resume(recovery);
     if (!program) return tl::unexpected(program.error());
@@ -313,14 +313,14 @@ Status PrintRun::keep_changes() {
             s.exposures_s.resize(run_.job.materials.size());
             s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         });
-        run_.desk.event("log", fmt::format("from layer {} on {} is lit for {:g} s", change.from_layer + 1,
+        run_.desk.event("log", fmt::format("from layer {} on {} is exposed for {:g} s", change.from_layer + 1,
                                            material_name(change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {
         if (layer <= layer_) continue;
         if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
         facts_.skipped_layers.push_back(layer);
-        run_.desk.event("log", fmt::format("layer {} will get no light", layer + 1));
+        run_.desk.event("log", fmt::format("layer {} will be skipped", layer + 1));
     }
     return {};
 }
@@ -334,7 +334,7 @@ Status PrintRun::hold_for_door() {
     if (Status status = note("door", {{"open", "1"}}); !status) return status;
     run_.desk.event("log", "the door is open");
     Status status =
-        halt("the door is open: shut it, then resume", run_.setup.programs.hold_begin, run_.setup.programs.hold_end);
+        halt("the door is open: close it, then resume", run_.setup.programs.hold_begin, run_.setup.programs.hold_end);
     return status ? note("door", {{"open", "0"}}) : status;
 }
 
@@ -399,7 +399,7 @@ void PrintRun::show_switches() {
 Result<Ending> PrintRun::wait_to_park(Ending ending) {
     if (!door_is_open()) return ending;
     if (ending == Ending::cancelled)
-        run_.desk.state(State::cancelling, "the door is open: shut it, then the machine parks");
+        run_.desk.state(State::cancelling, "the door is open: close it, then the machine parks");
     while (door_is_open()) {
         if (Status status = run_.desk.watch(); !status) return tl::unexpected(status.error());
         if (run_.desk.wishes().suspend) return Ending::left;

@@ -121,7 +121,7 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
         } else {
             return failure(
                 "layer {}, material {}: the light of {:g} s was on when the host ended, and nobody saw how "
-                "long; look at the part and go on with --assume-lit SECONDS (0: not at all, {:g}: all of it)",
+                "long; check the part and resume with --assume-lit SECONDS (0: not at all, {:g}: all of it)",
                 fact.layer, fact.material, fact.planned_s - fact.lit_s, fact.planned_s - fact.lit_s);
         }
         fact.lit_s += open.on_s;

@@ -22,7 +22,7 @@ namespace pliant::operate {
 struct PortOptions {
     std::string device;
     std::string projector;             ///< number of a display, or a folder
-    double speed = 1;                  ///< seconds of the machine in one of the wall: above 1 for virtual printers only
+    double speed = 1;                  ///< speed-up factor of its clock: above 1 for virtual printers only
     std::filesystem::path clock_file;  ///< of a virtual printer; "": the wall's clock
     std::string emergency_line;        ///< as host::parse_emergency_line() reads it; "": the printer file's
 };

@@ -166,7 +166,7 @@ TEST_CASE("the plan as text shows times as h:mm:ss") {
     CHECK(clock_text(3723.4) == "1:02:03");
     CHECK(clock_text(0) == "0:00:00");
     const std::string text = plan_text(planned(plan::test::make_job(repeated({0, 1}, 2), two), plan::test::tower()));
-    CHECK(holds(text, "no order needs fewer than 2"));
+    CHECK(holds(text, "minimum 2"));
     CHECK(holds(text, "slot 2"));
 }
 

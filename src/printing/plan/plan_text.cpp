@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/counted.hpp"
 #include "printing/plan/plan.hpp"
 
 namespace pliant::plan {
@@ -102,7 +103,7 @@ std::string solution_text(const SolutionUse& s) {
     for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)
         text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer),
                             machine::care_text(s.care[i].care));
-    if (s.care.size() > most) text += fmt::format("  and {} times more\n", s.care.size() - most);
+    if (s.care.size() > most) text += fmt::format("  and {} more\n", counted(s.care.size() - most, "time"));
     return text;
 }
 
@@ -116,11 +117,11 @@ std::string orders_text(const Plan& plan) {
     return text;
 }
 
-/// ", 2.4 ml brushed back and 3.6 ml washed off"
+/// ", 2.4 ml brushed back and 3.6 ml wasted"
 std::string waste_text(const VatUse& use) {
     if (use.brushed_ml <= 0)
-        return use.waste_ml > 0 ? fmt::format(", and {:.1f} ml washed off", use.waste_ml) : std::string();
-    return fmt::format(", {:.1f} ml brushed back and {:.1f} ml washed off", use.brushed_ml, use.waste_ml);
+        return use.waste_ml > 0 ? fmt::format(", and {:.1f} ml wasted", use.waste_ml) : std::string();
+    return fmt::format(", {:.1f} ml brushed back and {:.1f} ml wasted", use.brushed_ml, use.waste_ml);
 }
 
 }  // namespace
@@ -159,7 +160,8 @@ std::vector<std::string> vat_lines(const Plan& plan) {
         if (use.refill) line += ", to be filled in: the printer file has another resin there, or none";
         const auto refills = std::count_if(plan.refills.begin(), plan.refills.end(),
                                            [&](const RefillBefore& refill) { return refill.slot == use.slot; });
-        if (refills > 0) line += fmt::format(", refilled {} times on the way", refills);
+        if (refills > 0)
+            line += fmt::format(", refilled {} during the print", counted(static_cast<std::size_t>(refills), "time"));
         lines.push_back(std::move(line));
     }
     return lines;
@@ -173,7 +175,7 @@ std::string clock_text(double seconds) {
 std::string plan_text(const Plan& plan) {
     std::string text = fmt::format("{} on {}\n", plan.job, plan.printer);
     text += fmt::format("  {:<10}{:>10}\n", "layers", plan.layers);
-    text += fmt::format("  {:<10}{:>10}   no order needs fewer than {}\n", "swaps", plan.swaps, plan.swap_lower_bound);
+    text += fmt::format("  {:<10}{:>10}   minimum {}\n", "swaps", plan.swaps, plan.swap_lower_bound);
     text += orders_text(plan);
     const Seconds& s = plan.seconds;
     for (const auto& [name, value] :

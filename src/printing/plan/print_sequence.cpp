@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/core/counted.hpp"
 #include "printing/plan/swap.hpp"
 
 namespace pliant::plan {
@@ -18,8 +19,9 @@ using machine::Printer;
 /// What the machine must know before anything moves.
 void begin(Sequence& s, const Plan& plan) {
     const Printer& p = s.printer();
-    s.comment(fmt::format("{} on {}: {} layers, {} swaps, {}", plan.job, plan.printer, plan.layers, plan.swaps,
-                          clock_text(plan.seconds.total)));
+    s.comment(fmt::format("{} on {}: {}, {}, {}", plan.job, plan.printer,
+                          counted(static_cast<std::size_t>(plan.layers), "layer"),
+                          counted(static_cast<std::size_t>(plan.swaps), "swap"), clock_text(plan.seconds.total)));
     for (const VatUse& use : plan.vats) s.comment(fmt::format("slot {}: {}", use.slot, use.resin));
     if (!p.pump.off.empty()) s.command(machine::write_stop(p.pump.off));
     for (const machine::Switch& fan : p.fans) s.command(machine::write_stop(fan.off));

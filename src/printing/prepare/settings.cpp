@@ -30,7 +30,7 @@ job::Material with_exposure(const std::string& name, const std::string& resin, c
         entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
     }
     warnings.push_back(
-        fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (first layers) are assumed",
+        fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (bottom layers) are assumed",
                     resin, entry.exposure_s, entry.bottom_exposure_s));
     return entry;
 }

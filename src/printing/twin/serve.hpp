@@ -12,7 +12,7 @@
 namespace pliant::twin {
 
 struct ServeOptions {
-    double speed = 1;                     ///< seconds of the machine's clock in one of the wall's; above 0
+    double speed = 1;                     ///< speed-up factor of the machine's clock; above 0
     std::function<bool()> stop;           ///< asked many times a second
     std::function<Status(Twin&)> lights;  ///< called as often: sees what the projector shows; may be empty
     std::function<void(std::string_view bytes, bool from_host)> log;  ///< what goes over the wire; may be empty
