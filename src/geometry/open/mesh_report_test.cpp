@@ -52,15 +52,15 @@ TEST_CASE("a corner of a cube has angles of 90 and acos(1/sqrt 3), and longest e
 
 TEST_CASE("the text names size, regions and quality; an empty mesh has a report too") {
     const std::string text = report_text(report_on(one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})));
-    CHECK(text.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
-    CHECK(text.find("region \"a\": 1 tets, volume 0.166667") != std::string::npos);
+    CHECK(text.find("4 nodes, 1 linear tet, 1 x 1 x 1") == 0);
+    CHECK(text.find("region \"a\": 1 tet, volume 0.166667") != std::string::npos);
     CHECK(report_on({}).tets == 0);
 }
 
 TEST_CASE("a file is described by what it holds, with what was odd about it") {
     const TetMesh inside_out = one_tet({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}});
     const std::string tets = described(vtk_bytes(inside_out, Encoding::text));
-    CHECK(tets.find("4 nodes, 1 linear tets, 1 x 1 x 1") == 0);
+    CHECK(tets.find("4 nodes, 1 linear tet, 1 x 1 x 1") == 0);
     CHECK(tets.find("\n  note: 1 of 1 tets were inside out and were turned") != std::string::npos);
     CHECK(described("v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n").find("surface, 3 points, 1 triangles") == 0);
     const std::string open =

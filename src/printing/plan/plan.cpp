@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/counted.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
 #include "printing/plan/least_cost.hpp"
@@ -142,7 +143,9 @@ void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) 
         below_um = layer.z_um;
     }
     if (gaps == 0) return;
-    plan.warnings.push_back(fmt::format("{} layers lie higher above the one below than their resin cures", gaps));
+    plan.warnings.push_back(
+        fmt::format("{} higher above the one below than the cure depth of the resin",
+                    gaps == 1 ? "1 layer lies" : counted(static_cast<std::size_t>(gaps), "layer") + " lie"));
 }
 
 }  // namespace

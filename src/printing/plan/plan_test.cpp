@@ -117,7 +117,7 @@ TEST_CASE("blank layers and resin that runs out are noticed") {
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
     CHECK(
         holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
-    CHECK(holds(plan.warnings[2], "1 layers lie higher"));
+    CHECK(holds(plan.warnings[2], "1 layer lies higher"));
 }
 
 TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image once behind a fence") {

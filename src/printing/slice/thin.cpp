@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/counted.hpp"
 #include "printing/slice/run_set.hpp"
 
 namespace pliant::slice {
@@ -51,9 +52,9 @@ std::vector<std::string> describe(const std::vector<ThinSpot>& spots, const std:
         const ThinSpot& most = *std::max_element(
             own.begin(), own.end(), [](const ThinSpot& l, const ThinSpot& r) { return l.pixels < r.pixels; });
         lines.push_back(fmt::format(
-            "material \"{}\": features narrower than {:.4g} mm in {} layers from {} to {}; most, {:.4g} mm^2, in layer "
+            "material \"{}\": features narrower than {:.4g} mm in {} from {} to {}; most, {:.4g} mm^2, in layer "
             "{} from row {}, column {} on",
-            materials[m], least_um / 1000, own.size(), own.front().layer, own.back().layer,
+            materials[m], least_um / 1000, counted(own.size(), "layer"), own.front().layer, own.back().layer,
             static_cast<double>(most.pixels) * pixel_mm2, most.layer, most.row, most.column));
     }
     return lines;

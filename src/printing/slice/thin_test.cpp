@@ -30,7 +30,7 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
     CHECK(spots[0].column == 44);
     CHECK(
         describe(spots, {"soft"}, 300, raster).front() ==
-        "material \"soft\": features narrower than 0.3 mm in 1 layers from 0 to 0; most, 0.4 mm^2, in layer 0 from row "
+        "material \"soft\": features narrower than 0.3 mm in 1 layer from 0 to 0; most, 0.4 mm^2, in layer 0 from row "
         "46, column 44 on");
     CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());
     CHECK(thin_in(wall, 50).empty());
