@@ -53,26 +53,6 @@ double tip_error(const Description& with_elements, const Description& with_const
     return norm(u - v) / norm(v);
 }
 
-/// The length that gap elements pull at, M of theory.md: of the gaps along the cable, a mean over their volume. In m.
-double mean_gap_length(const Description& d, const std::vector<Vec3>& positions) {
-    const Model model = made(d);
-    const Elements& elements = model.elements();
-    const Growth& gap = d.growths.at(0);
-    double volume = 0, sum = 0;
-    for (std::size_t t = 0; t < d.mesh.tet_count(); ++t) {
-        if (d.mesh.region[t] != 1) continue;
-        for (int q = 0; q < elements.points_per_tet(); ++q) {
-            Vec3 along;
-            for (int a = 0; a < elements.nodes_per_tet(); ++a)
-                along += dot(elements.shape_gradient(t, q, a), gap.direction) *
-                         positions[static_cast<std::size_t>(elements.node_of(t, a))];
-            volume += elements.point_volume(t, q);
-            sum += elements.point_volume(t, q) * norm(along);
-        }
-    }
-    return gap.length_m * sum / volume;
-}
-
 /// Gap elements of a small box of linear tets in a state that is far from rest.
 struct Case {
     Case() {
@@ -190,26 +170,12 @@ TEST_CASE("elements meet their constraint; the pressure is that of the true one,
     const Step cable = run_to_the_end(finger(2, 0.9, Act::elements)).steps.back();
     const Step true_cable = run_to_the_end(finger(2, 0.9, Act::constraint)).steps.back();
     CHECK(cable.cables[0].length_ratio == near(0.9, {.relative = 1e-6}));
-    // Their own mean length shortens less than the cable does: the next test.
+    // A measured ratio, which docs/theory.md reports.
     CHECK(cable.cables[0].tension_N / true_cable.cables[0].tension_N == near(1.76, {.relative = 0.01}));
     const Step air = run_to_the_end(block(2, 1.25, Act::elements)).steps.back();
     const Step true_air = run_to_the_end(block(2, 1.25, Act::constraint)).steps.back();
     CHECK(air.chambers[0].volume_ratio == near(1.25, {.relative = 1e-9}));
     CHECK(air.chambers[0].pressure_Pa / true_air.chambers[0].pressure_Pa == near(1, {.relative = 0.1}));
-}
-
-TEST_CASE("gap elements take so much more tension than a cable as their mean length changes less than the cable's") {
-    const Description before = finger(2, 0.905, Act::elements), after = finger(2, 0.895, Act::elements);
-    const auto at = [](const Description& d) { return run_to_the_end(d, Solver::automatic, 1e-6).steps.back(); };
-    const std::vector<Vec3> x = at(before).positions, y = at(after).positions;
-    const double cable = comparison::cable_length(before, x) - comparison::cable_length(after, y);
-    const double gaps = mean_gap_length(before, x) - mean_gap_length(after, y);
-    // The same work, tension times shortening, bends the finger.
-    const double tension = at(finger(2, 0.9, Act::elements)).cables[0].tension_N;
-    const double true_tension = at(finger(2, 0.9, Act::constraint)).cables[0].tension_N;
-    MESSAGE("shortening of cable and gaps " << cable << ", " << gaps << ": " << cable / gaps << "; tensions "
-                                            << tension / true_tension);
-    CHECK(tension / true_tension == near(cable / gaps, {.relative = 0.02}));
 }
 
 TEST_CASE("the thesis' iteration leads where Newton's does, with elements of either kind") {
