@@ -364,11 +364,11 @@ void Elements::find_rotations(std::span<const double> before, std::span<const do
 }
 
 void Elements::add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
-                          std::span<double> result) const {
+                           std::span<double> result) const {
     const std::size_t stride = 9 * points() * lanes;
     add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
         batch_rotated(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
-                     forces);
+                      forces);
     });
 }
 
