@@ -75,7 +75,7 @@ struct File {
         return ZipReader::open(path);
     }
     /// What is said of an archive that cannot be opened, or else of its entry "a".
-    [[nodiscard]] std::string refused(const std::string& bytes) const {
+    std::string refused(const std::string& bytes) const {
         const auto zip = open(bytes);
         const auto read = zip ? zip->read("a", 1000) : Result<std::string>(tl::unexpected(zip.error()));
         REQUIRE(!read.has_value());

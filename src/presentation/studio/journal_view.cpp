@@ -50,7 +50,10 @@ std::string text_of(const host::JournalRecord& record) {
         const std::string_view line = std::string_view(value).substr(0, value.find('\n'));
         text += fmt::format("{}{}={}{}", text.empty() ? "" : " ", key, line, line.size() < value.size() ? " …" : "");
     }
-    if (text.size() > longest_text) text = text.substr(0, longest_text) + "…";
+    if (text.size() > longest_text) {
+        text.resize(longest_text);
+        text += "…";
+    }
     return text;
 }
 
