@@ -99,7 +99,7 @@ test('a studio that is gone is said to be gone, in the middle of a print too', a
   await page.getByTestId('lost').waitFor();
   assert.match(await page.getByTestId('lost').textContent(), /lost the studio.*use its own switch/);
   await page.getByTestId('emergency').click();
-  await told(page, /The studio does not answer/);
+  await told(page, /The studio does not respond/);
 });
 
 test('the page carries the licences of what it is made of', async (t) => {
