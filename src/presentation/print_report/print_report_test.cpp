@@ -134,7 +134,7 @@ TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; a
     const auto page = print_report(*archive, printer, survived(), {"virtual printer", "Marlin", 1234, 5, nullptr});
     REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
     for (const std::string text :
-         {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 again", "survived: the light went on in layer 1",
+         {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 resent", "survived: the light went on in layer 1",
           "data:image/png;base64", "<svg", "12 records"})
         CHECK_MESSAGE(page->find(text) != std::string::npos, text);
     CHECK(page->find("<b>two") == std::string::npos);
