@@ -187,7 +187,7 @@ std::vector<Number> numbers_of(const std::string& line) {
 }
 
 bool same_number(const Number& shown, const Number& printed) {
-    for (const char* free : {"steps in ", "residual "}) {
+    for (const char* free : {"step in ", "steps in ", "residual "}) {
         if (shown.before.ends_with(free)) return true;
     }
     constexpr double share = 5e-3, digits = 2.001;
