@@ -3,11 +3,9 @@
 namespace pliant {
 
 std::string shown(const Diagnostic& problem) {
-    std::string line = problem.file;
-    if (problem.line > 0 && !problem.file.empty()) line += fmt::format(":{}", problem.line);
-    if (!line.empty()) line += ": ";
-    if (!problem.key.empty()) line += fmt::format("{}: ", problem.key);
-    return line + problem.text;
+    const std::string line = problem.line > 0 && !problem.file.empty() ? fmt::format(":{}", problem.line) : "";
+    return fmt::format("{}{}{}{}{}{}", problem.file, line, problem.file.empty() ? "" : ": ", problem.key,
+                       problem.key.empty() ? "" : ": ", problem.text);
 }
 
 Error error_of(Cause cause, std::vector<Diagnostic> problems) {

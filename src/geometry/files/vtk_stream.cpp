@@ -93,13 +93,13 @@ Status VtkStream::read_count(std::size_t& count) {
     const std::string word = next_word();
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), count);
     if (code == std::errc() && end == word.data() + word.size()) return {};
-    return error("a count is needed instead of \"" + word.substr(0, 40) + "\"");
+    return error(fmt::format("a count is needed instead of \"{}\"", word.substr(0, 40)));
 }
 
 Result<std::vector<double>> VtkStream::read_numbers(std::size_t count, const std::string& type_name) {
     const NumberType type = number_type(type_name);
     const std::size_t width = type.width;
-    if (width == 0) return error("unknown data type \"" + type_name.substr(0, 40) + "\"");
+    if (width == 0) return error(fmt::format("unknown data type \"{}\"", type_name.substr(0, 40)));
     if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
     if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\n') ++at_;
     const std::size_t left = bytes_.size() - at_;
@@ -120,7 +120,7 @@ Result<std::vector<double>> VtkStream::read_numbers(std::size_t count, const std
         const auto [end, code] = std::from_chars(begin, word.data() + word.size(), value);
         if (word.empty() || code != std::errc() || end != word.data() + word.size()) {
             return error(word.empty() ? "the file ends in the middle of an array"
-                                      : "\"" + word.substr(0, 40) + "\" is not a number");
+                                      : fmt::format("\"{}\" is not a number", word.substr(0, 40)));
         }
         numbers.push_back(value);
     }
