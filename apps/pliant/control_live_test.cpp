@@ -77,7 +77,13 @@ struct Live {
             if (what()) return true;
             ::usleep(1000);
         }
+        tell();
         return false;
+    }
+    /// What the engine was doing instead, and what it had said.
+    void tell() const {
+        MESSAGE("state: ", std::string(host::state_text(control.state())));
+        for (const host::Event& event : control.events_since(0)) MESSAGE(event.kind, ": ", event.text);
     }
     bool reaches(host::State state) const {
         return reaches([&] { return control.snapshot().state == state; });
@@ -89,6 +95,11 @@ struct Live {
 TEST_CASE("an emergency stop from another thread makes dark and reaches the machine") {
     Live live;
     REQUIRE(live.control.connect());
+    REQUIRE(live.reaches(host::State::idle));
+    // A virtual printer objects to light before it is homed and has a vat under its platform.
+    REQUIRE(live.control.home({}));
+    REQUIRE(live.reaches(host::State::idle));
+    REQUIRE(live.control.bring_vat(1));
     REQUIRE(live.reaches(host::State::idle));
     // A light of a third of a second here: on a busy computer this thread may sleep through one.
     for (int tries = 0; tries < 20 && !live.light.lit(); ++tries) {

@@ -81,7 +81,8 @@ public:
     [[nodiscard]] Status clean(double seconds);
     /// Runs the pump over the drain, to fill its lines.
     [[nodiscard]] Status prime(double seconds);
-    /// Light where the machine stands, with no vat asked for: for a look at focus and dimensions.
+    /// Light where the machine stands, homed or not and with no vat asked for: for a look at focus and dimensions. (A
+    /// virtual printer objects to it before it is homed, or without a vat.)
     [[nodiscard]] Status expose_test(job::Image image, double seconds);
     /// Resets the controller by DTR, on purpose; needs a wire that can.
     [[nodiscard]] Status reset_controller();

@@ -45,12 +45,12 @@ struct Firmware {
     [[nodiscard]] bool can(const std::string& capability) const;
 };
 
-/// Stops at the first sign that the machine is not where the stream thinks it is: a restart, an unknown command, an
-/// error that is not about a damaged line. Wire and clock must outlive it.
 /// How long after M410, which stops motion within a millisecond, M112 follows. M112 alone lets a move go on for most of
 /// a second; at the same time as M410 it would be heeded first.
 inline constexpr double m112_after_m410_s = 0.01;
 
+/// Stops at the first sign that the machine is not where the stream thinks it is: a restart, an unknown command, an
+/// error that is not about a damaged line. Wire and clock must outlive it.
 class Link {
 public:
     Link(Wire& wire, Clock& clock, LinkOptions options = {});
