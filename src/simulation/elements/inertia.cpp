@@ -16,9 +16,15 @@ Eigen::VectorXd mass_times(const Elements& elements, const Eigen::VectorXd& u) {
 
 }  // namespace
 
-Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, const History& history, double dt,
+Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, History begin, double dt,
                  const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness)
-    : elements_(&elements), free_index_(&free_index), damping_(damping), stiffness_(std::move(stiffness)) {
+    : elements_(&elements),
+      free_index_(&free_index),
+      start_(std::move(begin)),
+      dt_(dt),
+      damping_(damping),
+      stiffness_(std::move(stiffness)) {
+    const History& history = start_;
     const bool even = history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
     rate_ = even ? 1.5 / dt : 1 / dt;
     from_ = history.x;

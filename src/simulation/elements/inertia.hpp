@@ -20,9 +20,9 @@ struct History {
     double dt_before = 0;  ///< 0: there is no step before the last
 };
 
-/// A symmetric matrix over free nodes. The pattern outlives it: it is the same for all steps.
+/// A symmetric matrix over free nodes. The pattern is the same for all steps.
 struct StiffnessMatrix {
-    const linalg::SymmetricPattern* pattern = nullptr;  ///< block 3
+    std::shared_ptr<const linalg::SymmetricPattern> pattern;  ///< block 3
     std::vector<double> values;
 };
 
@@ -35,7 +35,7 @@ struct StiffnessMatrix {
 class Inertia {
 public:
     /// `stiffness` may be null where there is no damping by stiffness; all must outlive the step.
-    Inertia(const Elements& elements, const std::vector<int>& free_index, const History& history, double dt,
+    Inertia(const Elements& elements, const std::vector<int>& free_index, History history, double dt,
             const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness);
 
     [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
@@ -44,6 +44,9 @@ public:
     /// For a pattern over free nodes (block 3) that holds the elements' cliques.
     void add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
 
+    /// What the step leads from, and how long it is.
+    [[nodiscard]] const History& start() const { return start_; }
+    [[nodiscard]] double dt() const { return dt_; }
     /// Velocity (3n) at the end of the step, if it ends at x.
     [[nodiscard]] Eigen::VectorXd velocity(const Eigen::VectorXd& x) const { return rate_ * (x - from_); }
 
@@ -52,6 +55,8 @@ private:
 
     const Elements* elements_;
     const std::vector<int>* free_index_;
+    History start_;
+    double dt_;
     double rate_ = 0;        ///< c
     Eigen::VectorXd from_;   ///< p
     Eigen::VectorXd coast_;  ///< x~

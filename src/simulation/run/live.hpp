@@ -15,16 +15,11 @@
 #include "base/core/progress.hpp"
 #include "simulation/actuators/actuator.hpp"
 #include "simulation/model/model.hpp"
+#include "simulation/run/live_pull.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/trajectory.hpp"
 
 namespace pliant::sim {
-
-/// A spring between a point of the body and a handle.
-struct Pull {
-    Attachment point;
-    Vec3 handle_m;
-};
 
 /// Where the robot is wanted. `time` (of the program) drives supports, loads, gravity and obstacles.
 struct LiveTarget {

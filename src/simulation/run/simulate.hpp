@@ -1,6 +1,7 @@
 // Runs a program: from rest to the targets, step by step.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -8,15 +9,35 @@
 #include "simulation/elements/inertia.hpp"
 #include "simulation/model/model.hpp"
 #include "simulation/parts/robot_names.hpp"
+#include "simulation/run/run_checks.hpp"
 #include "simulation/run/trajectory.hpp"
 
 namespace pliant::sim {
 
+/// A run between two steps: whatever it needs to go on.
+struct RunState {
+    int step = 0;  ///< the last that was done; 0: none
+    RobotState robot;
+    ChecksState checks;
+    Trajectory so_far;  ///< the rest state and `step` steps
+};
+
+struct RunOptions {
+    /// Called with each step as it comes, the rest state first. May be empty.
+    std::function<void(const Step&)> on_step{};
+    /// Called after every `checkpoint_every` steps; an error ends the run. May be empty.
+    std::function<Status(const RunState&)> on_checkpoint{};
+    int checkpoint_every = 1;
+    /// Goes on from here instead of from rest: a state of a run of the same model and program.
+    std::optional<RunState> begin{};
+};
+
 /// With dynamics, time is in seconds: the robot starts at rest and undeformed, and its mass and damping take part.
 /// A step that does not converge is halved, and halved again, down to 1/64 of a step. A program that cannot finish
 /// keeps the steps that converged and says in Trajectory::message at which step it stopped and why. Warnings tell
-/// whether the last equilibrium is unstable, and since which step (see Stability), and where the robot jumped.
-[[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress);
+/// whether the last equilibrium is unstable, and since which step (see Stability), and where the robot jumped. A run
+/// that goes on from a state gives the same bits, but for the times that it took, as one that was never stopped.
+[[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options = {});
 
 /// Positions of the points of every cable for node positions (n, 3): [cable][point].
 [[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);

@@ -226,8 +226,8 @@ bool is_jump(Moment before, Moment after, const std::function<bool(double time, 
     const auto distance = [](const Moment& a, const Moment& b) { return (b.state.x - a.state.x).norm(); };
     const double whole = distance(before, after);
     for (int k = 0; k < halvings; ++k) {
-        Moment middle{0.5 * (before.time + after.time), before.state};
-        if (!solve(middle.time, middle.state)) return false;
+        Moment middle{0.5 * (before.along + after.along), before.state};
+        if (!solve(middle.along, middle.state)) return false;
         (distance(before, middle) > distance(middle, after) ? after : before) = std::move(middle);
         if (!(distance(before, after) > most_of_it * whole)) return false;
     }

@@ -10,6 +10,7 @@
 #include "simulation/solver/curvature.hpp"
 #include "simulation/solver/equilibrium.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
+#include "simulation/stepper/robot_state.hpp"
 
 namespace pliant::sim {
 
@@ -61,11 +62,6 @@ private:
     int age_ = 0;  ///< of the metric, in looks
 };
 
-/// A state and its time.
-struct Moment {
-    double time = 0;
-    State state;
-};
 /// True if the way between two equilibria has a jump in it: halved again and again, with `solve` for the equilibrium
 /// at a time, from the state that it is given, most of the motion stays in one piece. False also where `solve` fails.
 [[nodiscard]] bool is_jump(Moment before, Moment after, const std::function<bool(double time, State& state)>& solve);

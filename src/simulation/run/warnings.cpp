@@ -37,11 +37,23 @@ std::vector<std::string> warnings_at_rest(const Model& model) {
     return warnings;
 }
 
-std::string closed_gap_text(const std::string& cable, int segment) {
+std::vector<ClosedGap> closed_gaps(const Equilibrium& system, const Eigen::VectorXd& x) {
+    std::vector<ClosedGap> gaps;
+    const auto* contact = system.model().contact(true);
+    if (contact != nullptr && contact->settings().self) return gaps;
+    for (std::size_t c = 0; c < system.cable_count(); ++c) {
+        const int segment =
+            system.actuators()[c].cable().closed_segment({x.data(), static_cast<std::size_t>(x.size())});
+        if (segment >= 0) gaps.push_back({c, segment});
+    }
+    return gaps;
+}
+
+std::string closed_gap_text(const Model& model, const ClosedGap& gap) {
     return fmt::format(
         "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without [contact] its flanks "
         "pass through each other",
-        segment + 1, segment + 2, cable);
+        gap.segment + 1, gap.segment + 2, model.description().cables[gap.cable].name);
 }
 
 void add_warnings(Trajectory& trajectory) {

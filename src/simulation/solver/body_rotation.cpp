@@ -11,28 +11,28 @@ std::span<const double> view(const Eigen::VectorXd& v) {
 
 void BodyRotation::begin(const Eigen::VectorXd& x) {
     before_ = x;
-    rotated_ = false;
+    followed_.reset();
 }
 
 void BodyRotation::follow(const Eigen::VectorXd& x) {
     system_->model().elements().find_rotations(view(before_), view(x), rotations_);
-    rotated_ = true;
+    followed_ = std::make_shared<const Eigen::VectorXd>(x);
 }
 
 void BodyRotation::pull_back_forces(Eigen::MatrixXd& columns) const {
-    if (!rotated_) return;
+    if (!followed_) return;
     laplacian_->solve(columns);
     apply(Elements::Direction::back, columns);
 }
 
 void BodyRotation::push_forward_motions(Eigen::MatrixXd& columns) const {
-    if (!rotated_) return;
+    if (!followed_) return;
     apply(Elements::Direction::on, columns);
     laplacian_->solve(columns);
 }
 
 void BodyRotation::pull_back_step(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
-    if (!rotated_) return;
+    if (!followed_) return;
     Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the price of one
     both << motion, force;
     apply(Elements::Direction::back, both.leftCols(1));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "base/core/aligned_array.hpp"
 #include "simulation/elements/elements.hpp"
@@ -25,6 +26,9 @@ public:
     /// The nodes are at `x` (3n) now. Preconditions: begin() was called; no tet is inside out.
     void follow(const Eigen::VectorXd& x);
 
+    /// The last `x` of follow() since begin(); null: there was none.
+    [[nodiscard]] const std::shared_ptr<const Eigen::VectorXd>& followed() const { return followed_; }
+
     /// Columns (3 free, k): forces of now <- T^T forces, motions of before <- T motions.
     void pull_back_forces(Eigen::MatrixXd& columns) const;
     void push_forward_motions(Eigen::MatrixXd& columns) const;
@@ -39,7 +43,7 @@ private:
     const FactoredLaplacian* laplacian_;
     Eigen::VectorXd before_;          ///< (3n)
     AlignedArray<double> rotations_;  ///< of all points
-    bool rotated_ = false;
+    std::shared_ptr<const Eigen::VectorXd> followed_;
 };
 
 }  // namespace pliant::sim

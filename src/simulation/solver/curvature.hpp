@@ -14,6 +14,7 @@
 #include "simulation/elements/element_kernels.hpp"
 #include "simulation/parts/robot_names.hpp"
 #include "simulation/solver/equilibrium.hpp"
+#include "simulation/solver/solver_memory.hpp"
 
 namespace pliant::sim {
 
@@ -52,6 +53,10 @@ public:
         (void)step;
         (void)change;
     }
+    /// What it takes along into the next step; null: nothing, each step begins anew.
+    [[nodiscard]] virtual std::shared_ptr<const SolverMemory> memory() const { return nullptr; }
+    /// Goes on as if `memory` had just been asked for; null: as if new.
+    virtual void recall(const SolverMemory* memory) { (void)memory; }
     /// After an accepted step, with the error before it and after it: updates what is known of the rate of convergence.
     virtual void update_convergence(double before, double after) {
         (void)before;

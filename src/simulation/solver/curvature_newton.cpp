@@ -16,16 +16,17 @@ namespace {
 
 using Effort = TangentInverse::Effort;
 
-class Newton final : public Curvature {
+class Newton final : public Curvature, private NewtonRates {
 public:
     Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
         : system_(&system),
           laplacian_(&laplacian),
           layout_(laplacian.tangent_layout()),
           analysis_(laplacian.analysis()),
-          two_levels_(!system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work())),
-          inverse_(make_inverse()),
-          rotation_(system, laplacian) {}
+          rotation_(system, laplacian) {
+        two_levels_ = !system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work());
+        inverse_ = make_inverse();
+    }
 
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 100; }
@@ -65,7 +66,43 @@ public:
         return straight_ ? end : laplacian_->rotate(*system_, {.now = x.data(), .end = end.data()});
     }
 
-    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override { learnt_ = {step, change}; }
+    void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override {
+        learnt_ = std::make_shared<const StepPair>(StepPair{step, change});
+    }
+
+    [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const override {
+        auto memory = std::make_shared<SolverMemory>();
+        memory->tangent = tangent_;
+        memory->inverse = inverse_->memory();
+        memory->rates = *this;
+        memory->touching = room_for_;
+        memory->forgets_touching = touching_.empty();
+        memory->pairs = memory_.pairs();
+        memory->learnt = learnt_;
+        memory->followed = rotation_.followed();
+        memory->layout = layout_;
+        memory->analysis = analysis_;
+        return memory;
+    }
+
+    void recall(const SolverMemory* memory) override {
+        SolverMemory none;
+        none.rates.two_levels_ = starts_on_two_levels();
+        const SolverMemory& known = memory != nullptr ? *memory : none;
+        const bool same_pattern = recall_pattern(known);
+        const bool is_at_hand = same_pattern && usable_ && tangent_ == known.tangent && share_ == known.rates.share_ &&
+                                inverse_->memory().in_double == known.inverse.in_double;
+        static_cast<NewtonRates&>(*this) = known.rates;
+        tangent_ = known.tangent;
+        memory_.set_pairs(known.pairs);
+        learnt_ = known.learnt;
+        if (!tangent_) return;
+        rotation_.begin(tangent_->state.x);
+        if (known.followed) rotation_.follow(*known.followed);
+        if (!usable_) return;
+        if (is_at_hand) return inverse_->restore(known.inverse);
+        recall_tangent(known.inverse);
+    }
 
     void update_convergence(double before, double after) override {
         left_by_last_ = after / before;
@@ -133,8 +170,9 @@ private:
 
     /// What the last step taught, as it would have been where the factor was made.
     void remember() {
-        if (learnt_.step.size() == 0) return;
-        Eigen::VectorXd step = std::exchange(learnt_.step, {}), change = std::exchange(learnt_.change, {});
+        if (!learnt_) return;
+        Eigen::VectorXd step = learnt_->step, change = learnt_->change;
+        learnt_.reset();
         rotation_.pull_back_step(step, change);
         memory_.learn(step, change);
     }
@@ -162,9 +200,9 @@ private:
         make_room_for_contact();
         cautious_ = cautious;
         memory_.clear();
-        learnt_ = {};
+        learnt_.reset();
         rotation_.begin(at_.state->x);
-        if (system_->has_skew()) state_ = *at_.state;
+        tangent_ = std::make_shared<const SolverMemory::Tangent>(*at_.state, *at_.controls);
         positions_ = system_->free_positions(at_.state->x);
         assemble(false, values_);
         share_ = 0;
@@ -179,10 +217,8 @@ private:
     [[nodiscard]] bool project(double share) {
         if (share_ == 0) assemble(true, projected_);
         for (; share <= 1; share *= 2) {
-            blended_.resize(values_.size());
-            for (std::size_t k = 0; k < values_.size(); ++k)
-                blended_[k] = values_[k] + share * (projected_[k] - values_[k]);
             share_ = share_wanted_ = share;
+            blend();
             if ((usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all)))
                 return true;
         }
@@ -201,8 +237,8 @@ private:
         };
         const auto multiply = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
             const Eigen::VectorXd w = precondition(v);
-            if (share_ == 0 || cautious_) return v + system_->apply_skew(state_, w);
-            Eigen::VectorXd product = system_->apply_skew(state_, w);
+            if (share_ == 0 || cautious_) return v + system_->apply_skew(tangent_->state, w);
+            Eigen::VectorXd product = system_->apply_skew(tangent_->state, w);
             linalg::add_product(layout_->pattern, values_.span(), {w.data(), static_cast<std::size_t>(w.size())}, 1,
                                 {product.data(), static_cast<std::size_t>(product.size())});
             return product;
@@ -219,6 +255,7 @@ private:
             grown = true;
         }
         if (!grown) return;
+        room_for_ = std::make_shared<const SolverMemory::Cliques>(touching_);
         layout_ = std::make_shared<const TangentLayout>(system_->lay_out_tangent(touching_));
         analysis_ = nullptr;
         inverse_ = make_inverse();
@@ -237,16 +274,53 @@ private:
         return true;
     }
 
+    /// Where it was taken.
     void assemble(bool project, AlignedArray<double>& values) const {
         values.resize(layout_->pattern.entries());
         parallel_clear(values.span());
-        system_->add_tangent(*at_.state, *at_.controls, *layout_, values.span(), project);
+        system_->add_tangent(tangent_->state, tangent_->controls, *layout_, values.span(), project);
     }
 
-    static constexpr double smallest_share_of_projection = 1.0 / 16;
+    [[nodiscard]] bool starts_on_two_levels() const {
+        return !system_->has_skew() &&
+               two_levels_are_quicker(laplacian_->tangent_layout()->pattern, laplacian_->work());
+    }
+
+    /// False if the inverse was made anew for it.
+    [[nodiscard]] bool recall_pattern(const SolverMemory& known) {
+        room_for_ = known.touching;
+        touching_ = known.forgets_touching || !room_for_ ? SolverMemory::Cliques{} : *room_for_;
+        auto layout = !room_for_     ? laplacian_->tangent_layout()
+                      : known.layout ? known.layout
+                                     : std::make_shared<const TangentLayout>(system_->lay_out_tangent(*room_for_));
+        if (layout == layout_ && known.rates.two_levels_ == two_levels_) return true;
+        layout_ = std::move(layout);
+        analysis_ = room_for_ ? known.analysis : laplacian_->analysis();
+        two_levels_ = known.rates.two_levels_;
+        inverse_ = make_inverse();
+        return false;
+    }
+
+    void recall_tangent(const TangentInverse::Memory& memory) {
+        positions_ = system_->free_positions(tangent_->state.x);
+        assemble(false, values_);
+        if (share_ > 0) {
+            assemble(true, projected_);
+            blend();
+        }
+        inverse_->recall(share_ > 0 ? blended_.span() : values_.span(), positions_, memory);
+    }
+
+    /// The tangent with its share of the projection.
+    void blend() {
+        blended_.resize(values_.size());
+        for (std::size_t k = 0; k < values_.size(); ++k)
+            blended_[k] = values_[k] + share_ * (projected_[k] - values_[k]);
+    }
+
     static constexpr double smallest_reused_share = 0.2;
     static constexpr std::size_t most_steps = 8;
-    static constexpr double hoped_left = 0.05, memory_of_first = 0.85;
+    static constexpr double memory_of_first = 0.85;
     static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
     static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
@@ -259,39 +333,23 @@ private:
     const FactoredLaplacian* laplacian_;
     std::shared_ptr<const TangentLayout> layout_;
     std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, once it was needed
-    bool two_levels_;                                   ///< as long as they are quick enough
     std::unique_ptr<TangentInverse> inverse_;
     AlignedArray<double> values_;     ///< tangent
     AlignedArray<double> projected_;  ///< its positive projection, where it was needed
     AlignedArray<double> blended_;
-    double share_ = 0;                                    ///< of the projection in H
-    bool cautious_ = false;                               ///< all of it was asked for
-    double share_wanted_ = smallest_share_of_projection;  ///< when it was needed last
     struct {
         const State* state;
         const Controls* controls;
-    } at_{};                         ///< what is at hand, until it is solved with
-    double enough_ = 0;              ///< error of the next solution
-    bool straight_ = false;          ///< the next step need not turn
-    Eigen::VectorXd positions_;      ///< of the free nodes, where the tangent was made
-    BodyRotation rotation_;          ///< since the factor was made
-    StepMemory memory_{most_steps};  ///< of the steps since then, as the body was then
-    struct {
-        Eigen::VectorXd step, change;
-    } learnt_;             ///< not yet in the memory
-    bool usable_ = false;  ///< the inverse solves
-    bool hasty_ = false;   ///< in this step of the program an old inverse has led astray
-    bool reused_ = false;  ///< the present direction is not from the tangent at hand
-    // Of the error, what a step with an inverse from an earlier state leaves.
-    double left_ = hoped_left;           ///< by the next one, as far as is known
-    double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
-    double left_by_last_ = 1;            ///< by the last one, with whatever inverse
-    double left_by_new_ = 0;             ///< by the last one of its own state; 0 before and far from equilibrium
-    int uses_ = 0;                       ///< of the inverse since that step
-    int age_ = 0;                        ///< of the inverse, in steps of the program
-    bool tried_later_ = false;           ///< in a later one than its own
-    std::vector<std::vector<int>> touching_;  ///< pairs in contact that the pattern has room for
-    State state_;                             ///< where the tangent was made; kept only where its skew part is needed
+    } at_{};                                  ///< what is at hand, until it is solved with
+    double enough_ = 0;                       ///< error of the next solution
+    bool straight_ = false;                   ///< the next step need not turn
+    Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
+    BodyRotation rotation_;                   ///< since the factor was made
+    StepMemory memory_{most_steps};           ///< of the steps since then, as the body was then
+    std::shared_ptr<const StepPair> learnt_;  ///< not yet in the memory
+    SolverMemory::Cliques touching_;          ///< pairs in contact for which the next pattern must have room
+    std::shared_ptr<const SolverMemory::Cliques> room_for_;  ///< that the pattern at hand has room for
+    std::shared_ptr<const SolverMemory::Tangent> tangent_;   ///< where it was made
 };
 
 }  // namespace

@@ -182,7 +182,6 @@ Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
 Controls Equilibrium::controls(double time) const {
     Controls controls;
     controls.time = time;
-    controls.met = met_;
     controls.external_N = external_at(time);
     controls.shares.resize(actuators_.size());
     controls.obstacles = obstacles_at(time);

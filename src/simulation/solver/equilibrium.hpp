@@ -122,8 +122,6 @@ public:
     /// its surfaces come so near each other that it is. `now`: the controls of `state`.
     [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,
                                     const Controls& then) const;
-    /// From now on controls() say that the robot has met itself, or has not.
-    void set_met(bool met) { met_ = met; }
     /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
     /// looked for.
     [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
@@ -189,7 +187,6 @@ private:
     Eigen::VectorXd gravity_;        ///< (3n) at full share
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
     bool conservative_ = true;
-    bool met_ = false;        ///< the robot has met itself
     double force_floor_ = 0;  ///< forces below this are rounding, not load
     double energy_rounding_ = 0;
     double force_rounding_ = 0;  ///< out of balance by no more than this is in balance

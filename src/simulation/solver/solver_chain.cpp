@@ -34,6 +34,14 @@ void SolverChain::restart() {
     at(0).restart();
 }
 
+std::shared_ptr<const SolverMemory> SolverChain::memory() const {
+    return made_.front() ? made_.front()->memory() : nullptr;
+}
+
+void SolverChain::recall(const SolverMemory* memory) {
+    if (memory != nullptr || made_.front()) at(0).recall(memory);
+}
+
 StepSettings SolverChain::settings_of(std::size_t link, const StepSettings& asked, int spent) const {
     StepSettings settings = asked;
     if (links_.size() == 1) return settings;

@@ -25,6 +25,10 @@ public:
     [[nodiscard]] Solver first() const { return links_.front().solver; }
     /// Called at the start of each step of the program.
     void restart();
+    /// What the first solver takes along into the next step, and back again: see Curvature. The others begin anew
+    /// wherever they are needed.
+    [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const;
+    void recall(const SolverMemory* memory);
     /// As solve_step. A stand-in begins where the one before it came nearest, and may cost about as much as that one
     /// did. With `settings.patience` 0 the patience of a chain of several is its own. `iterations` and `history` are of
     /// all that took part, `solver` and `evaluation` of the last.

@@ -25,6 +25,20 @@ public:
     /// `error` is smaller. Indefinite, slow: they hold how far it got, which still is a direction in which the energy
     /// falls.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
+    /// What it knows beside the factor: with it a matrix that was taken before gives the same solutions again.
+    struct Memory {
+        bool in_double = false;
+        bool untried = false;
+        double known_error = 0;
+        int trusted = 0;
+        int refusals = 0;
+        bool operator==(const Memory&) const = default;
+    };
+    [[nodiscard]] virtual Memory memory() const = 0;
+    /// Puts that back; the factor at hand must be the one that it belongs to.
+    virtual void restore(const Memory& memory) = 0;
+    /// As set(), with a matrix that was taken before and the memory from after that.
+    virtual void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) = 0;
     /// What it costs to take a matrix and solve with it, in steps with one that is at hand.
     [[nodiscard]] virtual double factorisation_cost() const = 0;
 };

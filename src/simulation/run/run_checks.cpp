@@ -1,0 +1,174 @@
+#include "simulation/run/run_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "simulation/run/warnings.hpp"
+#include "simulation/solver/pressure_limit.hpp"
+#include "simulation/stepper/prediction.hpp"
+
+namespace pliant::sim {
+namespace {
+
+constexpr double sudden = 5;         // times as far as in the step before
+constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
+constexpr double long_first = 0.03;  // likewise: no step before tells whether the first one is sudden
+constexpr int most_pushes = 5;
+constexpr double extremely_soft = 100;  // a shape parameter
+
+}  // namespace
+
+RunChecks::RunChecks(Stepper& stepper, const Program& program, const RobotState& rest)
+    : stepper_(stepper),
+      system_(stepper.system()),
+      program_(program),
+      stability_(stepper.system(), stepper.laplacian()) {
+    state_.reported = rest.now;
+    Box3 box;
+    for (const Vec3& p : stepper.model().mesh().points) box.add(p);
+    size_ = box.diagonal();
+}
+
+void RunChecks::after_step(RobotState& robot, Step& step, StepReport& report, std::vector<std::string>& warnings,
+                           const Progress& progress) {
+    if (program_.dynamics) return;
+    if (jumped(robot, progress)) {
+        if (step.index > 1) state_.before_jump.push_back(static_cast<std::size_t>(step.index) - 1);
+        warnings.push_back(
+            fmt::format("at step {} the robot jumps: between two states near each other there is no equilibrium that "
+                        "leads from one to the other; what it does in between takes time, and the state after it may "
+                        "be another one in reality",
+                        step.index));
+    }
+    if (program_.imperfection_m > 0) {
+        const auto motion = stability_.falling_motion(robot.now.state, robot.controls);
+        if (motion && leave(robot, *motion, report, progress))
+            warnings.push_back(
+                fmt::format("at step {} the equilibrium is unstable; a push of {:.3g} mm along its softest motion led "
+                            "to a stable one",
+                            step.index, 1e3 * program_.imperfection_m));
+    }
+    state_.reported = robot.now;
+}
+
+/// A step that is much quicker than the one before it, or a long first one, is looked at closely.
+bool RunChecks::jumped(const RobotState& robot, const Progress& progress) {
+    const double way = (robot.x() - state_.reported.state.x).norm();
+    const double before = std::exchange(state_.last_way, way);
+    if (!stability_.is_applicable() || system_.has_cable_friction() || system_.has_friction()) return false;
+    const double reach = std::sqrt(static_cast<double>(robot.x().size() / 3)) * size_;
+    const bool first = !(before > 0);
+    if (first ? !program_.checks || way < long_first * reach : way < sudden * before || way < noticeable * reach)
+        return false;
+    return is_jump(state_.reported, robot.now, [&](double time, State& state) {
+        return stepper_.find(stepper_.controls(robot, time), state, progress);
+    });
+}
+
+/// Pushes the state along `motion`, harder until it does not come back; false if no push leads to a stable one.
+bool RunChecks::leave(RobotState& robot, const Eigen::VectorXd& motion, StepReport& report, const Progress& progress) {
+    double push = program_.imperfection_m;
+    for (int k = 0; k < most_pushes && !progress.cancelled(); ++k, push *= 4) {
+        State pushed = robot.now.state;
+        system_.add_free(motion, push, pushed.x);
+        if (!system_.evaluate(pushed, robot.controls).possible() || !passes(system_, robot, pushed, robot.controls))
+            return false;
+        RobotState beside = robot;
+        const StepReport settled = stepper_.settle_beside(beside, std::move(pushed), progress);
+        robot.memory = beside.memory;  // the next push is the quicker for it
+        report.iterations += settled.iterations;
+        report.history.insert(report.history.end(), settled.history.begin(), settled.history.end());
+        if (!settled.arrived || stability_.falling_motion(beside.now.state, beside.controls)) continue;
+        robot = std::move(beside);
+        return true;
+    }
+    return false;
+}
+
+void RunChecks::warn_of_closed_gaps(const RobotState& robot, int step, std::vector<std::string>& warnings) {
+    for (const ClosedGap& gap : closed_gaps(system_, robot.x())) {
+        if (!state_.warned.insert(gap.cable).second) continue;
+        warnings.push_back(fmt::format("from step {} on, {}", step, closed_gap_text(system_.model(), gap)));
+    }
+}
+
+void RunChecks::look_for_crossings(const RobotState& robot, std::vector<Step>& steps, bool last) const {
+    constexpr int interval = 32;
+    const auto look = [&](Step& step) {
+        step.crossing_m = system_.crossing(state_of(step), stepper_.controls(robot, step.time));
+        return step.crossing_m.has_value();
+    };
+    const std::size_t end = steps.size() - 1;
+    const bool crossed = end > 0 && steps[end - 1].crossing_m;
+    if (!program_.checks || (!last && !crossed && end % interval != 0)) return;
+    for (std::size_t k = end; k > 0 && look(steps[k]) && !steps[k - 1].crossing_m;) --k;
+}
+
+void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
+    if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
+    std::vector<std::size_t> suspects = state_.before_jump;
+    suspects.push_back(result.steps.size() - 1);
+    for (const std::size_t suspect : suspects) {
+        if (!is_unstable(robot, result.steps[suspect])) continue;
+        std::size_t stable = 0, unstable = suspect;
+        while (unstable - stable > 1) {
+            const std::size_t middle = (stable + unstable) / 2;
+            (is_unstable(robot, result.steps[middle]) ? unstable : stable) = middle;
+        }
+        const bool jumps = suspect + 1 < result.steps.size();
+        result.warnings.push_back(
+            fmt::format("from step {} on the equilibrium is unstable{}: a real robot buckles to one side where this "
+                        "one stays in balance; program.imperfection follows the stable way",
+                        unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : ""));
+        return;
+    }
+}
+
+/// What a step has told of its state, without multipliers.
+State RunChecks::state_of(const Step& step) const {
+    State state = system_.rest();
+    for (std::size_t n = 0; n < step.positions.size(); ++n) {
+        const Vec3& p = step.positions[n];
+        state.x.segment<3>(3 * static_cast<Eigen::Index>(n)) << p.x, p.y, p.z;
+    }
+    return state;
+}
+
+bool RunChecks::is_unstable(const RobotState& robot, const Step& step) {
+    State state = state_of(step);
+    Eigen::Index a = 0;
+    for (const CableState& cable : step.cables) state.multiplier[a++] = cable.tension_N;
+    for (const ChamberState& chamber : step.chambers) state.multiplier[a++] = -chamber.pressure_Pa;
+    const Controls controls = stepper_.controls(robot, step.time);
+    state.multiplier = system_.evaluate(state, controls).multiplier;
+    return stability_.falling_motion(state, controls).has_value();
+}
+
+std::string advice(Stepper& stepper, const Program& program, const RobotState& robot, double time,
+                   const Progress& progress) {
+    if (progress.cancelled()) return {};
+    const Description& d = stepper.model().description();
+    for (const Material& material : d.materials) {
+        const auto* blend = std::get_if<material::ShapeBlend>(&material.law);
+        if (blend != nullptr && blend->a * extremely_soft < 1 - 1e-9)
+            return fmt::format(
+                ". Material \"{}\" has a shape parameter of {:.4g}, of which hardly anything but the volume is kept: "
+                "with {:g} or less a solution is far easier to find",
+                material.name, 1 / blend->a, extremely_soft);
+    }
+    if (program.dynamics || !d.growths.empty()) return {};
+    const auto limit =
+        find_pressure_limit(stepper.system(), stepper.solvers(), robot.controls, stepper.controls(robot, time),
+                            {program.tolerance, program.iteration_limit}, robot.now.state, progress);
+    if (!limit) return {};
+    return fmt::format(
+        ". No equilibrium was found above {:.4g} kPa in chamber \"{}\": its pressure has a maximum of {:.4g} kPa at "
+        "volume ratio {:.3g}, and with more air in it the pressure falls. Drive it by volume_ratio to pass this limit",
+        1e-3 * limit->reached_Pa, d.chambers[limit->chamber].name, 1e-3 * limit->largest_Pa, limit->volume_ratio);
+}
+
+}  // namespace pliant::sim

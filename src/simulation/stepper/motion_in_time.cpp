@@ -1,0 +1,48 @@
+#include "simulation/stepper/motion_in_time.hpp"
+
+#include <span>
+
+#include "base/linalg/sparse.hpp"
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+
+History MotionInTime::at_rest(const Eigen::VectorXd& x) {
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(x.size());
+    return {x, still, x, still, 0};
+}
+
+std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, double dt) {
+    std::shared_ptr<StiffnessMatrix> stiffness;
+    if (damping_.stiffness_s > 0) {
+        if (!body_layout_) body_layout_ = make_body_layout();
+        stiffness = std::make_shared<StiffnessMatrix>();
+        stiffness->pattern = {body_layout_, &body_layout_->pattern};
+        stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
+        const std::span<const double> x(history.x.data(), static_cast<std::size_t>(history.x.size()));
+        model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true);
+    }
+    return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history, dt, damping_,
+                                           std::move(stiffness));
+}
+
+History MotionInTime::after(const Inertia& inertia, const Eigen::VectorXd& x) {
+    return {x, inertia.velocity(x), inertia.start().x, inertia.start().v, inertia.dt()};
+}
+
+double MotionInTime::kinetic_energy_J(const History& history) const {
+    Eigen::VectorXd momentum = Eigen::VectorXd::Zero(history.v.size());
+    model_.elements().apply_mass({history.v.data(), static_cast<std::size_t>(history.v.size())},
+                                 {momentum.data(), static_cast<std::size_t>(momentum.size())});
+    return 0.5 * history.v.dot(momentum);
+}
+
+/// Of the elements alone: what damping by stiffness couples.
+std::shared_ptr<const TangentLayout> MotionInTime::make_body_layout() const {
+    const auto& index = model_.free_index();
+    TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};
+    layout.element_sums = model_.elements().block_sums(index, layout.pattern);
+    return std::make_shared<const TangentLayout>(std::move(layout));
+}
+
+}  // namespace pliant::sim

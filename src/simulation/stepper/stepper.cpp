@@ -1,0 +1,205 @@
+#include "simulation/stepper/stepper.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "simulation/elements/elements.hpp"
+#include "simulation/solver/friction_rounds.hpp"
+#include "simulation/stepper/prediction.hpp"
+
+namespace pliant::sim {
+namespace {
+
+constexpr double rounding = 1e-7;  // of the shortest piece
+constexpr int friction_rounds = 30;
+constexpr int most_in_vain = 3000;  // iterations, as quasi-newton may take for one attempt
+
+void note(const std::vector<IterationRecord>& history, double along, StepReport& report) {
+    for (IterationRecord record : history) {
+        record.time = along;
+        report.history.push_back(record);
+    }
+}
+
+/// Laws without an energy promise no descent, however short the step is: where as many iterations as one attempt may
+/// take have led nowhere, more of them do not either.
+bool is_hopeless(const Model& model, const StepperOptions& options, int in_vain) {
+    return !model.elements().has_energy() && in_vain >= std::max(most_in_vain, options.iteration_limit);
+}
+
+}  // namespace
+
+/// One piece of a way.
+struct Stepper::Target {
+    double along;
+    Controls controls;
+    bool onward;
+};
+
+Stepper::Stepper(const Model& model, const StepperOptions& options)
+    : model_(model),
+      options_(options),
+      system_(model),
+      laplacian_(system_),
+      solvers_(make_chain(options.solver, system_, laplacian_)) {
+    if (options.dynamics) motion_.emplace(model, options.dynamics->damping);
+}
+
+Stepper::~Stepper() = default;
+
+RobotState Stepper::rest() const {
+    RobotState robot;
+    robot.now = {0, system_.rest()};
+    robot.controls = system_.controls(0);
+    robot.drives = robot.controls.drives;
+    robot.evaluation = system_.evaluate(robot.now.state, robot.controls);
+    if (motion_) robot.history = MotionInTime::at_rest(robot.x());
+    return robot;
+}
+
+Controls Stepper::controls(const RobotState& robot, double time) const {
+    Controls controls = system_.controls(time);
+    controls.met = robot.controls.met;
+    return controls;
+}
+
+StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& progress) {
+    recall(robot);
+    StepReport report;
+    double piece = way.end - robot.now.along;
+    int in_vain = 0;  // iterations of the attempts since the last that arrived
+    while (robot.now.along < way.end) {
+        const double along = robot.now.along + piece;
+        const double end = along >= way.end - rounding * way.shortest_piece ? way.end : along;
+        const StepOutcome outcome = go(robot, {end, way.at(end), way.onward}, report, progress);
+        if (outcome.converged) {
+            in_vain = 0;
+            continue;
+        }
+        report.reason = outcome.reason;
+        piece *= 0.5;
+        in_vain += outcome.iterations;
+        if (progress.cancelled() || piece < way.shortest_piece || is_hopeless(model_, options_, in_vain)) break;
+    }
+    report.arrived = !(robot.now.along < way.end);
+    remember(robot);
+    return report;
+}
+
+StepReport Stepper::leap(RobotState& robot, const Way& way, const Progress& progress) {
+    recall(robot);
+    StepReport report;
+    const StepOutcome outcome = go(robot, {way.end, way.at(way.end), way.onward}, report, progress);
+    report.arrived = outcome.converged;
+    if (!outcome.converged) report.reason = outcome.reason;
+    remember(robot);
+    return report;
+}
+
+/// In one go; on the way the robot may meet itself, and is then solved again with contact.
+StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress) {
+    StepOutcome outcome;
+    int iterations = 0;
+    for (;;) {
+        Controls controls = target.controls;
+        controls.met = robot.controls.met;
+        State next;
+        outcome = attempt(robot, target, controls, next, progress);
+        iterations += outcome.iterations;
+        note(outcome.history, target.along, report);
+        if (outcome.converged && system_.meets_itself(robot.now.state, robot.controls, next, controls)) {
+            robot.controls.met = true;
+            continue;
+        }
+        outcome.iterations = iterations;
+        report.iterations += iterations;
+        if (!outcome.converged) return outcome;
+        report.solver = outcome.solver;
+        ++report.pieces;
+        if (outcome.loose) {
+            report.loose = true;
+            report.reason = outcome.reason;
+        }
+        accept(robot, target, std::move(controls), std::move(next), outcome);
+        return outcome;
+    }
+}
+
+StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
+                             const Progress& progress) {
+    if (motion_) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along);
+    const std::optional<double> along = target.onward ? std::optional(target.along) : std::nullopt;
+    Prediction start = predict(system_, laplacian_, robot, controls, along, progress);
+    if (!start.reason.empty()) {
+        StepOutcome outcome;
+        outcome.reason = std::move(start.reason);
+        return outcome;
+    }
+    next = std::move(start.state);
+    solvers_.restart();
+    return settle(robot, controls, next, progress, std::move(start.evaluation));
+}
+
+/// `known`: of `next`, as long as there is no friction.
+StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
+                            std::optional<Evaluation> known) {
+    return settle_friction(system_, solvers_, {options_.tolerance, options_.iteration_limit}, friction_rounds,
+                           {from.now.state, from.controls, from.drives}, controls, next, progress, std::move(known));
+}
+
+void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome) {
+    if (motion_) robot.history = MotionInTime::after(*controls.inertia, next.x);
+    robot.past.push_back({robot.now.along, std::make_shared<const State>(std::move(robot.now.state))});
+    if (robot.past.size() > options_.most_past) robot.past.pop_front();
+    robot.now = {target.along, std::move(next)};
+    robot.drives = target.controls.drives;
+    robot.controls = std::move(controls);
+    robot.evaluation = std::move(outcome.evaluation);
+}
+
+StepReport Stepper::settle_beside(RobotState& robot, State guess, const Progress& progress) {
+    recall(robot);
+    StepReport report;
+    Controls controls = robot.controls;
+    controls.drives = robot.drives;
+    solvers_.restart();
+    StepOutcome outcome = settle(robot, controls, guess, progress, std::nullopt);
+    report.arrived = outcome.converged;
+    report.loose = outcome.loose;
+    report.reason = outcome.reason;
+    report.iterations = outcome.iterations;
+    report.solver = outcome.solver;
+    note(outcome.history, robot.now.along, report);
+    if (outcome.converged) {
+        robot.now.state = std::move(guess);
+        robot.controls = std::move(controls);
+        robot.evaluation = std::move(outcome.evaluation);
+        robot.past.clear();  // they lead along the way that was left
+    }
+    remember(robot);
+    return report;
+}
+
+bool Stepper::find(const Controls& controls, State& state, const Progress& progress) {
+    live_.reset();  // the solvers no longer remember what any state does
+    state = follow_supports(system_, laplacian_, state, controls);
+    if (!system_.evaluate(state, controls).possible()) return false;
+    solvers_.restart();
+    return solvers_.solve(system_, controls, {options_.tolerance, options_.iteration_limit}, state, progress).converged;
+}
+
+double Stepper::kinetic_energy_J(const RobotState& robot) const {
+    return motion_ ? motion_->kinetic_energy_J(robot.history) : 0;
+}
+
+/// The solvers remember what they did when this state came about.
+void Stepper::recall(const RobotState& robot) {
+    if (robot.memory && robot.memory == live_) return;
+    solvers_.recall(robot.memory.get());
+}
+
+void Stepper::remember(RobotState& robot) {
+    robot.memory = live_ = solvers_.memory();
+}
+
+}  // namespace pliant::sim

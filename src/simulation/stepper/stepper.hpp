@@ -1,0 +1,98 @@
+// Takes a robot from one state to the next: the one engine under programs, live robots and the library.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/core/progress.hpp"
+#include "simulation/parts/robot_names.hpp"
+#include "simulation/solver/curvature.hpp"
+#include "simulation/solver/solver_chain.hpp"
+#include "simulation/stepper/motion_in_time.hpp"
+#include "simulation/stepper/robot_state.hpp"
+
+namespace pliant::sim {
+
+struct StepperOptions {
+    Solver solver = Solver::automatic;
+    double tolerance = 1e-4;
+    int iteration_limit = 0;                          ///< for one piece of a step; 0: the solver's own
+    std::optional<Dynamics> dynamics = std::nullopt;  ///< none: at rest at every instant
+    std::size_t most_past = RotatingStep::most_past;  ///< states that a prediction may look back on
+};
+
+/// Where a step leads, and on which way: what is wanted at each place on it.
+struct Way {
+    double end = 0;  ///< how far the step goes; Moment::along says where it begins
+    std::function<Controls(double along)> at;
+    double shortest_piece = 0;  ///< shorter ones are not tried
+    bool onward = true;         ///< it goes on as the last steps did, so that they tell where it leads
+};
+
+/// What a step did.
+struct StepReport {
+    bool arrived = false;
+    bool loose = false;  ///< a piece of it was accepted on looser terms than the tolerance: friction_rounds.hpp
+    std::string reason;  ///< why it did not arrive, or on which terms
+    int iterations = 0;
+    int pieces = 0;                        ///< that were accepted
+    Solver solver = Solver::automatic;     ///< that finished the last of them
+    std::vector<IterationRecord> history;  ///< `step` is not filled in
+};
+
+/// Not for two threads at once. The same state and the same way give the same bits, whatever was asked before.
+class Stepper {
+public:
+    /// `model` must outlive it.
+    Stepper(const Model& model, const StepperOptions& options);
+    Stepper(const Stepper&) = delete;
+    Stepper& operator=(const Stepper&) = delete;
+    ~Stepper();
+
+    /// Undeformed and, with dynamics, still; at the start of the model's program.
+    [[nodiscard]] RobotState rest() const;
+    /// What the program wants at `time` of a robot in this state.
+    [[nodiscard]] Controls controls(const RobotState& robot, double time) const;
+
+    /// Goes to the end of the way, halving what does not converge. Where it does not arrive `robot` is as far as it
+    /// got. With dynamics `along` is time in seconds.
+    [[nodiscard]] StepReport step(RobotState& robot, const Way& way, const Progress& progress);
+    /// In one piece; `robot` keeps its positions where that does not converge.
+    [[nodiscard]] StepReport leap(RobotState& robot, const Way& way, const Progress& progress);
+    /// To equilibrium from `guess`, with `robot` standing still otherwise: on another branch of equilibria than that
+    /// of the last steps, which are forgotten. Without convergence `robot` is as before.
+    [[nodiscard]] StepReport settle_beside(RobotState& robot, State guess, const Progress& progress);
+    /// An equilibrium at `controls` from `state`, as a trial. False: none was found, and `state` is of no use.
+    [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
+
+    [[nodiscard]] double kinetic_energy_J(const RobotState& robot) const;
+    [[nodiscard]] const Model& model() const { return model_; }
+    [[nodiscard]] const Equilibrium& system() const { return system_; }
+    [[nodiscard]] const FactoredLaplacian& laplacian() const { return laplacian_; }
+    [[nodiscard]] const StepperOptions& options() const { return options_; }
+    [[nodiscard]] SolverChain& solvers() { return solvers_; }
+
+private:
+    struct Target;
+    [[nodiscard]] StepOutcome go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress);
+    [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
+                                      const Progress& progress);
+    [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
+                                     std::optional<Evaluation> known);
+    void accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome);
+    void recall(const RobotState& robot);
+    void remember(RobotState& robot);
+
+    const Model& model_;
+    const StepperOptions options_;
+    Equilibrium system_;
+    FactoredLaplacian laplacian_;
+    SolverChain solvers_;
+    std::optional<MotionInTime> motion_;
+    std::shared_ptr<const SolverMemory> live_;  ///< what the solvers remember; null: nothing that a state has
+};
+
+}  // namespace pliant::sim
