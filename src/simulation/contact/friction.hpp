@@ -48,6 +48,9 @@ public:
     void visit_hessian(std::span<const double> x, const BlockVisitor& visit) const;
 
     [[nodiscard]] std::span<const FrozenPair> pairs() const { return pairs_; }
+    /// (3 nodes) of the step.
+    [[nodiscard]] std::span<const double> start() const { return start_; }
+    [[nodiscard]] double slip_m() const { return slip_m_; }
     /// Force on the first feature of pair `k`, N.
     [[nodiscard]] Vec3 force(std::size_t k, std::span<const double> x) const;
 

@@ -19,7 +19,7 @@ public:
     Run(const Model& model, const Program& program, RunOptions options)
         : program_(program),
           options_(std::move(options)),
-          stepper_(model, {program.solver, program.tolerance, program.iteration_limit, program.dynamics}),
+          stepper_(model, stepper_options(program)),
           rest_(stepper_.rest()),
           checks_(stepper_, program, rest_) {}
 
@@ -44,7 +44,6 @@ private:
         Stopwatch watch;
         if (options_.begin) {
             now_ = *std::exchange(options_.begin, std::nullopt);
-            now_.robot.evaluation = stepper_.system().evaluate(now_.robot.now.state, now_.robot.controls);
             checks_.set_state(now_.checks);
         } else {
             now_.robot = rest_;
@@ -137,6 +136,10 @@ private:
 };
 
 }  // namespace
+
+StepperOptions stepper_options(const Program& program) {
+    return {program.solver, program.tolerance, program.iteration_limit, program.dynamics};
+}
 
 Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options) {
     return Run(model, program, std::move(options)).run(progress);

@@ -39,6 +39,9 @@ struct RunOptions {
 /// that goes on from a state gives the same bits, but for the times that it took, as one that was never stopped.
 [[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options = {});
 
+/// What a program asks of the stepper.
+[[nodiscard]] StepperOptions stepper_options(const Program& program);
+
 /// Positions of the points of every cable for node positions (n, 3): [cable][point].
 [[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);
 

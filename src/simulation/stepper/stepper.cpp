@@ -192,6 +192,10 @@ double Stepper::kinetic_energy_J(const RobotState& robot) const {
     return motion_ ? motion_->kinetic_energy_J(robot.history) : 0;
 }
 
+std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double dt) const {
+    return motion_->inertia(history, dt);
+}
+
 /// The solvers remember what they did when this state came about.
 void Stepper::recall(const RobotState& robot) {
     if (robot.memory && robot.memory == live_) return;

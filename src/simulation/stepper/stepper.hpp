@@ -69,6 +69,8 @@ public:
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
     [[nodiscard]] double kinetic_energy_J(const RobotState& robot) const;
+    /// What a step in time of `dt` from where `history` ends adds to the equations. Precondition: there is dynamics.
+    [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt) const;
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Equilibrium& system() const { return system_; }
     [[nodiscard]] const FactoredLaplacian& laplacian() const { return laplacian_; }
@@ -91,8 +93,8 @@ private:
     Equilibrium system_;
     FactoredLaplacian laplacian_;
     SolverChain solvers_;
-    std::optional<MotionInTime> motion_;
-    std::shared_ptr<const SolverMemory> live_;  ///< what the solvers remember; null: nothing that a state has
+    mutable std::optional<MotionInTime> motion_;  ///< keeps a pattern that it has made
+    std::shared_ptr<const SolverMemory> live_;    ///< what the solvers remember; null: nothing that a state has
 };
 
 }  // namespace pliant::sim

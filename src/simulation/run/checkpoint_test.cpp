@@ -1,0 +1,231 @@
+// A run that was stopped anywhere and is gone on with ends with the same bits as one that was never stopped.
+#include "simulation/run/checkpoint.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "simulation/run/step_record.hpp"
+#include "simulation/run/test_problems.hpp"
+#include "simulation/run/test_random_program.hpp"
+#include "simulation/stepper/state_file.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+
+namespace {
+
+/// Everything but the times that it took.
+std::string bits_of(const Trajectory& result) {
+    std::string bits = result.message + result.solver;
+    for (const std::string& warning : result.warnings) bits += warning + '\n';
+    for (Step step : result.steps) {
+        step.wall_s = 0;
+        bits += step_bytes(step, {});
+        if (const auto& at = step.crossing_m) bits += fmt::format("{} {} {}", at->x, at->y, at->z);
+    }
+    Step none;
+    return bits + step_bytes(none, result.iterations);
+}
+
+Model model_of(Description d) {
+    auto model = Model::create(std::move(d));
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    return std::move(*model);
+}
+
+Trajectory run_silently(const Model& model, const Program& program, RunOptions options = {}) {
+    Progress silent;
+    return run(model, program, silent, std::move(options));
+}
+
+/// Runs with a checkpoint after every step until `last` is kept, as if killed there.
+void run_until(const Model& model, const Program& program, const std::filesystem::path& folder, int last) {
+    auto checkpoint = Checkpoint::create(folder, "test");
+    REQUIRE(checkpoint);
+    RunOptions options;
+    options.on_checkpoint = [&](const RunState& run) -> Status {
+        if (Status status = checkpoint->keep(model, run); !status) return status;
+        return run.step < last ? Status{} : Status(failure("killed"));
+    };
+    const Trajectory result = run_silently(model, program, std::move(options));
+    CHECK(result.steps.size() == static_cast<std::size_t>(last) + 1);
+}
+
+Trajectory go_on(const Model& model, const Program& program, const std::filesystem::path& folder) {
+    auto resumed = Checkpoint::open(folder, "test", model, program);
+    REQUIRE_MESSAGE(resumed, (resumed ? "" : resumed.error().message));
+    RunOptions options;
+    options.begin = std::move(resumed->run);
+    return run_silently(model, program, std::move(options));
+}
+
+/// A hollow block that is blown up and bent, in time if asked for.
+struct Problem {
+    Model model;
+    Program program;
+};
+Problem blown_up(int order, Solver solver = Solver::automatic) {
+    Description d = testing::hollow_block(order);
+    d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, 4000, {}};
+    return {model_of(std::move(d)), {.steps = 8, .tolerance = 1e-6, .solver = solver}};
+}
+
+/// With everything in it that a step has to remember.
+std::vector<Problem> problems_with_a_memory() {
+    std::vector<Problem> problems;
+    Description in_time = testing::hollow_block(1);
+    in_time.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.3, {}};
+    problems.push_back({model_of(std::move(in_time)), {.steps = 8, .duration = 0.2, .dynamics = Dynamics{{2, 1e-3}}}});
+
+    Description rubbed = testing::hollow_block(1);
+    ContactRules rules;
+    rules.surface = contact::robot_surface(rubbed.mesh);
+    rules.settings = {0.0005, 1e4, 0.3, 1e-5, true};
+    rules.obstacles.push_back({{"table", contact::HalfSpace{{0, 0, -0.001}, {0, 0, 1}}, 0.3}, {0.001, 0, 0.0008}});
+    rubbed.contact = std::move(rules);
+    problems.push_back({model_of(std::move(rubbed)), {.steps = 8}});
+
+    Description dragged = testing::hollow_block(2);
+    dragged.chambers.clear();
+    Cable cable{"cable", {}, {}};
+    cable.target = {CableTarget::Kind::length_ratio, 0.9};
+    cable.friction = 0.3;
+    for (const double x : {0.0, 0.01, 0.02, 0.03})
+        cable.points.push_back(reference::mean_of(reference::nodes_where(
+            dragged.mesh, [&](Vec3 p) { return std::fabs(p.x - x) < 1e-9 && p.z > 0.01 - 1e-9; })));
+    dragged.cables.push_back(std::move(cable));
+    problems.push_back({model_of(std::move(dragged)), {.steps = 8}});
+    return problems;
+}
+
+}  // namespace
+
+TEST_CASE("velocities, contact, friction and the slack of cables are kept") {
+    for (const Problem& p : problems_with_a_memory()) {
+        const Trajectory never_stopped = run_silently(p.model, p.program);
+        REQUIRE_MESSAGE(never_stopped.converged, never_stopped.message);
+        for (const int last : {1, 4, 7}) {
+            CAPTURE(last);
+            const pliant::test::Folder folder;
+            run_until(p.model, p.program, folder / "run", last);
+            CHECK(bits_of(go_on(p.model, p.program, folder / "run")) == bits_of(never_stopped));
+        }
+    }
+}
+
+TEST_CASE("a random program that is stopped after any step and gone on with gives the same bits") {
+    int compared = 0;
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        sim::test::RandomProgram made = sim::test::random_program(seed);
+        made.program.steps = 5;
+        CAPTURE(sim::test::described(made));
+        const Model model = model_of(std::move(made.robot));
+        const Trajectory never_stopped = run_silently(model, made.program);
+        for (const int last : {1, 3}) {
+            if (static_cast<int>(never_stopped.steps.size()) <= last) continue;  // it got stuck before
+            const pliant::test::Folder folder;
+            run_until(model, made.program, folder / "run", last);
+            CHECK(bits_of(go_on(model, made.program, folder / "run")) == bits_of(never_stopped));
+            ++compared;
+        }
+    }
+    CHECK(compared >= 2);
+}
+
+TEST_CASE("with every solver, of linear and quadratic elements, and after every step") {
+    for (const int order : {1, 2}) {
+        for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson}) {
+            CAPTURE(order);
+            CAPTURE(name(solver));
+            const Problem p = blown_up(order, solver);
+            const std::string never_stopped = bits_of(run_silently(p.model, p.program));
+            for (int last = 1; last < p.program.steps; last += order == 1 ? 1 : 3) {
+                const pliant::test::Folder folder;
+                run_until(p.model, p.program, folder / "run", last);
+                CHECK(bits_of(go_on(p.model, p.program, folder / "run")) == never_stopped);
+            }
+        }
+    }
+}
+
+TEST_CASE("a step from a copy of a state gives the same bits, whatever was solved in between") {
+    const Problem p = blown_up(1);
+    Progress silent;
+    Stepper stepper(p.model, stepper_options(p.program));
+    const auto step = [&](RobotState& robot, double end) {
+        const Way way{end, [&](double time) { return stepper.controls(robot, time); }, 1.0 / 64};
+        REQUIRE(stepper.step(robot, way, silent).arrived);
+    };
+    RobotState robot = stepper.rest();
+    for (const double time : {0.1, 0.2, 0.3}) step(robot, time);
+    const RobotState kept = robot;
+    step(robot, 0.4);
+    RobotState aside = stepper.rest();
+    step(aside, 0.7);
+    RobotState again = kept;
+    step(again, 0.4);
+    CHECK(state_bytes(p.model, again) == state_bytes(p.model, robot));
+}
+
+TEST_CASE("steps come to the sink as they are made, the rest state first") {
+    const Problem p = blown_up(1);
+    std::vector<int> seen;
+    RunOptions options;
+    options.on_step = [&](const Step& step) { seen.push_back(step.index); };
+    const Trajectory result = run_silently(p.model, p.program, std::move(options));
+    CHECK(seen == std::vector{0, 1, 2, 3, 4, 5, 6, 7, 8});
+    CHECK(result.steps.size() == seen.size());
+}
+
+TEST_CASE("what is no checkpoint of this run is refused in one line") {
+    const Problem p = blown_up(1);
+    const pliant::test::Folder folder;
+    const auto path = folder / "run";
+    const auto error_of = [&](const Model& model, const std::string& origin = "test") {
+        const auto resumed = Checkpoint::open(path, origin, model, p.program);
+        REQUIRE_FALSE(resumed);
+        return resumed.error().message;
+    };
+    CHECK(error_of(p.model).find("no checkpoint is there") != std::string::npos);
+    run_until(p.model, p.program, path, 2);
+    CHECK(error_of(p.model, "other").find("another robot file") != std::string::npos);
+    CHECK(error_of(blown_up(2).model).find("another mesh") != std::string::npos);
+    const std::string steps = read_file(path / "steps").value();
+    const std::string state = read_file(path / "state").value();
+    REQUIRE(write_file(path / "steps", steps.substr(0, steps.size() / 2)));
+    CHECK(error_of(p.model).find("shorter than it was") != std::string::npos);
+    REQUIRE(write_file(path / "steps", steps + "a half-written record"));
+    CHECK(Checkpoint::open(path, "test", p.model, p.program));
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, state.size() / 2, state.size() - 1}) {
+        REQUIRE(write_file(path / "state", state.substr(0, size)));
+        CHECK(error_of(p.model).find("damaged") != std::string::npos);
+    }
+    REQUIRE(write_file(folder / "notes", "mine"));
+    CHECK_FALSE(Checkpoint::create(folder.path(), "test"));
+}
+
+TEST_CASE("a checkpoint with any number changed is refused, or gone on with, and never crashes") {
+    const Problem p = blown_up(1);
+    const pliant::test::Folder folder;
+    const auto path = folder / "run";
+    run_until(p.model, p.program, path, 3);
+    const std::string state = read_file(path / "state").value(), steps = read_file(path / "steps").value();
+    sim::test::Dice dice(7);
+    int refused = 0;
+    for (int k = 0; k < 300; ++k) {
+        std::string changed = k % 2 == 0 ? state : steps;
+        // Heads of values are few among the bytes of the vectors: half of the changes go to the first kilobyte.
+        const std::size_t end = k % 4 < 2 ? std::min<std::size_t>(1000, changed.size()) : changed.size();
+        changed[static_cast<std::size_t>(dice.up_to(static_cast<int>(end) - 1))] = static_cast<char>(dice.up_to(255));
+        REQUIRE(write_file(path / "state", k % 2 == 0 ? changed : state));
+        REQUIRE(write_file(path / "steps", k % 2 == 0 ? steps : changed));
+        refused += Checkpoint::open(path, "test", p.model, p.program) ? 0 : 1;
+    }
+    CHECK(refused > 20);
+}

@@ -1,0 +1,447 @@
+#include "simulation/stepper/state_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "simulation/contact/friction.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/stepper/cbor_numbers.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using cbor::Json;
+using cbor::packed;
+using cbor::Reader;
+
+constexpr const char* format_name = "pliant state";
+
+// --- written -------------------------------------------------------------------------------------------------------
+
+Json json_of(const State& state) {
+    return {{"x", packed(state.x)}, {"multiplier", packed(state.multiplier)}};
+}
+
+Json json_of(const std::vector<Drive>& drives) {
+    std::vector<int> kinds;
+    std::vector<double> values;
+    for (const Drive& drive : drives) {
+        kinds.push_back(static_cast<int>(drive.kind));
+        values.push_back(drive.value);
+    }
+    return {{"kind", packed(std::span<const int>(kinds))}, {"value", packed(std::span<const double>(values))}};
+}
+
+Json json_of(const History& history) {
+    return {{"x", packed(history.x)},
+            {"v", packed(history.v)},
+            {"x_before", packed(history.x_before)},
+            {"v_before", packed(history.v_before)},
+            {"dt_before", history.dt_before}};
+}
+
+Json json_of(const contact::Friction& friction) {
+    std::vector<int> whole;
+    std::vector<double> real;
+    for (const contact::FrozenPair& pair : friction.pairs()) {
+        whole.insert(whole.end(), pair.nodes.begin(), pair.nodes.end());
+        whole.insert(whole.end(), {pair.node_count, pair.first_count, pair.obstacle, pair.robot_first ? 1 : 0});
+        real.insert(real.end(), pair.weights.begin(), pair.weights.end());
+        for (const Vec3& t : pair.tangents) real.insert(real.end(), {t.x, t.y, t.z});
+        real.push_back(pair.limit_N);
+    }
+    return {{"pairs", packed(std::span<const int>(whole))},
+            {"numbers", packed(std::span<const double>(real))},
+            {"start", packed(friction.start())},
+            {"slip_m", friction.slip_m()}};
+}
+
+Json json_of(const Controls& controls) {
+    Json shares = Json::array();
+    for (const auto& list : controls.shares) shares.push_back(packed(std::span<const double>(list)));
+    Json json{{"time", controls.time},
+              {"external_N", packed(controls.external_N)},
+              {"support_share", packed(std::span<const double>(controls.support_share))},
+              {"drives", json_of(controls.drives)},
+              {"shares", std::move(shares)},
+              {"obstacles", packed(controls.obstacles)},
+              {"met", controls.met}};
+    if (controls.friction) json["friction"] = json_of(*controls.friction);
+    if (controls.inertia)
+        json["inertia"] = Json{{"start", json_of(controls.inertia->start())}, {"dt", controls.inertia->dt()}};
+    return json;
+}
+
+Json json_of(const StepPair& pair) {
+    return {{"step", packed(pair.step)}, {"change", packed(pair.change)}, {"rho", pair.rho}, {"scale", pair.scale}};
+}
+
+Json json_of(const NewtonRates& r) {
+    return {{"share", r.share_},
+            {"cautious", r.cautious_},
+            {"share_wanted", r.share_wanted_},
+            {"usable", r.usable_},
+            {"hasty", r.hasty_},
+            {"reused", r.reused_},
+            {"left", r.left_},
+            {"left_at_first", r.left_at_first_},
+            {"left_by_last", r.left_by_last_},
+            {"left_by_new", r.left_by_new_},
+            {"uses", r.uses_},
+            {"age", r.age_},
+            {"tried_later", r.tried_later_},
+            {"two_levels", r.two_levels_}};
+}
+
+Json json_of(const TangentInverse::Memory& m) {
+    return {{"in_double", m.in_double},
+            {"untried", m.untried},
+            {"known_error", m.known_error},
+            {"trusted", m.trusted},
+            {"refusals", m.refusals}};
+}
+
+Json json_of(const SolverMemory& memory) {
+    Json json{{"rates", json_of(memory.rates)},
+              {"inverse", json_of(memory.inverse)},
+              {"forgets_touching", memory.forgets_touching},
+              {"pairs", Json::array()}};
+    for (const auto& pair : memory.pairs) json["pairs"].push_back(json_of(*pair));
+    if (memory.learnt) json["learnt"] = json_of(*memory.learnt);
+    if (memory.followed) json["followed"] = packed(*memory.followed);
+    if (memory.tangent)
+        json["tangent"] =
+            Json{{"state", json_of(memory.tangent->state)}, {"controls", json_of(memory.tangent->controls)}};
+    if (memory.touching) {
+        json["touching"] = Json::array();
+        for (const auto& clique : *memory.touching) json["touching"].push_back(packed(std::span<const int>(clique)));
+    }
+    return json;
+}
+
+// --- read ----------------------------------------------------------------------------------------------------------
+
+/// How long the vectors of a model are.
+struct Sizes {
+    Eigen::Index coordinates, free_coordinates, actuators, obstacle_coordinates;
+    std::size_t supports;
+};
+
+Sizes sizes_of(const Stepper& stepper) {
+    const Model& model = stepper.model();
+    const Controls controls = stepper.system().controls(0);
+    return {3 * model.node_count(), 3 * model.free_count(), static_cast<Eigen::Index>(controls.drives.size()),
+            controls.obstacles.size(), controls.support_share.size()};
+}
+
+/// What is read of one map; where something is wrong `status` says it, and the rest is of no use.
+class StateReader {
+public:
+    StateReader(const Stepper& stepper) : stepper_(stepper), sizes_(sizes_of(stepper)) {}
+
+    [[nodiscard]] const Status& status() const { return status_; }
+
+    RobotState robot(const Json& json) {
+        Reader in(json);
+        RobotState robot;
+        robot.now = {in.number("along"), state(in.at("state"))};
+        robot.drives = drives(in.at("drives"));
+        robot.controls = controls(in.at("controls"));
+        for (const Json& past : list(in, "past")) {
+            Reader one(past);
+            robot.past.push_back({one.number("along"), std::make_shared<const State>(state(one.at("state")))});
+            take(one);
+        }
+        if (robot.past.size() > RotatingStep::most_past) fail("more states of the past than there can be");
+        const bool in_time = stepper_.options().dynamics.has_value();
+        if (in_time != in.has("history"))
+            fail(in_time ? "no velocities" : "velocities of a robot without a motion in time");
+        if (in_time) robot.history = history(in.at("history"));
+        if (in.has("memory")) robot.memory = memory(in.at("memory"));
+        take(in);
+        return robot;
+    }
+
+private:
+    void fail(const std::string& why) {
+        if (status_) status_ = input_error("damaged: {}", why);
+    }
+    void take(const Reader& in) {
+        if (status_ && !in.status()) status_ = in.status();
+    }
+    [[nodiscard]] const Json& list(Reader& in, const char* key) {
+        static const Json none = Json::array();
+        const Json& value = in.at(key);
+        if (value.is_array()) return value;
+        in.fail(std::string(key) + " is no list");
+        return none;
+    }
+
+    State state(const Json& json) {
+        Reader in(json);
+        State state{in.vector("x", sizes_.coordinates), in.vector("multiplier", sizes_.actuators)};
+        take(in);
+        return state;
+    }
+
+    std::vector<Drive> drives(const Json& json) {
+        Reader in(json);
+        const std::vector<int> kinds = in.numbers<int>("kind");
+        const Eigen::VectorXd values = in.vector("value", sizes_.actuators);
+        take(in);
+        std::vector<Drive> drives;
+        if (static_cast<Eigen::Index>(kinds.size()) != sizes_.actuators) fail("kinds of drives are missing");
+        for (std::size_t a = 0; status_ && a < kinds.size(); ++a) {
+            if (kinds[a] < 0 || kinds[a] > static_cast<int>(Drive::Kind::gas)) fail("a drive of no kind");
+            drives.push_back({static_cast<Drive::Kind>(kinds[a]), values[static_cast<Eigen::Index>(a)]});
+        }
+        return drives;
+    }
+
+    History history(const Json& json) {
+        Reader in(json);
+        const Eigen::Index n = sizes_.coordinates;
+        History history{in.vector("x", n), in.vector("v", n), in.vector("x_before", n), in.vector("v_before", n),
+                        in.number("dt_before")};
+        if (!(history.dt_before >= 0)) in.fail("dt_before is negative");
+        take(in);
+        return history;
+    }
+
+    std::shared_ptr<const contact::Friction> friction(const Json& json) {
+        constexpr std::size_t wholes = 8, reals = 11;
+        Reader in(json);
+        const std::vector<int> whole = in.numbers<int>("pairs");
+        const Eigen::Index nodes = (sizes_.coordinates + sizes_.obstacle_coordinates) / 3;
+        const std::size_t count = whole.size() / wholes;
+        const Eigen::VectorXd real = in.vector("numbers", static_cast<Eigen::Index>(reals * count));
+        const Eigen::VectorXd start = in.vector("start", 3 * nodes);
+        const double slip_m = in.number("slip_m");
+        if (whole.size() % wholes != 0 || !(slip_m > 0)) in.fail("friction");
+        take(in);
+        std::vector<contact::FrozenPair> pairs;
+        for (std::size_t k = 0; status_ && k < count; ++k) {
+            contact::FrozenPair pair;
+            const int* i = whole.data() + wholes * k;
+            const double* r = real.data() + reals * k;
+            std::copy_n(i, 4, pair.nodes.begin());
+            std::copy_n(r, 4, pair.weights.begin());
+            pair.tangents = {Vec3{r[4], r[5], r[6]}, Vec3{r[7], r[8], r[9]}};
+            pair.limit_N = r[10];
+            pair.node_count = i[4];
+            pair.first_count = i[5];
+            pair.obstacle = i[6];
+            pair.robot_first = i[7] != 0;
+            if (!is_pair(pair, nodes)) fail("friction between nodes that do not exist");
+            pairs.push_back(pair);
+        }
+        if (!status_) return nullptr;
+        return std::make_shared<const contact::Friction>(
+            std::move(pairs), std::vector<double>(start.data(), start.data() + start.size()), slip_m);
+    }
+
+    [[nodiscard]] bool is_pair(const contact::FrozenPair& pair, Eigen::Index nodes) const {
+        const auto& contact = stepper_.model().description().contact;
+        const int obstacles = contact ? static_cast<int>(contact->obstacles.size()) : 0;
+        return std::all_of(pair.nodes.begin(), pair.nodes.end(), [&](int n) { return n >= 0 && n < nodes; }) &&
+               pair.node_count >= 2 && pair.node_count <= 4 && pair.first_count >= 1 &&
+               pair.first_count < pair.node_count && pair.obstacle >= -1 && pair.obstacle < obstacles;
+    }
+
+    Controls controls(const Json& json) {
+        Reader in(json);
+        Controls controls;
+        controls.time = in.number("time");
+        controls.external_N = in.vector("external_N", sizes_.coordinates);
+        const Eigen::VectorXd support = in.vector("support_share", static_cast<Eigen::Index>(sizes_.supports));
+        controls.support_share.assign(support.begin(), support.end());
+        controls.drives = drives(in.at("drives"));
+        controls.shares = shares(in);
+        controls.obstacles = in.vector("obstacles", sizes_.obstacle_coordinates);
+        controls.met = in.boolean("met");
+        if (in.has("friction")) controls.friction = friction(in.at("friction"));
+        if (in.has("inertia")) {
+            Reader inertia(in.at("inertia"));
+            const History start = history(inertia.at("start"));
+            const double dt = inertia.number("dt");
+            if (!(dt > 0) || !stepper_.options().dynamics) inertia.fail("a step in time of no length");
+            take(inertia);
+            if (status_ && in.status()) controls.inertia = stepper_.inertia(start, dt);
+        }
+        take(in);
+        return controls;
+    }
+
+    /// Of each cable with friction one for each of its segments; of all others none.
+    std::vector<std::vector<double>> shares(Reader& in) {
+        std::vector<std::vector<double>> shares;
+        const auto& cables = stepper_.model().description().cables;
+        for (const Json& list : this->list(in, "shares")) {
+            shares.push_back(in.numbers_of<double>("shares", list));
+            const std::size_t a = shares.size() - 1;
+            const std::size_t segments = a < cables.size() ? cables[a].points.size() - 1 : 0;
+            if (!shares.back().empty() && shares.back().size() != segments) in.fail("shares of tension");
+        }
+        if (static_cast<Eigen::Index>(shares.size()) != sizes_.actuators) in.fail("shares of tension are missing");
+        return shares;
+    }
+
+    std::shared_ptr<const StepPair> pair(const Json& json) {
+        Reader in(json);
+        StepPair pair{in.vector("step", sizes_.free_coordinates), in.vector("change", sizes_.free_coordinates),
+                      in.number("rho"), in.number("scale")};
+        take(in);
+        return std::make_shared<const StepPair>(std::move(pair));
+    }
+
+    NewtonRates rates(const Json& json) {
+        constexpr int most = 1 << 30;
+        Reader in(json);
+        NewtonRates r;
+        r.share_ = in.number("share");
+        r.cautious_ = in.boolean("cautious");
+        r.share_wanted_ = in.number("share_wanted");
+        r.usable_ = in.boolean("usable");
+        r.hasty_ = in.boolean("hasty");
+        r.reused_ = in.boolean("reused");
+        r.left_ = in.number("left");
+        r.left_at_first_ = in.number("left_at_first");
+        r.left_by_last_ = in.number("left_by_last");
+        r.left_by_new_ = in.number("left_by_new");
+        r.uses_ = in.integer("uses", 0, most);
+        r.age_ = in.integer("age", 0, most);
+        r.tried_later_ = in.boolean("tried_later");
+        r.two_levels_ = in.boolean("two_levels");
+        if (!(r.share_ >= 0 && r.share_ <= 1 && r.share_wanted_ > 0 && r.share_wanted_ <= 1)) in.fail("share");
+        if (!(r.left_ > 0 && r.left_ < 1 && r.left_at_first_ > 0 && r.left_at_first_ < 1)) in.fail("left");
+        take(in);
+        return r;
+    }
+
+    TangentInverse::Memory inverse(const Json& json) {
+        constexpr int most = 1 << 30;
+        Reader in(json);
+        TangentInverse::Memory m;
+        m.in_double = in.boolean("in_double");
+        m.untried = in.boolean("untried");
+        m.known_error = in.number("known_error");
+        m.trusted = in.integer("trusted", 0, most);
+        m.refusals = in.integer("refusals", 0, most);
+        take(in);
+        return m;
+    }
+
+    std::shared_ptr<const SolverMemory::Cliques> touching(Reader& in) {
+        auto cliques = std::make_shared<SolverMemory::Cliques>();
+        const int free = static_cast<int>(sizes_.free_coordinates / 3);
+        for (const Json& list : this->list(in, "touching")) {
+            cliques->push_back(in.numbers_of<int>("touching", list));
+            for (const int node : cliques->back()) {
+                if (node < -1 || node >= free) in.fail("contact of nodes that do not exist");
+            }
+        }
+        return cliques;
+    }
+
+    std::shared_ptr<const SolverMemory> memory(const Json& json) {
+        Reader in(json);
+        auto memory = std::make_shared<SolverMemory>();
+        memory->rates = rates(in.at("rates"));
+        memory->inverse = inverse(in.at("inverse"));
+        memory->forgets_touching = in.boolean("forgets_touching");
+        for (const Json& one : list(in, "pairs")) memory->pairs.push_back(pair(one));
+        if (in.has("learnt")) memory->learnt = pair(in.at("learnt"));
+        if (in.has("followed"))
+            memory->followed = std::make_shared<const Eigen::VectorXd>(in.vector("followed", sizes_.coordinates));
+        if (in.has("touching")) memory->touching = touching(in);
+        if (in.has("tangent")) {
+            Reader tangent(in.at("tangent"));
+            State at = state(tangent.at("state"));
+            Controls there = controls(tangent.at("controls"));
+            memory->tangent =
+                std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{std::move(at), std::move(there)});
+            take(tangent);
+        }
+        if (memory->rates.usable_ && !memory->tangent) in.fail("a factor of nothing");
+        take(in);
+        return memory;
+    }
+
+    const Stepper& stepper_;
+    Sizes sizes_;
+    Status status_;
+};
+
+/// A tangent can be taken only where no tet is turned inside out.
+Status check_possible(const Stepper& stepper, const RobotState& robot) {
+    const auto possible = [&](const State& state) {
+        return stepper.model()
+                   .elements()
+                   .evaluate({state.x.data(), static_cast<std::size_t>(state.x.size())}, {})
+                   .min_J > 0;
+    };
+    bool all = stepper.system().evaluate(robot.now.state, robot.controls).possible();
+    for (const PastMoment& past : robot.past) all = all && possible(*past.state);
+    if (robot.memory && robot.memory->tangent) all = all && possible(robot.memory->tangent->state);
+    return all ? Status{}
+               : Status(input_error("damaged: a tetrahedron is turned inside out, or surfaces have passed "
+                                    "through each other"));
+}
+
+}  // namespace
+
+std::string state_bytes(const Model& model, const RobotState& robot) {
+    Json json{{"format", format_name},
+              {"version", state_version},
+              {"mesh", mesh_digest(model.mesh())},
+              {"along", robot.now.along},
+              {"state", json_of(robot.now.state)},
+              {"drives", json_of(robot.drives)},
+              {"controls", json_of(robot.controls)},
+              {"past", Json::array()}};
+    for (const PastMoment& past : robot.past)
+        json["past"].push_back({{"along", past.along}, {"state", json_of(*past.state)}});
+    if (robot.history.x.size() > 0) json["history"] = json_of(robot.history);
+    if (robot.memory) json["memory"] = json_of(*robot.memory);
+    std::string bytes;
+    Json::to_cbor(json, bytes);
+    return bytes;
+}
+
+Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view bytes) {
+    const Json json = Json::from_cbor(bytes, true, false);
+    const auto text = [&](const char* key) {
+        return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+    };
+    if (text("format") != format_name) return input_error("not a state that Pliant has written, or damaged");
+    Reader head(json);
+    const int version = head.integer("version", 0, 1 << 30);
+    if (version != state_version)
+        return input_error("a state of version {}; this Pliant reads version {}", version, state_version);
+    if (text("mesh") != mesh_digest(stepper.model().mesh()))
+        return input_error("a state of another robot, or of another mesh of it");
+    StateReader reader(stepper);
+    RobotState robot = reader.robot(json);
+    if (!reader.status()) return tl::unexpected(reader.status().error());
+    if (Status status = check_possible(stepper, robot); !status) return tl::unexpected(status.error());
+    robot.evaluation = stepper.system().evaluate(robot.now.state, robot.controls);
+    return robot;
+}
+
+std::string mesh_digest(const mesh::TetMesh& mesh) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* bytes = static_cast<const unsigned char*>(data);
+        for (std::size_t k = 0; k < size; ++k) hash = (hash ^ bytes[k]) * 1099511628211ULL;
+    };
+    add(mesh.points.data(), mesh.points.size() * sizeof(mesh.points[0]));
+    add(mesh.nodes.data(), mesh.nodes.size() * sizeof(mesh.nodes[0]));
+    add(mesh.region.data(), mesh.region.size() * sizeof(mesh.region[0]));
+    return fmt::format("{:016x}", hash);
+}
+
+}  // namespace pliant::sim
