@@ -2,12 +2,15 @@
 #include "simulation/run/simulate.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +26,7 @@
 #include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
 #include "robot/bodies/build.hpp"
+#include "simulation/run/checkpoint.hpp"
 #include "simulation/run/fields.hpp"
 #include "simulation/scene/build_model.hpp"
 
@@ -38,7 +42,9 @@ struct Options {
     std::string view;     ///< "x,y,z" from the robot to the eye; empty: chosen
     std::string solvers;  ///< one, or several with commas
     bool compare = false;
-    std::string measured;  ///< CSV of markers; empty: none
+    std::string measured;      ///< CSV of markers; empty: none
+    int checkpoint_every = 0;  ///< steps; 0: no checkpoints, or when resumed as before
+    bool resume = false;
     std::vector<std::string> assignments;
     Output output;
 };
@@ -232,7 +238,62 @@ std::vector<std::string> all_assignments(const Options& options, const std::vect
     return assignments;
 }
 
+/// The robot file and everything that changes it: of what a checkpoint is.
+Result<std::string> origin_of(const Options& options, const std::vector<std::string>& assignments) {
+    const Result<std::string> text = read_file(options.robot);
+    if (!text) return tl::unexpected(text.error());
+    return fmt::format("{}\n{}", fmt::join(assignments, "\n"), *text);
+}
+
+/// Where a run is kept as it goes, and the run that it begins with, if it is one that goes on.
+struct Kept {
+    sim::Checkpoint checkpoint;
+    std::optional<sim::RunState> begin;
+};
+
+Result<std::optional<Kept>> open_checkpoint(const Options& options, const std::vector<std::string>& assignments,
+                                            const sim::Model& model, const sim::Program& program) {
+    if (options.checkpoint_every == 0 && !options.resume) return std::nullopt;
+    const Result<std::string> origin = origin_of(options, assignments);
+    if (!origin) return tl::unexpected(origin.error());
+    const std::string folder = options.folder + ".checkpoint";
+    if (!options.resume) {
+        auto made = sim::Checkpoint::create(folder, *origin, options.checkpoint_every);
+        if (!made) return tl::unexpected(made.error());
+        return Kept{std::move(*made), std::nullopt};
+    }
+    auto resumed = sim::Checkpoint::open(folder, *origin, model, program);
+    if (!resumed) return tl::unexpected(resumed.error());
+    if (options.checkpoint_every > 0) resumed->checkpoint.set_every(options.checkpoint_every);
+    if (!options.output.quiet && !options.output.json)
+        fmt::print("going on after step {} of {}\n", resumed->run.step, program.steps);
+    return Kept{std::move(resumed->checkpoint), std::move(resumed->run)};
+}
+
+sim::Trajectory run(const sim::Model& model, const sim::Program& program, std::optional<Kept>& kept,
+                    Progress& progress) {
+    sim::RunOptions run;
+    if (kept) {
+        run.begin = std::move(kept->begin);
+        run.checkpoint_every = kept->checkpoint.every();
+        run.on_checkpoint = [&](const sim::RunState& state) { return kept->checkpoint.keep(model, state); };
+    }
+    return sim::run(model, program, progress, std::move(run));
+}
+
+/// Of no use after the results are written, unless the run was cancelled.
+Status put_away(const std::optional<Kept>& kept, const Options& options, bool cancelled) {
+    if (!kept) return {};
+    if (!cancelled) return kept->checkpoint.remove();
+    if (!options.output.quiet && !options.output.json)
+        fmt::print("checkpoint: {}.checkpoint; the same command with --resume goes on from there\n", options.folder);
+    return {};
+}
+
 Result<int> simulate(const Options& options) {
+    if (options.folder.empty() && (options.checkpoint_every > 0 || options.resume))
+        return input_error("--{} needs --output: the checkpoint stands beside that folder",
+                           options.resume ? "resume" : "checkpoint-every");
     const Result<report::PictureChoice> pictures = read_pictures(options);
     if (!pictures) return tl::unexpected(pictures.error());
     const Result<std::vector<sim::Solver>> solvers = asked_solvers(options);
@@ -241,7 +302,8 @@ Result<int> simulate(const Options& options) {
     on_signal(OnSignal::leave);  // nothing is written before there is a step
     Stopwatch watch;
     report::Timing timing;
-    Result<robot::Robot> robot = read_robot(options.robot, all_assignments(options, *solvers));
+    const std::vector<std::string> assignments = all_assignments(options, *solvers);
+    Result<robot::Robot> robot = read_robot(options.robot, assignments);
     if (!robot) return tl::unexpected(robot.error());
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -253,7 +315,9 @@ Result<int> simulate(const Options& options) {
     if (!measured) return tl::unexpected(measured.error());
     on_signal(OnSignal::ask);
     if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
-    const sim::Trajectory trajectory = sim::run(*model, robot->program, *progress);
+    Result<std::optional<Kept>> kept = open_checkpoint(options, assignments, *model, robot->program);
+    if (!kept) return tl::unexpected(kept.error());
+    const sim::Trajectory trajectory = run(*model, robot->program, *kept, *progress);
     report::Simulation simulation = describe(*robot, *model, trajectory);
     simulation.timing = timing;
     simulation.measured = *measured;
@@ -264,6 +328,7 @@ Result<int> simulate(const Options& options) {
         drawing_stopped = *written;
     }
     progress.reset();
+    if (Status status = put_away(*kept, options, interrupted()); !status) return tl::unexpected(status.error());
     return tell(options, *model, simulation, drawing_stopped);
 }
 
@@ -290,6 +355,12 @@ void add_simulate(CLI::App& app, int& status) {
                         "X,Y,Z: viewing direction of the pictures (default: where the motion is seen best)");
     command->add_option("--measured", options->measured,
                         "CSV of measured markers, columns as in markers.csv, compared with the simulated ones");
+    command
+        ->add_option("--checkpoint-every", options->checkpoint_every,
+                     "keep the run every so many steps, in FOLDER.checkpoint, to go on with it after a stop")
+        ->check(CLI::Range(1, 100000));
+    command->add_flag("--resume", options->resume,
+                      "go on from FOLDER.checkpoint; the results are the same as without a stop");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

@@ -121,7 +121,7 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
 
 }  // namespace
 
-Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin) {
+Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin, int every) {
     std::error_code code;
     if (fs::exists(folder, code) && !may_replace(folder))
         return input_error("{}: is there already, and is no checkpoint; move it away", folder.string());
@@ -130,7 +130,7 @@ Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin
         return failure("{}: cannot be made: {}", folder.string(), code.message());
     std::ofstream steps(folder / steps_name, std::ios::binary);
     if (!steps) return failure("{}: cannot be written", (folder / steps_name).string());
-    return Checkpoint(folder, std::move(origin));
+    return Checkpoint(folder, std::move(origin), every);
 }
 
 Status Checkpoint::keep(const Model& model, const RunState& run) {
@@ -155,6 +155,7 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
     const Json json{{"format", format_name},
                     {"version", version},
                     {"origin", origin_},
+                    {"every", every_},
                     {"step", run.step},
                     {"steps", all.steps.size()},
                     {"bytes", bytes},
@@ -194,6 +195,7 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
         return wrong("a checkpoint of another robot file, or the file or what --set changes has changed since");
     RunState run;
     run.step = in.integer("step", 0, program.steps);
+    const int every = in.integer("every", 1, std::numeric_limits<int>::max());
     const auto bytes = static_cast<std::uintmax_t>(std::max(0.0, in.number("bytes")));
     run.so_far.solver = in.text("solver");
     run.so_far.setup_s = in.number("setup_s");
@@ -218,7 +220,7 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     if (!in.status()) return wrong(in.status().error().message);
     fs::resize_file(folder / steps_name, bytes, code);
     if (code) return failure("{}: cannot be written: {}", (folder / steps_name).string(), code.message());
-    Checkpoint checkpoint(folder, std::move(origin));
+    Checkpoint checkpoint(folder, std::move(origin), every);
     checkpoint.bytes_ = bytes;
     checkpoint.steps_ = run.so_far.steps.size();
     checkpoint.iterations_ = run.so_far.iterations.size();

@@ -46,7 +46,7 @@ Trajectory run_silently(const Model& model, const Program& program, RunOptions o
 
 /// Runs with a checkpoint after every step until `last` is kept, as if killed there.
 void run_until(const Model& model, const Program& program, const std::filesystem::path& folder, int last) {
-    auto checkpoint = Checkpoint::create(folder, "test");
+    auto checkpoint = Checkpoint::create(folder, "test", 1);
     REQUIRE(checkpoint);
     RunOptions options;
     options.on_checkpoint = [&](const RunState& run) -> Status {
@@ -207,7 +207,7 @@ TEST_CASE("what is no checkpoint of this run is refused in one line") {
         CHECK(error_of(p.model).find("damaged") != std::string::npos);
     }
     REQUIRE(write_file(folder / "notes", "mine"));
-    CHECK_FALSE(Checkpoint::create(folder.path(), "test"));
+    CHECK_FALSE(Checkpoint::create(folder.path(), "test", 1));
 }
 
 TEST_CASE("a checkpoint with any number changed is refused, or gone on with, and never crashes") {
