@@ -75,6 +75,14 @@ function(pliant_compile target kind)
   endif()
 endfunction()
 
+# The main function of all test programs, with the code of doctest, compiled once.
+if(PLIANT_TESTS)
+  add_library(pliant_test_main STATIC ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
+  target_link_libraries(pliant_test_main PUBLIC doctest::doctest
+                        PRIVATE pliant_flags fmt::fmt tl::expected Threads::Threads)
+  pliant_compile(pliant_test_main test)
+endif()
+
 # The targets of a list of names: pliant_base_core for base/core, all others as they are.
 function(pliant_targets result)
   set(targets)
@@ -144,8 +152,8 @@ endfunction()
 function(pliant_test_program folder)
   cmake_parse_arguments(T "" "" "TESTS;USES" ${ARGN})
   string(REPLACE "/" "_" program pliant_${folder}_test)
-  add_executable(${program} ${T_TESTS} ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
-  pliant_link(${program} PRIVATE pliant_flags ${T_USES} doctest::doctest)
+  add_executable(${program} ${T_TESTS})
+  pliant_link(${program} PRIVATE pliant_test_main pliant_flags ${T_USES})
   if(NOT "CGAL::CGAL" IN_LIST T_USES) # its flags are not those of the shared headers
     pliant_compile(${program} test)
   endif()
