@@ -1,8 +1,6 @@
 #include "geometry/mesher/mesh_worker.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/process.hpp"
 #include "geometry/mesher/packing.hpp"
 
 namespace pliant::mesh {
@@ -82,30 +81,6 @@ std::string reason_of(int status) {
     return fmt::format("exit status {}", WIFEXITED(status) ? WEXITSTATUS(status) : status);
 }
 
-/// In a session of its own: Ctrl-C is for this program, which then ends the mesher.
-Result<pid_t> spawn(const std::filesystem::path& program, double gigabytes, int socket) {
-    std::string name = program.string();
-    std::string limit = fmt::format("{}", gigabytes);
-    std::vector<char*> arguments{name.data(), limit.data(), nullptr};
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_adddup2(&files, socket, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
-    pid_t process = -1;
-    const int error = ::posix_spawn(&process, name.c_str(), &files, &attributes, arguments.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    if (error != 0) return failure("{}: cannot be started: {}", name, std::strerror(error));
-    return process;
-}
-
 Result<std::unique_ptr<Worker>> start_worker(const MesherLimits& limits) {
     const Result<std::filesystem::path> program = mesher_program();
     if (!program) return tl::unexpected(program.error());
@@ -114,7 +89,9 @@ Result<std::unique_ptr<Worker>> start_worker(const MesherLimits& limits) {
         return failure("no pipe to the mesher can be made: {}", std::strerror(errno));
     MessagePipe ours(ends[0]);
     const MessagePipe theirs(ends[1]);
-    const Result<pid_t> process = spawn(*program, limits.gigabytes, theirs.file());
+    // It ends with this program, or when this program ends it; Ctrl-C is for this program alone.
+    const Result<pid_t> process =
+        start_process(*program, {fmt::format("{}", limits.gigabytes)}, {.input = theirs.file()});
     if (!process) return tl::unexpected(process.error());
     return std::make_unique<Worker>(*process, std::move(ours));
 }

@@ -2,12 +2,10 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 namespace pliant::mesh {
 namespace {
@@ -27,25 +25,12 @@ bool send_all(int file, const char* bytes, std::size_t size) {
 
 }  // namespace
 
-MessagePipe::MessagePipe(MessagePipe&& other) noexcept
-    : file_(std::exchange(other.file_, -1)), come_(std::move(other.come_)) {}
-
-MessagePipe& MessagePipe::operator=(MessagePipe&& other) noexcept {
-    std::swap(file_, other.file_);
-    std::swap(come_, other.come_);
-    return *this;
-}
-
-MessagePipe::~MessagePipe() {
-    if (file_ >= 0) ::close(file_);
-}
-
 bool MessagePipe::send(MessageKind kind, std::string_view bytes) const {
     std::array<char, head_size> head{};
     head[0] = static_cast<char>(kind);
     const std::uint64_t size = bytes.size();
     std::memcpy(head.data() + 1, &size, sizeof(size));
-    return send_all(file_, head.data(), head.size()) && send_all(file_, bytes.data(), bytes.size());
+    return send_all(file(), head.data(), head.size()) && send_all(file(), bytes.data(), bytes.size());
 }
 
 bool MessagePipe::take_message(Message& message) {
@@ -62,11 +47,11 @@ bool MessagePipe::take_message(Message& message) {
 Received MessagePipe::receive(Message& message, int wait_ms) {
     std::array<char, 65536> chunk{};
     while (!take_message(message)) {
-        pollfd ready{file_, POLLIN, 0};
+        pollfd ready{file(), POLLIN, 0};
         const int count = ::poll(&ready, 1, wait_ms);
         if (count < 0 && errno == EINTR) continue;
         if (count == 0) return Received::waiting;
-        const ssize_t got = ::recv(file_, chunk.data(), chunk.size(), 0);
+        const ssize_t got = ::recv(file(), chunk.data(), chunk.size(), 0);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) return Received::closed;
         come_.append(chunk.data(), static_cast<std::size_t>(got));

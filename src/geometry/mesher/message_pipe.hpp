@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/core/file_handle.hpp"
+
 namespace pliant::mesh {
 
 /// Of both ends; another version is refused. Changes with everything that packing.hpp writes.
@@ -30,15 +32,12 @@ struct Message {
 /// How receive() ended.
 enum class Received { message, closed, waiting };
 
-/// One end of a connected pair of sockets; closed with it.
+/// One end of a connected pair of sockets; closed with it. Movable.
 class MessagePipe {
 public:
     explicit MessagePipe(int file) : file_(file) {}
-    MessagePipe(MessagePipe&& other) noexcept;
-    MessagePipe& operator=(MessagePipe&& other) noexcept;
-    ~MessagePipe();
 
-    [[nodiscard]] int file() const { return file_; }
+    [[nodiscard]] int file() const { return file_.number(); }
     /// False where the other end is gone.
     [[nodiscard]] bool send(MessageKind kind, std::string_view bytes) const;
     /// Waits so long at most, or for ever where it is negative. What has come of a message is kept for the next call;
@@ -48,7 +47,7 @@ public:
 private:
     [[nodiscard]] bool take_message(Message& message);
 
-    int file_ = -1;
+    FileHandle file_;
     std::string come_;
 };
 

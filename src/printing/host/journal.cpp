@@ -105,10 +105,8 @@ Status write_all(int file, std::string_view bytes) {
 /// A new name in a folder is safe only when the folder is.
 void sync_folder(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle < 0) return;
-    ::fsync(handle);
-    ::close(handle);
+    const FileHandle handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (handle.is_open()) ::fsync(handle.number());
 }
 
 }  // namespace
@@ -174,32 +172,10 @@ Result<JournalText> parse_journal(std::string_view text, std::string_view where)
 
 // --- the file ------------------------------------------------------------------------------------------------------
 
-Journal::Journal(Journal&& other) noexcept
-    : file_(std::exchange(other.file_, -1)),
-      path_(std::move(other.path_)),
-      sync_(other.sync_),
-      last_number_(other.last_number_),
-      good_bytes_(other.good_bytes_),
-      records_(std::move(other.records_)) {}
-
-Journal& Journal::operator=(Journal&& other) noexcept {
-    std::swap(file_, other.file_);
-    std::swap(path_, other.path_);
-    std::swap(sync_, other.sync_);
-    std::swap(last_number_, other.last_number_);
-    std::swap(good_bytes_, other.good_bytes_);
-    std::swap(records_, other.records_);
-    return *this;
-}
-
-Journal::~Journal() {
-    if (file_ >= 0) ::close(file_);
-}
-
 Result<Journal> Journal::open(const std::filesystem::path& path, bool sync) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) return input_error("{}: {}", path.string(), std::strerror(errno));
-    Journal journal(file, path, sync);
+    Journal journal(FileHandle(file), path, sync);
     struct stat status {};
     if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return input_error("{}: not a file", path.string());
     if (::flock(file, LOCK_EX | LOCK_NB) != 0)
@@ -213,7 +189,8 @@ Result<Journal> Journal::open(const std::filesystem::path& path, bool sync) {
 Status Journal::read_all() {
     std::string text;
     std::array<char, 65536> part;
-    for (ssize_t got = 0; (got = ::pread(file_, part.data(), part.size(), static_cast<off_t>(text.size()))) != 0;) {
+    for (ssize_t got = 0;
+         (got = ::pread(file_.number(), part.data(), part.size(), static_cast<off_t>(text.size()))) != 0;) {
         if (got < 0) return input_error("{}: {}", path_.string(), std::strerror(errno));
         text.append(part.data(), static_cast<std::size_t>(got));
         if (text.size() > most_bytes) return input_error("{}: too long for a journal", path_.string());
@@ -222,7 +199,7 @@ Status Journal::read_all() {
     if (!parsed) return tl::unexpected(parsed.error());
     if (parsed->records.empty() && !text.empty() && text.find('\n') != std::string::npos)
         return input_error("{}: this is no journal; give another name with --journal", path_.string());
-    if (parsed->good_bytes < text.size() && ::ftruncate(file_, static_cast<off_t>(parsed->good_bytes)) != 0)
+    if (parsed->good_bytes < text.size() && ::ftruncate(file_.number(), static_cast<off_t>(parsed->good_bytes)) != 0)
         return failure("{}: {}", path_.string(), std::strerror(errno));
     good_bytes_ = parsed->good_bytes;
     records_ = std::move(parsed->records);
@@ -234,11 +211,12 @@ Status Journal::read_all() {
 /// system cannot do that, nothing is lost.
 void Journal::reserve() const {
     struct stat status {};
-    if (::fstat(file_, &status) == 0) (void)::fallocate(file_, FALLOC_FL_KEEP_SIZE, status.st_size, reserve_bytes);
+    if (::fstat(file_.number(), &status) == 0)
+        (void)::fallocate(file_.number(), FALLOC_FL_KEEP_SIZE, status.st_size, reserve_bytes);
 }
 
 Status Journal::clear() {
-    if (::ftruncate(file_, 0) != 0) return failure("{}: {}", path_.string(), std::strerror(errno));
+    if (::ftruncate(file_.number(), 0) != 0) return failure("{}: {}", path_.string(), std::strerror(errno));
     records_.clear();
     last_number_ = 0;
     good_bytes_ = 0;
@@ -248,10 +226,11 @@ Status Journal::clear() {
 
 Result<long> Journal::append(std::string_view kind, const JournalValues& values) {
     const std::string line = write_record(last_number_ + 1, kind, values);
-    Status status = write_all(file_, line);
-    if (status && sync_ && ::fdatasync(file_) != 0) status = failure("{}", std::strerror(errno));
+    Status status = write_all(file_.number(), line);
+    if (status && sync_ && ::fdatasync(file_.number()) != 0) status = failure("{}", std::strerror(errno));
     if (!status) {
-        (void)::ftruncate(file_, static_cast<off_t>(good_bytes_));  // half a record must not stand before the next one
+        (void)::ftruncate(file_.number(),
+                          static_cast<off_t>(good_bytes_));  // half a record must not stand before the next one
         return failure("{}: the journal cannot be written, so no step is taken: {}", path_.string(),
                        status.error().message);
     }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 
 namespace pliant::host {
 
@@ -51,9 +52,6 @@ public:
     /// Opens or makes the file, locks it, reads what it holds and cuts a torn end off. With `sync` every record is on
     /// the disk when append() returns. Errors: locked by another host, not readable, damaged, the disk.
     [[nodiscard]] static Result<Journal> open(const std::filesystem::path& path, bool sync);
-    Journal(Journal&& other) noexcept;
-    Journal& operator=(Journal&& other) noexcept;
-    ~Journal();
 
     /// What was in the file when it was opened.
     [[nodiscard]] const std::vector<JournalRecord>& records() const { return records_; }
@@ -65,11 +63,12 @@ public:
     [[nodiscard]] Result<long> append(std::string_view kind, const JournalValues& values);
 
 private:
-    Journal(int file, std::filesystem::path path, bool sync) : file_(file), path_(std::move(path)), sync_(sync) {}
+    Journal(FileHandle file, std::filesystem::path path, bool sync)
+        : file_(std::move(file)), path_(std::move(path)), sync_(sync) {}
     [[nodiscard]] Status read_all();
     void reserve() const;
 
-    int file_ = -1;
+    FileHandle file_;
     std::filesystem::path path_;
     bool sync_ = true;
     long last_number_ = 0;

@@ -97,26 +97,22 @@ void close_all_but(int kept) {
 Result<ProcessGuard> ProcessGuard::start(const Options& options) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no guard: {}", std::strerror(errno));
+    const FileHandle theirs(ends[0]);
+    FileHandle ours(ends[1]);
     const std::string boot = boot_name();
     const pid_t process = ::fork();
     if (process < 0) return failure("no guard: {}", std::strerror(errno));
     if (process == 0) {
-        close_all_but(ends[0]);
-        stand_guard(ends[0], options, boot);
+        close_all_but(theirs.number());
+        stand_guard(theirs.number(), options, boot);
     }
-    ::close(ends[0]);
-    return ProcessGuard(ends[1], process, options);
+    return ProcessGuard(std::move(ours), process, options);
 }
 
-ProcessGuard::ProcessGuard(ProcessGuard&& other) noexcept
-    : pipe_(std::exchange(other.pipe_, -1)),
-      process_(std::exchange(other.process_, -1)),
-      options_(std::move(other.options_)) {}
-
 ProcessGuard::~ProcessGuard() {
-    if (pipe_ < 0) return;
+    if (!pipe_.is_open()) return;
     tell(GuardWord::farewell);
-    ::close(pipe_);
+    pipe_.close();
     ::waitpid(process_, nullptr, 0);
 }
 
@@ -125,7 +121,7 @@ void ProcessGuard::tell(GuardWord word, long light, double at_s) const {
     const Message message{word, light, at_s};
     ssize_t put = 0;
     do {
-        put = ::write(pipe_, &message, sizeof message);
+        put = ::write(pipe_.number(), &message, sizeof message);
     } while (put < 0 && errno == EINTR);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 #include "printing/wire/devices.hpp"
 #include "printing/wire/guard.hpp"
 
@@ -24,7 +25,7 @@ public:
     };
     /// Starts the process; nothing that the program has open stays open in it.
     [[nodiscard]] static Result<ProcessGuard> start(const Options& options);
-    ProcessGuard(ProcessGuard&& other) noexcept;
+    ProcessGuard(ProcessGuard&& other) noexcept = default;
     ProcessGuard& operator=(ProcessGuard&&) = delete;
     ~ProcessGuard() override;  ///< the process ends in peace
 
@@ -34,11 +35,11 @@ public:
     [[nodiscard]] std::optional<double> lit_s(long light) override;
 
 private:
-    ProcessGuard(int pipe, int process, Options options)
-        : pipe_(pipe), process_(process), options_(std::move(options)) {}
+    ProcessGuard(FileHandle pipe, int process, Options options)
+        : pipe_(std::move(pipe)), process_(process), options_(std::move(options)) {}
     void tell(GuardWord word, long light = 0, double at_s = 0) const;
 
-    int pipe_ = -1;
+    FileHandle pipe_;  ///< none where the guard has been moved from
     int process_ = -1;
     Options options_;
 };

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 
 namespace pliant::rehearse {
 
@@ -13,16 +14,13 @@ class MemoryFile {
 public:
     /// Empty. Errors: the system has no such files, or no more of them.
     [[nodiscard]] static Result<MemoryFile> make();
-    MemoryFile(MemoryFile&& other) noexcept;
-    MemoryFile& operator=(MemoryFile&& other) noexcept;
-    ~MemoryFile();
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:
     explicit MemoryFile(int file);
 
-    int file_ = -1;
+    FileHandle file_;
     std::filesystem::path path_;
 };
 

@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +14,9 @@
 #include <cstring>
 #include <thread>
 #include <utility>
+
+#include "base/core/file_handle.hpp"
+#include "base/core/process.hpp"
 
 namespace pliant::host {
 namespace {
@@ -29,39 +30,21 @@ std::filesystem::path screen_program(const std::filesystem::path& given) {
     return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "pliant-screen";
 }
 
-/// A file descriptor that is closed.
-struct File {
-    int number = -1;
-    ~File() { close(); }
-    void close() {
-        if (number >= 0) ::close(std::exchange(number, -1));
-    }
+/// A program at work, and what it says.
+struct Speaker {
+    pid_t process = -1;
+    FileHandle output;
 };
 
-/// Starts the program in a session of its own: no key that ends the host may end it. Its output goes to `output`.
-Result<pid_t> start(const std::filesystem::path& program, std::vector<std::string> words, int output) {
-    words.insert(words.begin(), program.string());
-    std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
-    pid_t process = -1;
-    const int error = posix_spawn(&process, program.c_str(), &files, &attributes, arguments.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    if (error != 0) return failure("{}: {}", program.string(), std::strerror(error));
-    return process;
+/// No key that ends the host may end the program: it runs in a session of its own.
+Result<Speaker> start(const std::filesystem::path& program, const std::vector<std::string>& words) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no pipe: {}", std::strerror(errno));
+    FileHandle output(ends[0]);
+    const FileHandle theirs(ends[1]);
+    const Result<pid_t> process = start_process(program, words, {.output = theirs.number()});
+    if (!process) return tl::unexpected(process.error());
+    return Speaker{*process, std::move(output)};
 }
 
 /// What a program says until it closes its output, or has said a line and `line_is_enough`.
@@ -86,15 +69,10 @@ void reap_later(pid_t process) {
 
 /// Starts the holder of a panel. Returns when it listens.
 Status start_screen(const std::filesystem::path& program, const std::vector<std::string>& words) {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no pipe: {}", std::strerror(errno));
-    File in{ends[0]};
-    File out{ends[1]};
-    const Result<pid_t> process = start(program, words, out.number);
-    if (!process) return tl::unexpected(process.error());
-    out.close();
-    std::string said = hear(in.number, true);
-    reap_later(*process);
+    const Result<Speaker> screen = start(program, words);
+    if (!screen) return tl::unexpected(screen.error());
+    std::string said = hear(screen->output.number(), true);
+    reap_later(screen->process);
     while (!said.empty() && said.back() == '\n') said.pop_back();
     if (said == "ready") return {};
     return failure("{}", said.empty() ? "pliant-screen does not start" : said);
@@ -209,16 +187,11 @@ Result<std::optional<Light>> ScreenProjector::finish() {
 }
 
 Result<std::vector<PanelInfo>> list_displays(const std::filesystem::path& program) {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no pipe: {}", std::strerror(errno));
-    File in{ends[0]};
-    File out{ends[1]};
-    const Result<pid_t> process = start(screen_program(program), {"--list"}, out.number);
-    if (!process) return tl::unexpected(process.error());
-    out.close();
-    std::string said = hear(in.number, false);
+    const Result<Speaker> lister = start(screen_program(program), {"--list"});
+    if (!lister) return tl::unexpected(lister.error());
+    std::string said = hear(lister->output.number(), false);
     int how = 0;
-    ::waitpid(*process, &how, 0);
+    ::waitpid(lister->process, &how, 0);
     if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) return failure("{}", said.substr(0, said.find('\n')));
     std::vector<PanelInfo> panels;
     while (!said.empty()) {

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 namespace pliant::host {
 namespace {
@@ -93,12 +92,6 @@ socklen_t abstract_address(const std::string& name, sockaddr_un& address) {
     return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
 }
 
-Result<ScreenSocket> new_socket(int& file) {
-    file = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    if (file < 0) return failure("no socket: {}", std::strerror(errno));
-    return ScreenSocket(file);
-}
-
 std::optional<ucred> other_end(int file) {
     ucred who{};
     socklen_t size = sizeof who;
@@ -113,21 +106,16 @@ bool is_same_user(int file) {
 
 }  // namespace
 
-ScreenSocket::ScreenSocket(ScreenSocket&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-
-ScreenSocket& ScreenSocket::operator=(ScreenSocket&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-}
-
-void ScreenSocket::close() {
-    if (file_ >= 0) ::close(std::exchange(file_, -1));
+Result<ScreenSocket> ScreenSocket::make() {
+    ScreenSocket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (!socket.is_open()) return failure("no socket: {}", std::strerror(errno));
+    return socket;
 }
 
 Result<ScreenSocket> ScreenSocket::listen(const std::string& name) {
-    int file = -1;
-    auto result = new_socket(file);
+    auto result = make();
     if (!result) return result;
+    const int file = result->file_.number();
     sockaddr_un address;
     const socklen_t size = abstract_address(name, address);
     if (::bind(file, reinterpret_cast<const sockaddr*>(&address), size) != 0 || ::listen(file, 8) != 0)
@@ -136,9 +124,9 @@ Result<ScreenSocket> ScreenSocket::listen(const std::string& name) {
 }
 
 Result<ScreenSocket> ScreenSocket::connect(const std::string& name) {
-    int file = -1;
-    auto result = new_socket(file);
+    auto result = make();
     if (!result) return result;
+    const int file = result->file_.number();
     sockaddr_un address;
     const socklen_t size = abstract_address(name, address);
     if (::connect(file, reinterpret_cast<const sockaddr*>(&address), size) != 0)
@@ -148,8 +136,8 @@ Result<ScreenSocket> ScreenSocket::connect(const std::string& name) {
 }
 
 ScreenSocket ScreenSocket::accept() const {
-    ScreenSocket host(::accept4(file_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    if (host.is_open() && !is_same_user(host.file_)) host.close();
+    ScreenSocket host(::accept4(file_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (host.is_open() && !is_same_user(host.file_.number())) host.close();
     return host;
 }
 
@@ -161,32 +149,32 @@ Status ScreenSocket::send(const Message& message) const {
     head.light = message.light;
     head.bytes = message.bytes.size();
     const Deadline deadline(send_timeout_s);
-    if (Status status = send_all(file_, reinterpret_cast<const char*>(&head), sizeof head, deadline); !status)
+    if (Status status = send_all(file_.number(), reinterpret_cast<const char*>(&head), sizeof head, deadline); !status)
         return status;
-    return send_all(file_, message.bytes.data(), message.bytes.size(), deadline);
+    return send_all(file_.number(), message.bytes.data(), message.bytes.size(), deadline);
 }
 
 Result<Message> ScreenSocket::receive(double timeout_s) const {
     const Deadline deadline(timeout_s);
     Head head;
-    if (Status status = receive_all(file_, reinterpret_cast<char*>(&head), sizeof head, deadline); !status)
+    if (Status status = receive_all(file_.number(), reinterpret_cast<char*>(&head), sizeof head, deadline); !status)
         return tl::unexpected(status.error());
     const bool good = head.magic == protocol && head.say <= Say::refused && head.bytes <= most_bytes;
     if (!good) return failure("the other end speaks another language: end all programs named pliant-screen");
     Message message{head.say, head.width_px, head.height_px, head.light, {}};
     message.bytes.resize(head.bytes);
-    if (Status status = receive_all(file_, message.bytes.data(), message.bytes.size(), deadline); !status)
+    if (Status status = receive_all(file_.number(), message.bytes.data(), message.bytes.size(), deadline); !status)
         return tl::unexpected(status.error());
     return message;
 }
 
 int ScreenSocket::peer_process() const {
-    const auto who = other_end(file_);
+    const auto who = other_end(file_.number());
     return who ? who->pid : 0;
 }
 
 bool ScreenSocket::has_news(double timeout_s) const {
-    return wait_for(file_, POLLIN, Deadline(timeout_s));
+    return wait_for(file_.number(), POLLIN, Deadline(timeout_s));
 }
 
 std::string screen_socket_name(std::string_view panel) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 #include "printing/wire/devices.hpp"
 
 namespace pliant::host {
@@ -33,14 +34,11 @@ struct Message {
     std::string bytes;
 };
 
-/// One end of the connection; closes it at its end.
+/// One end of the connection; closes it at its end. Movable.
 class ScreenSocket {
 public:
     ScreenSocket() = default;
     explicit ScreenSocket(int file) : file_(file) {}
-    ScreenSocket(ScreenSocket&& other) noexcept;
-    ScreenSocket& operator=(ScreenSocket&& other) noexcept;
-    ~ScreenSocket() { close(); }
 
     /// Listens under a name that nobody else has; an error if somebody has.
     [[nodiscard]] static Result<ScreenSocket> listen(const std::string& name);
@@ -49,8 +47,8 @@ public:
     /// The next host that waits; none: an empty socket. Other users' programs are turned away.
     [[nodiscard]] ScreenSocket accept() const;
 
-    [[nodiscard]] bool is_open() const { return file_ >= 0; }
-    void close();
+    [[nodiscard]] bool is_open() const { return file_.is_open(); }
+    void close() { file_.close(); }
     [[nodiscard]] Status send(const Message& message) const;
     /// Waits for a whole message. Errors: the time is over, the other end is gone, no message of ours.
     [[nodiscard]] Result<Message> receive(double timeout_s) const;
@@ -60,7 +58,10 @@ public:
     [[nodiscard]] bool has_news(double timeout_s) const;
 
 private:
-    int file_ = -1;
+    /// Neither listens nor is connected yet.
+    [[nodiscard]] static Result<ScreenSocket> make();
+
+    FileHandle file_;
 };
 
 /// The name under which the holder of a panel listens; `panel` is a display's or a folder's.

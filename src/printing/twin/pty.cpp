@@ -24,38 +24,33 @@ Status put_link(const std::filesystem::path& link, const std::string& device) {
 
 }  // namespace
 
-Pty::Pty(int file, int other_end, std::string device, std::filesystem::path link)
-    : file_(file), other_end_(other_end), device_(std::move(device)), link_(std::move(link)) {}
+Pty::Pty(FileHandle file, FileHandle other_end, std::string device)
+    : file_(std::move(file)), other_end_(std::move(other_end)), device_(std::move(device)) {}
 
 Pty::Pty(Pty&& other) noexcept
-    : file_(std::exchange(other.file_, -1)),
-      other_end_(std::exchange(other.other_end_, -1)),
+    : file_(std::move(other.file_)),
+      other_end_(std::move(other.other_end_)),
       device_(std::move(other.device_)),
       link_(std::exchange(other.link_, {})) {}
 
 Pty::~Pty() {
-    if (file_ >= 0) ::close(file_);
-    if (other_end_ >= 0) ::close(other_end_);
     std::error_code ignored;
     if (!link_.empty()) std::filesystem::remove(link_, ignored);
 }
 
 Result<Pty> Pty::open(const std::filesystem::path& link) {
-    const int file = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0 || ::grantpt(file) != 0 || ::unlockpt(file) != 0) {
-        if (file >= 0) ::close(file);
+    FileHandle file(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    if (!file.is_open() || ::grantpt(file.number()) != 0 || ::unlockpt(file.number()) != 0)
         return failure("no pseudo-terminal: {}", std::strerror(errno));
-    }
     std::array<char, 128> name{};
-    const bool named = ::ptsname_r(file, name.data(), name.size()) == 0;
-    const int other_end = named ? ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC) : -1;
-    Pty pty(file, other_end, name.data(), {});
+    const bool named = ::ptsname_r(file.number(), name.data(), name.size()) == 0;
+    FileHandle other_end(named ? ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC) : -1);
     termios settings{};
-    if (other_end < 0 || ::tcgetattr(other_end, &settings) != 0) {
+    if (!other_end.is_open() || ::tcgetattr(other_end.number(), &settings) != 0)
         return failure("no pseudo-terminal: {}", std::strerror(errno));
-    }
     ::cfmakeraw(&settings);
-    ::tcsetattr(other_end, TCSANOW, &settings);
+    ::tcsetattr(other_end.number(), TCSANOW, &settings);
+    Pty pty(std::move(file), std::move(other_end), name.data());
     if (!link.empty()) {
         if (Status status = put_link(link, pty.device_); !status) return tl::unexpected(status.error());
         pty.link_ = link;
@@ -64,11 +59,11 @@ Result<Pty> Pty::open(const std::filesystem::path& link) {
 }
 
 Result<std::string> Pty::read(double timeout_s) {
-    pollfd wait{file_, POLLIN, 0};
+    pollfd wait{file_.number(), POLLIN, 0};
     const int timeout_ms = static_cast<int>(std::clamp(timeout_s, 0.0, 3600.0) * 1000);
     if (::poll(&wait, 1, timeout_ms) <= 0) return std::string();
     std::array<char, 4096> bytes;
-    const ssize_t got = ::read(file_, bytes.data(), bytes.size());
+    const ssize_t got = ::read(file_.number(), bytes.data(), bytes.size());
     if (got > 0) return std::string(bytes.data(), static_cast<std::size_t>(got));
     if (got < 0 && errno != EAGAIN && errno != EINTR && errno != EIO) {
         return failure("{}: {}", device_, std::strerror(errno));
@@ -78,7 +73,7 @@ Result<std::string> Pty::read(double timeout_s) {
 
 void Pty::write(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t put = ::write(file_, bytes.data(), bytes.size());
+        const ssize_t put = ::write(file_.number(), bytes.data(), bytes.size());
         if (put <= 0) return;
         bytes.remove_prefix(static_cast<std::size_t>(put));
     }

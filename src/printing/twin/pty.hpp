@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 
 namespace pliant::twin {
 
@@ -27,9 +28,9 @@ public:
     void write(std::string_view bytes);
 
 private:
-    Pty(int file, int other_end, std::string device, std::filesystem::path link);
-    int file_;
-    int other_end_;  ///< kept open, so that the device survives hosts that come and go
+    Pty(FileHandle file, FileHandle other_end, std::string device);
+    FileHandle file_;
+    FileHandle other_end_;  ///< kept open, so that the device survives hosts that come and go
     std::string device_;
     std::filesystem::path link_;
 };

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "base/core/file_handle.hpp"
+
 namespace pliant::host {
 namespace {
 
@@ -20,21 +22,16 @@ class Opened {
 public:
     Opened(std::string device, int flags)
         : device_(std::move(device)), file_(::open(device_.c_str(), flags | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
-    ~Opened() {
-        if (file_ >= 0) ::close(file_);
-    }
-    Opened(const Opened&) = delete;
-    Opened& operator=(const Opened&) = delete;
 
-    [[nodiscard]] bool good() const { return file_ >= 0; }
-    [[nodiscard]] int file() const { return file_; }
+    [[nodiscard]] bool good() const { return file_.is_open(); }
+    [[nodiscard]] int file() const { return file_.number(); }
     [[nodiscard]] tl::unexpected<Error> error() const {
         return failure("emergency line {}: {}", device_, std::strerror(errno));
     }
 
 private:
     std::string device_;
-    int file_;
+    FileHandle file_;
 };
 
 /// A control line of a serial port: up lets the machine run.

@@ -95,7 +95,7 @@ Result<bool> wait_for(int file, short events, int timeout_ms) {
 Result<SerialWire> SerialWire::open(const std::string& device, int baud_rate) {
     const int file = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return input_error("{}: {}", device, std::strerror(errno));
-    SerialWire wire(file, device);
+    SerialWire wire(FileHandle(file), device);
     if (::isatty(file) != 1) return input_error("{}: not a serial port", device);
     if (Status status = take_alone(file); !status) return input_error("{}: {}", device, status.error().message);
     auto lock_file = make_lock_file(device);
@@ -109,12 +109,12 @@ Result<SerialWire> SerialWire::open(const std::string& device, int baud_rate) {
 }
 
 SerialWire::SerialWire(SerialWire&& other) noexcept
-    : file_(std::exchange(other.file_, -1)),
+    : file_(std::move(other.file_)),
       device_(std::move(other.device_)),
       lock_file_(std::exchange(other.lock_file_, {})) {}
 
 SerialWire& SerialWire::operator=(SerialWire&& other) noexcept {
-    std::swap(file_, other.file_);
+    file_ = std::move(other.file_);
     std::swap(device_, other.device_);
     std::swap(lock_file_, other.lock_file_);
     return *this;
@@ -123,26 +123,27 @@ SerialWire& SerialWire::operator=(SerialWire&& other) noexcept {
 SerialWire::~SerialWire() {
     std::error_code none;
     if (!lock_file_.empty()) std::filesystem::remove(lock_file_, none);
-    if (file_ >= 0) ::close(file_);
 }
 
 Status SerialWire::reset() {
     int dtr = TIOCM_DTR;
-    if (ioctl(file_, TIOCMBIC, &dtr) != 0) return failure("{}: cannot be reset: {}", device_, std::strerror(errno));
+    if (ioctl(file_.number(), TIOCMBIC, &dtr) != 0)
+        return failure("{}: cannot be reset: {}", device_, std::strerror(errno));
     ::usleep(reset_pulse_us);
-    if (ioctl(file_, TIOCMBIS, &dtr) != 0) return failure("{}: cannot be reset: {}", device_, std::strerror(errno));
+    if (ioctl(file_.number(), TIOCMBIS, &dtr) != 0)
+        return failure("{}: cannot be reset: {}", device_, std::strerror(errno));
     return {};
 }
 
 Status SerialWire::write(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t sent = ::write(file_, bytes.data(), bytes.size());
+        const ssize_t sent = ::write(file_.number(), bytes.data(), bytes.size());
         if (sent > 0) {
             bytes.remove_prefix(static_cast<std::size_t>(sent));
             continue;
         }
         if (sent < 0 && errno != EAGAIN && errno != EINTR) return failure("{}: {}", device_, std::strerror(errno));
-        const auto ready = wait_for(file_, POLLOUT, write_timeout_ms);
+        const auto ready = wait_for(file_.number(), POLLOUT, write_timeout_ms);
         if (!ready) return failure("{}: {}", device_, ready.error().message);
         if (!*ready) return failure("{}: takes no more bytes", device_);
     }
@@ -151,11 +152,11 @@ Status SerialWire::write(std::string_view bytes) {
 
 Result<std::string> SerialWire::read(double timeout_s) {
     const int timeout_ms = static_cast<int>(std::clamp(timeout_s, 0.0, 3600.0) * 1000);
-    const auto ready = wait_for(file_, POLLIN, timeout_ms);
+    const auto ready = wait_for(file_.number(), POLLIN, timeout_ms);
     if (!ready) return failure("{}: {}", device_, ready.error().message);
     if (!*ready) return std::string();
     std::array<char, 4096> bytes;
-    const ssize_t got = ::read(file_, bytes.data(), bytes.size());
+    const ssize_t got = ::read(file_.number(), bytes.data(), bytes.size());
     if (got > 0) return std::string(bytes.data(), static_cast<std::size_t>(got));
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return std::string();
     return failure("{}: {}", device_, got == 0 ? "the device is gone" : std::strerror(errno));

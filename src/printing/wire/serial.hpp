@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/file_handle.hpp"
 #include "printing/wire/devices.hpp"
 
 namespace pliant::host {
@@ -26,8 +27,8 @@ public:
     [[nodiscard]] Status reset() override;
 
 private:
-    SerialWire(int file, std::string device) : file_(file), device_(std::move(device)) {}
-    int file_ = -1;
+    SerialWire(FileHandle file, std::string device) : file_(std::move(file)), device_(std::move(device)) {}
+    FileHandle file_;
     std::string device_;
     std::string lock_file_;  ///< "": none was made
 };

@@ -1,0 +1,16 @@
+#include "base/core/file_handle.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace pliant {
+
+void FileHandle::close() noexcept {
+    if (!is_open()) return;
+    const int before = errno;  // an error that is being told
+    ::close(std::exchange(number_, -1));
+    errno = before;
+}
+
+}  // namespace pliant

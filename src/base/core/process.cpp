@@ -1,0 +1,74 @@
+#include "base/core/process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <cstring>
+
+namespace pliant {
+namespace {
+
+/// What the new process does with its files before the program begins.
+class FileActions {
+public:
+    explicit FileActions(const ProcessFiles& files) {
+        posix_spawn_file_actions_init(&actions_);
+        put(files.input, STDIN_FILENO, O_RDONLY);
+        put(files.output, STDOUT_FILENO, O_WRONLY);
+        put(-1, STDERR_FILENO, O_WRONLY);
+    }
+    FileActions(const FileActions&) = delete;
+    FileActions& operator=(const FileActions&) = delete;
+    ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
+
+    [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+private:
+    void put(int file, int place, int flags) {
+        if (file < 0)
+            posix_spawn_file_actions_addopen(&actions_, place, "/dev/null", flags, 0);
+        else
+            posix_spawn_file_actions_adddup2(&actions_, file, place);
+    }
+    posix_spawn_file_actions_t actions_;
+};
+
+/// A session of its own, and no blocked signals.
+class Attributes {
+public:
+    Attributes() {
+        posix_spawnattr_init(&attributes_);
+        sigset_t none;
+        sigemptyset(&none);
+        posix_spawnattr_setsigmask(&attributes_, &none);
+        posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
+    }
+    Attributes(const Attributes&) = delete;
+    Attributes& operator=(const Attributes&) = delete;
+    ~Attributes() { posix_spawnattr_destroy(&attributes_); }
+
+    [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+
+private:
+    posix_spawnattr_t attributes_;
+};
+
+}  // namespace
+
+Result<pid_t> start_process(const std::filesystem::path& program, std::vector<std::string> words,
+                            const ProcessFiles& files) {
+    words.insert(words.begin(), program.string());
+    std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    pid_t process = -1;
+    const int error = ::posix_spawn(&process, program.c_str(), FileActions(files).get(), Attributes().get(),
+                                    arguments.data(), environ);
+    if (error != 0) return failure("{}: cannot be started: {}", program.string(), std::strerror(error));
+    return process;
+}
+
+}  // namespace pliant

@@ -1,0 +1,90 @@
+#include "base/core/process.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <sstream>
+
+#include "base/core/file_handle.hpp"
+
+using namespace pliant;
+
+namespace {
+
+struct Pipe {
+    FileHandle out, in;
+};
+
+Pipe make_pipe() {
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe2(ends.data(), O_CLOEXEC) == 0);
+    return {FileHandle(ends[0]), FileHandle(ends[1])};
+}
+
+std::string read_all(const FileHandle& file) {
+    std::string text;
+    std::array<char, 256> bytes;
+    for (ssize_t got = 1; got > 0;) {
+        got = ::read(file.number(), bytes.data(), bytes.size());
+        if (got > 0) text.append(bytes.data(), static_cast<std::size_t>(got));
+    }
+    return text;
+}
+
+struct Ran {
+    pid_t process = 0;
+    std::string said;
+    int status = 0;  ///< as of waitpid()
+};
+
+/// What /bin/sh says when it runs `script` with `input`; -1: without any.
+Ran run(const std::string& script, int input = -1) {
+    Pipe pipe = make_pipe();
+    const Result<pid_t> process =
+        start_process("/bin/sh", {"-c", script, "sh", "two words", ""}, {input, pipe.in.number()});
+    REQUIRE(process);
+    pipe.in.close();
+    Ran ran{*process, read_all(pipe.out), 0};
+    REQUIRE(::waitpid(*process, &ran.status, 0) == *process);
+    return ran;
+}
+
+}  // namespace
+
+TEST_CASE("a process gets its words as they are and says what it says to whom it is told") {
+    const Ran ran = run("printf '%s|' \"$#\" \"$@\"; echo unheard >&2; exit 3");
+    CHECK(ran.said == "2|two words||");
+    CHECK(WEXITSTATUS(ran.status) == 3);
+}
+
+TEST_CASE("a process reads what it is given, and nothing otherwise") {
+    Pipe pipe = make_pipe();
+    REQUIRE(::write(pipe.in.number(), "given\n", 6) == 6);
+    pipe.in.close();
+    CHECK(run("cat", pipe.out.number()).said == "given\n");
+    CHECK(run("cat").said.empty());
+}
+
+TEST_CASE("a process leads a session of its own and blocks no signal") {
+    sigset_t all, before;
+    sigfillset(&all);
+    REQUIRE(::sigprocmask(SIG_SETMASK, &all, &before) == 0);
+    const Ran ran = run("cut -d' ' -f6 /proc/$$/stat; grep SigBlk /proc/$$/status");
+    REQUIRE(::sigprocmask(SIG_SETMASK, &before, nullptr) == 0);
+    std::istringstream words(ran.said);
+    pid_t session = 0;
+    std::string key, blocked;
+    words >> session >> key >> blocked;
+    CHECK(session == ran.process);
+    // Bit 16 is SIGCHLD, which a shell may block while it waits.
+    CHECK((std::stoull(blocked, nullptr, 16) & ~(1ULL << 16)) == 0);
+}
+
+TEST_CASE("a program that is not there is told") {
+    const Result<pid_t> process = start_process("/no/such/program", {}, {});
+    REQUIRE_FALSE(process);
+    CHECK(process.error().message == "/no/such/program: cannot be started: No such file or directory");
+}
