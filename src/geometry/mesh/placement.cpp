@@ -1,8 +1,9 @@
 #include "geometry/mesh/placement.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <utility>
+
+#include "base/core/rotation.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -24,12 +25,8 @@ std::vector<Vec3> placed_points(std::vector<Vec3> points, const Placement& place
 }  // namespace
 
 Vec3 moved(const Vec3& point, const RigidMotion& motion) {
-    // Rodrigues' formula.
-    const Vec3 k = unit(motion.axis);
-    const Vec3 arm = point - motion.center;
-    const double c = std::cos(motion.angle_rad), s = std::sin(motion.angle_rad);
-    const Vec3 turned = c * arm + s * cross(k, arm) + (1 - c) * dot(k, arm) * k;
-    return (motion.angle_rad == 0 ? point : motion.center + turned) + motion.shift;
+    if (motion.angle_rad == 0) return point + motion.shift;
+    return motion.center + turned(point - motion.center, unit(motion.axis), motion.angle_rad) + motion.shift;
 }
 
 Vec3 place(const Vec3& point, const Placement& placement) {

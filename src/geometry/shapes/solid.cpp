@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/rotation.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-/// Rotation of `p` about an axis through `center` (Rodrigues).
 Vec3 rotated(const Vec3& p, const RotatedSolid& r, double angle) {
-    const Vec3 k = r.axis / norm(r.axis);
-    const Vec3 v = p - r.center;
-    return r.center + std::cos(angle) * v + std::sin(angle) * cross(k, v) + (1 - std::cos(angle)) * dot(k, v) * k;
+    return turned(p - r.center, unit(r.axis), angle, r.center);
 }
 
 bool polygon_contains(const std::vector<std::array<double, 2>>& polygon, double u, double v) {

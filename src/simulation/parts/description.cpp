@@ -1,17 +1,13 @@
 #include "simulation/parts/description.hpp"
 
-#include <cmath>
+#include "base/core/rotation.hpp"
 
 namespace pliant::sim {
 
 Vec3 Support::position(const Vec3& rest, double share_now) const {
-    // Rodrigues' formula.
-    const Vec3 k = turn.axis / norm(turn.axis);
-    const Vec3 arm = rest - turn.center_m;
-    const double angle = share_now * turn.angle_rad;
-    const Vec3 turned =
-        std::cos(angle) * arm + std::sin(angle) * cross(k, arm) + (1 - std::cos(angle)) * dot(k, arm) * k;
-    return (turn.angle_rad == 0 ? rest : turn.center_m + turned) + share_now * move_m;
+    const Vec3 shift = share_now * move_m;
+    if (turn.angle_rad == 0) return rest + shift;
+    return turn.center_m + turned(rest - turn.center_m, unit(turn.axis), share_now * turn.angle_rad) + shift;
 }
 
 Vec3 position(const Attachment& point, std::span<const double> x) {
