@@ -10,7 +10,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -19,6 +18,7 @@
 
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
+#include "base/core/test_processes.hpp"
 
 using namespace pliant;
 namespace fs = std::filesystem;
@@ -74,20 +74,7 @@ public:
         return said_.find(text) != std::string::npos;
     }
     /// Whether it has started the program of this name.
-    [[nodiscard]] bool has_child(const std::string& name) const {
-        for (const auto& entry : fs::directory_iterator("/proc")) {
-            if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
-            std::ifstream file(entry.path() / "stat");
-            const std::string stat{std::istreambuf_iterator<char>(file), {}};
-            const std::size_t name_end = stat.rfind(')');
-            if (stat.find("(" + name + ")") == std::string::npos || name_end == std::string::npos) continue;
-            std::istringstream rest(stat.substr(name_end + 1));
-            char state = 0;
-            pid_t parent = 0;
-            if (rest >> state >> parent && parent == process_) return true;
-        }
-        return false;
-    }
+    [[nodiscard]] bool has_child(const std::string& name) const { return !test::children_of(process_, name).empty(); }
     bool ended() {
         listen();  // or it waits for somebody to read
         if (!ended_ && ::waitpid(process_, &status_, WNOHANG) == process_) ended_ = true;

@@ -5,60 +5,24 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <fstream>
 #include <thread>
 
 #include "base/core/test_folder.hpp"
+#include "base/core/test_processes.hpp"
+#include "base/core/test_variable.hpp"
 #include "geometry/mesh/test_shapes.hpp"
 #include "geometry/mesher/mesher.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
 using namespace pliant::mesh::test;
+using pliant::test::Variable;
 
 namespace {
 
-namespace fs = std::filesystem;
-
-/// An environment variable for as long as the test takes.
-class Variable {
-public:
-    Variable(const char* name, const std::string& value) : name_(name) {
-        if (const char* const before = std::getenv(name); before != nullptr) before_ = before;
-        ::setenv(name, value.c_str(), 1);
-    }
-    ~Variable() { before_.empty() ? ::unsetenv(name_) : ::setenv(name_, before_.c_str(), 1); }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
-
-private:
-    const char* name_;
-    std::string before_;
-};
-
 /// Processes of pliant-mesh that this program has started.
 std::vector<pid_t> meshers() {
-    std::vector<pid_t> found;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-        const std::string number = entry.path().filename();
-        if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-        std::ifstream file(entry.path() / "stat");
-        std::string stat{std::istreambuf_iterator<char>(file), {}};
-        const std::size_t name_end = stat.rfind(')');
-        if (stat.find("(pliant-mesh)") == std::string::npos || name_end == std::string::npos) continue;
-        std::istringstream rest(stat.substr(name_end + 1));
-        char state = 0;
-        pid_t parent = 0;
-        rest >> state >> parent;
-        if (parent != ::getpid()) continue;
-        // Its first thread may have ended while others, and its end of the socket, are still there.
-        std::error_code gone;
-        const auto threads =
-            std::distance(fs::directory_iterator(entry.path() / "task", gone), fs::directory_iterator());
-        if (state != 'Z' || threads > 1) found.push_back(static_cast<pid_t>(std::stol(number)));
-    }
-    return found;
+    return pliant::test::children_of(::getpid(), "pliant-mesh");
 }
 
 void kill_all() {
