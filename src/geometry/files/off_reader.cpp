@@ -3,9 +3,7 @@
 // colour, N a normal. All that is passed over, and so is a face's colour.
 #include <optional>
 
-#include "geometry/files/surface_file.hpp"
-#include "geometry/files/text_scanner.hpp"
-#include "geometry/mesh/point_welder.hpp"
+#include "geometry/files/surface_collector.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -43,12 +41,11 @@ public:
         for (std::size_t i = 0; i < faces_; ++i) {
             if (Status status = read_face(); !status) return tl::unexpected(status.error());
         }
-        if (file_.mesh.triangles.empty()) return scan_.error("holds no faces of three corners or more");
+        if (surface_.file().mesh.triangles.empty()) return scan_.error("holds no faces of three corners or more");
         if (thin_faces_ > 0)
-            file_.warnings.push_back(
+            surface_.file().warnings.push_back(
                 fmt::format("{}: {} face(s) of fewer than three corners were passed over", name(), thin_faces_));
-        file_.mesh.points = welder_.take();
-        return std::move(file_);
+        return surface_.take();
     }
 
 private:
@@ -73,34 +70,24 @@ private:
 
     Status read_vertex() {
         scan_.skip_comments('#');
-        Vec3 p;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Result<double> one = scan_.number();
-            if (!one) return tl::unexpected(one.error());
-            file_.printed.see(scan_.last_word());
-            p[k] = *one;
-        }
+        const Status status = surface_.read_vertex(scan_);
         scan_.rest_of_line();
-        place_.push_back(welder_.add(p));
-        return {};
+        return status;
     }
 
     Status read_face() {
         scan_.skip_comments('#');
         const Result<std::size_t> corners = scan_.count(2);
         if (!corners) return tl::unexpected(corners.error());
-        int first = -1;
-        int before = -1;
+        surface_.begin_face();
         for (std::size_t k = 0; k < *corners; ++k) {
             const Result<std::int64_t> number = scan_.integer();
             if (!number) return tl::unexpected(number.error());
-            if (*number < 0 || *number >= static_cast<std::int64_t>(place_.size()))
+            const std::size_t there = surface_.vertex_count();
+            if (*number < 0 || *number >= static_cast<std::int64_t>(there))
                 return scan_.error(
-                    fmt::format("a face names vertex {}, there are {} (the first is 0)", *number, place_.size()));
-            const int point = place_[static_cast<std::size_t>(*number)];
-            if (k == 0) first = point;
-            if (k >= 2) file_.mesh.triangles.push_back({first, before, point});
-            before = point;
+                    fmt::format("a face names vertex {}, there are {} (the first is 0)", *number, there));
+            surface_.add_corner(static_cast<std::size_t>(*number));
         }
         thin_faces_ += *corners < 3 ? 1 : 0;
         scan_.rest_of_line();
@@ -109,9 +96,7 @@ private:
 
     TextScanner scan_;
     std::size_t vertices_ = 0, faces_ = 0, thin_faces_ = 0;
-    PointWelder welder_;
-    std::vector<int> place_;  ///< welded index of each vertex of the file
-    SurfaceFile file_;
+    SurfaceCollector surface_;
 };
 
 }  // namespace

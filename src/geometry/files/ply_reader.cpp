@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "geometry/files/surface_file.hpp"
-#include "geometry/files/text_scanner.hpp"
-#include "geometry/mesh/point_welder.hpp"
+#include "geometry/files/surface_collector.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -90,9 +88,8 @@ public:
                 if (Status status = read_row(element, row, values); !status) return tl::unexpected(status.error());
             }
         }
-        if (file_.mesh.triangles.empty()) return values.error("holds no faces");
-        file_.mesh.points = welder_.take();
-        return std::move(file_);
+        if (surface_.file().mesh.triangles.empty()) return values.error("holds no faces");
+        return surface_.take();
     }
 
 private:
@@ -177,11 +174,11 @@ private:
             const auto axis = std::string_view("xyz").find(property.name);
             if (axis == std::string_view::npos) continue;
             p[axis] = *value;
-            file_.printed.see(values.printed());
+            surface_.file().printed.see(values.printed());
         }
         if (!is_vertex) return {};
         if (!is_finite(p)) return values.error(fmt::format("vertex {} is not finite", row));
-        place_.push_back(welder_.add(p));
+        surface_.add_vertex(p);
         return {};
     }
 
@@ -192,18 +189,15 @@ private:
             element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
         if (*length < (face ? 3 : 0) || *length != std::floor(*length))
             return values.error(fmt::format("{} {} has {} corners", element.name, row, *length));
-        int first = -1;
-        int before = -1;
+        if (face) surface_.begin_face();
         for (double k = 0; k < *length; ++k) {
             const Result<double> value = values.next(property.type);
             if (!value) return tl::unexpected(value.error());
             if (!face) continue;
-            if (!(*value >= 0 && *value < static_cast<double>(place_.size()) && *value == std::floor(*value)))
-                return values.error(fmt::format("face {} names vertex {}, there are {}", row, *value, place_.size()));
-            const int point = place_[static_cast<std::size_t>(*value)];
-            if (k == 0) first = point;
-            if (k >= 2) file_.mesh.triangles.push_back({first, before, point});
-            before = point;
+            const std::size_t there = surface_.vertex_count();
+            if (!(*value >= 0 && *value < static_cast<double>(there) && *value == std::floor(*value)))
+                return values.error(fmt::format("face {} names vertex {}, there are {}", row, *value, there));
+            surface_.add_corner(static_cast<std::size_t>(*value));
         }
         return {};
     }
@@ -212,9 +206,7 @@ private:
     TextScanner scan_;
     Values::Encoding encoding_ = Values::Encoding::text;
     std::vector<Element> elements_;
-    PointWelder welder_;
-    std::vector<int> place_;  ///< welded index of each vertex of the file
-    SurfaceFile file_;
+    SurfaceCollector surface_;
 };
 
 }  // namespace
