@@ -8,17 +8,14 @@
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "geometry/mesh/test_shapes.hpp"
 #include "geometry/repair/surface_check.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::mesh::test::tetrahedron;
 
 namespace {
-
-/// A tetrahedron of volume 1/6, outward normals.
-TriMesh tetrahedron() {
-    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-}
 
 std::string binary_stl(const TriMesh& mesh) {
     const pliant::test::Folder folder("stl");

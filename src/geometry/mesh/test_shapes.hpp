@@ -19,6 +19,11 @@ inline TriMesh cube(const Vec3& low = {0, 0, 0}, double side = 10) {
     return mesh;
 }
 
+/// The corner of a cube of side 1 at the origin: volume 1/6, outward normals.
+inline TriMesh tetrahedron() {
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+}
+
 inline TriMesh joined(TriMesh a, const TriMesh& b) {
     append(a, b);
     return a;

@@ -19,7 +19,7 @@ Box3 bounds(const BodyGeometry& body) {
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
     Packer request;
-    pack(request, std::vector<BodyGeometry>(bodies.begin(), bodies.end()));
+    pack(request, bodies);
     pack(request, settings);
     return unpacked<TetMesh>(ask_mesher(MessageKind::mesh_bodies, request.take(), crash, progress));
 }

@@ -137,7 +137,7 @@ private:
     }
 };
 
-/// Reads the shape at place `Index` of the variant.
+/// Reads what a ShapePacker wrote into a shape of the same kind.
 struct ShapeUnpacker {
     Unpacker& in;
     int depth;

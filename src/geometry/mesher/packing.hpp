@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -118,9 +119,14 @@ void unpack(Unpacker& in, Diagnostic& value);
 void unpack(Unpacker& in, Error& value);
 
 template <class T>
-void pack(Packer& out, const std::vector<T>& values) {
+void pack(Packer& out, std::span<const T> values) {
     out.number<std::uint64_t>(values.size());
     for (const T& value : values) pack(out, value);
+}
+/// What unpack() reads back from either.
+template <class T>
+void pack(Packer& out, const std::vector<T>& values) {
+    pack(out, std::span<const T>(values));
 }
 
 template <class T>

@@ -30,15 +30,13 @@ std::string bytes_after(const T& value) {
     return bytes_of(read);
 }
 
-const TriMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-
 /// A solid of every kind, one inside the other where a kind holds others.
 Solid every_kind() {
     const Solid ball = solid(SphereSolid{{1, 2, 3}, 4});
     const Solid rod = solid(CylinderSolid{{0, 0, 0}, {0, 0, 1. / 3}, 2});
     const Solid prism = solid(PrismSolid{{{0, 0}, {4, 0}, {0, 3}}, {0, 2, 1}, -1, 10});
-    const Solid faces = *polyhedron(tetrahedron);
-    const Solid step = solid(StepSolid{"part.step", {0, 2}, 1e-3, std::make_shared<const TriangleTree>(tetrahedron)});
+    const Solid faces = *polyhedron(tetrahedron());
+    const Solid step = solid(StepSolid{"part.step", {0, 2}, 1e-3, std::make_shared<const TriangleTree>(tetrahedron())});
     const Solid moved = solid(TranslatedSolid{solid(RotatedSolid{rod, {1, 1, 1}, {0, 1, 0}, 0.5}), {1, 2, 3}});
     const Solid row = solid(RepeatedSolid{moved, 6, {14, 0, 0}});
     const Solid air = solid(EnclosedSolid{{1, 1, 1}, {row, ball}});
@@ -53,16 +51,18 @@ TEST_CASE("what goes to the mesher arrives bit by bit") {
     CHECK(bytes_of(every_kind()).size() > 500);
     CHECK(bytes_after(BodyGeometry{"tip", every_kind(), true, 0.1}) ==
           bytes_of(BodyGeometry{"tip", every_kind(), true, 0.1}));
-    CHECK(bytes_after(BodyGeometry{"part", tetrahedron}) == bytes_of(BodyGeometry{"part", tetrahedron}));
+    CHECK(bytes_after(BodyGeometry{"part", tetrahedron()}) == bytes_of(BodyGeometry{"part", tetrahedron()}));
+    const std::vector<BodyGeometry> bodies{{"tip", every_kind(), true, 0.1}, {"part", tetrahedron()}};
+    CHECK(bytes_of(std::span<const BodyGeometry>(bodies)) == bytes_after(bodies));
     MeshSettings settings{.size = 0.1, .order = 1, .through_wall = 3, .judge_walls = true, .close_gaps = 1e-3};
     settings.cables = {{{0, 0, 0}, {1, 0, 0}}, {}};
     CHECK(bytes_after(settings) == bytes_of(settings));
 }
 
 TEST_CASE("what comes from the mesher arrives bit by bit") {
-    const TetMesh mesh{1, tetrahedron.points, {0, 1, 2, 3}, {0}, {"body"}, {"a note"}};
+    const TetMesh mesh{1, tetrahedron().points, {0, 1, 2, 3}, {0}, {"body"}, {"a note"}};
     CHECK(bytes_after(mesh) == bytes_of(mesh));
-    const StepContent content{{"lid"}, {tetrahedron}};
+    const StepContent content{{"lid"}, {tetrahedron()}};
     CHECK(bytes_after(content) == bytes_of(content));
     const Error error = error_of(Cause::failed, {{"robot.toml", 12, "body \"tip\"", "is empty"}, {"", 0, "", "a sum"}});
     CHECK(bytes_after(error) == bytes_of(error));

@@ -12,7 +12,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr std::size_t head_bytes = 4096;
+constexpr std::size_t head_bytes = 65536;  // what the readers look at to know a format
 
 template <class T>
 Result<Geometry> as_geometry(Result<T> content) {
@@ -31,6 +31,8 @@ GeometryKind geometry_kind(std::string_view bytes) {
 }
 
 GeometryKind geometry_kind_of(const std::filesystem::path& path) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none)) return GeometryKind::unknown;  // a pipe gives its bytes once
     std::string head(head_bytes, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -39,26 +41,19 @@ GeometryKind geometry_kind_of(const std::filesystem::path& path) {
 }
 
 Result<Geometry> open_geometry(const std::filesystem::path& path) {
+    // These two are read by others, or not yet: the head is enough.
+    const GeometryKind kind = geometry_kind_of(path);
+    if (kind == GeometryKind::threemf) return as_geometry(threemf::read_3mf(path));
+    if (kind == GeometryKind::step) return Geometry(StepPath{path});
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
     const std::string name = path.string();
-    switch (geometry_kind(*bytes)) {
-        case GeometryKind::threemf:
-            return as_geometry(threemf::read_3mf(path));
-        case GeometryKind::step:
-            return Geometry(StepPath{path});
-        case GeometryKind::tets:
-            return as_geometry(parse_tet_mesh(*bytes, name));
-        case GeometryKind::surface:
-            return as_geometry(parse_surface(*bytes, name));
-        case GeometryKind::unknown:
-            break;
-    }
+    if (looks_like_tet_mesh(*bytes)) return as_geometry(parse_tet_mesh(*bytes, name));
+    if (looks_like_surface(*bytes)) return as_geometry(parse_surface(*bytes, name));
     if (bytes->empty()) return input_error("{}: the file is empty", name);
     return input_error(
-        "{}: is no geometry that Pliant reads (surfaces: .stl, .obj, .ply or .off; solids: .step, .3mf; tet meshes: "
-        "{}; "
-        "by content)",
+        "{}: is no geometry that Pliant reads "
+        "(surfaces: .stl, .obj, .ply or .off; solids: .step, .3mf; tet meshes: {}; by content)",
         name, tet_format_list);
 }
 

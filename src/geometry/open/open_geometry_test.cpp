@@ -1,20 +1,20 @@
 #include "geometry/open/open_geometry.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
 #include "base/core/test_folder.hpp"
 #include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/test_shapes.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
 
 namespace {
 
-const TriMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-
-std::filesystem::path write(const test::Folder& folder, const std::string& name, const std::string& content) {
+std::filesystem::path write(const pliant::test::Folder& folder, const std::string& name, const std::string& content) {
     std::ofstream(folder.path() / name, std::ios::binary) << content;
     return folder.path() / name;
 }
@@ -22,9 +22,9 @@ std::filesystem::path write(const test::Folder& folder, const std::string& name,
 }  // namespace
 
 TEST_CASE("a file is what it holds, not what it is called") {
-    const test::Folder folder("open_geometry");
+    const pliant::test::Folder folder("open_geometry");
     const auto stl = folder.path() / "part.step";
-    REQUIRE(write_stl(stl, tetrahedron));
+    REQUIRE(write_stl(stl, mesh::test::tetrahedron()));
     const Result<Geometry> surface = open_geometry(stl);
     REQUIRE(surface);
     REQUIRE(std::holds_alternative<SurfaceFile>(*surface));
@@ -50,8 +50,36 @@ TEST_CASE("a file is what it holds, not what it is called") {
     CHECK(geometry_kind_of(folder.path() / "nowhere") == GeometryKind::unknown);
 }
 
+TEST_CASE("a solid's file is known by its head, and read by its reader alone") {
+    const pliant::test::Folder folder("open_geometry");
+    const auto step = write(folder, "huge.step", "ISO-10303-21;\nHEADER;\n");
+    std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a hole on the disk, more than read_file() takes
+    const Result<Geometry> solids = open_geometry(step);
+    REQUIRE_MESSAGE(solids, (solids ? "" : solids.error().message));
+    CHECK(std::holds_alternative<StepPath>(*solids));
+}
+
+TEST_CASE("long comments before the first keyword hide no format") {
+    const pliant::test::Folder folder("open_geometry");
+    std::string comments;
+    while (comments.size() < 20000) comments += "# exported by a program that says much about itself\n";
+    const auto obj = write(folder, "part.obj", comments + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    CHECK(geometry_kind_of(obj) == GeometryKind::surface);
+    CHECK(open_geometry(obj));
+}
+
+TEST_CASE("a pipe is refused at once, and not read") {
+    const pliant::test::Folder folder("open_geometry");
+    const auto pipe = folder.path() / "pipe.stl";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK(geometry_kind_of(pipe) == GeometryKind::unknown);
+    const Result<Geometry> refused = open_geometry(pipe);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message == pipe.string() + ": is not a regular file");
+}
+
 TEST_CASE("what no reader knows is told with what they know") {
-    const test::Folder folder("open_geometry");
+    const pliant::test::Folder folder("open_geometry");
     const auto letter = write(folder, "letter.txt", "Dear reader,\nthis is no mesh.\n");
     const Result<Geometry> unknown = open_geometry(letter);
     REQUIRE_FALSE(unknown);
