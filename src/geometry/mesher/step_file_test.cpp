@@ -106,3 +106,17 @@ TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is r
     (void)refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
     (void)refused("ISO-10303-21;\n\x01\xff\nEND-ISO-10303-21;\n");
 }
+
+TEST_CASE("a STEP file of a surface alone is refused with its name, once") {
+    const pliant::test::Folder folder("step");
+    const fs::path path = folder / "sheet.step";
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::model::occ::addRectangle(0, 0, 0, 10, 10);
+    gmsh::model::occ::synchronize();
+    gmsh::write(path.string());
+    gmsh::finalize();
+    const Result<Solid> solid = read_step(path, "", 1);
+    REQUIRE_FALSE(solid);
+    CHECK(solid.error().message == path.string() + ": holds no solid");
+}

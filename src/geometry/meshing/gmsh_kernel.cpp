@@ -1,11 +1,9 @@
-// Gmsh keeps one global state: every use holds the lock of a Session.
 #include "geometry/meshing/gmsh_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <new>
 #include <numbers>
 #include <numeric>
@@ -29,7 +27,7 @@ using gmsh::Entities;
 /// A Gmsh model of its own, silent and reproducible.
 class Session {
 public:
-    Session() : lock_(mutex()) {
+    Session() {
         gmsh::initialize();
         gmsh::option::set_number("General.Terminal", 0);
         gmsh::option::set_number("General.AbortOnError", 2);  // throw
@@ -48,13 +46,6 @@ public:
     }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
-
-private:
-    static std::mutex& mutex() {
-        static std::mutex one;
-        return one;
-    }
-    std::lock_guard<std::mutex> lock_;
 };
 
 /// Runs `work` in a session; what Gmsh throws becomes an error.
@@ -685,7 +676,7 @@ Entities import_surfaces(const std::string& file, double scale) {
 Result<StepContent> read_step(const std::string& file, double scale) {
     return in_session("reading", [&]() -> Result<StepContent> {
         const Entities solids = import_surfaces(file, scale);
-        if (solids.empty()) return input_error("{}: holds no solid", file);
+        if (solids.empty()) return input_error("holds no solid");
         StepContent content;
         for (const auto& solid : solids) {
             const std::string path = gmsh::model::get_entity_name(3, solid.second);

@@ -1,5 +1,5 @@
-// What this folder asks of Gmsh and Open CASCADE; use mesher.hpp from outside. Gmsh keeps one global state: all calls
-// wait for each other, and each begins with an empty model.
+// What this folder asks of Gmsh and Open CASCADE; use mesher.hpp from outside. Gmsh keeps one global state, so no two
+// calls may run at the same time: pliant-mesh serves one request after the other. Each call begins with an empty model.
 #pragma once
 
 #include <functional>
@@ -45,7 +45,7 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
 [[nodiscard]] Result<double> solid_volume(const Solid& solid);
 
-/// All solids of a STEP file, millimetres times `scale`.
+/// All solids of a STEP file, millimetres times `scale`. Errors do not name the file.
 [[nodiscard]] Result<StepContent> read_step(const std::string& file, double scale);
 
 /// Refuses a mesh of more than 20 million tets, by a body's volume and its surface's area.

@@ -162,6 +162,15 @@ Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyG
             continue;
         }
         return input_error(
+/// The mesher says which body, chamber or gap it is about, if it is about one.
+Diagnostic place_of(const Robot& robot, const Error& error) {
+    for (const Region& region : regions_of(robot)) {
+        if (!error.problems.empty() && error.problems.back().key == region.name)
+            return place(robot, region.line, "body", "");
+    }
+    return place(robot, 0, "", "");
+}
+
             "{}: fill_notches needs shapes, STEP files or closed surfaces of few flat faces, which \"{}\" is not",
             robot.file.string(), body.name);
     }
@@ -185,14 +194,7 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
         bodies.push_back({std::string(region.name), std::move(*space), true});
     }
     Result<mesh::TetMesh> mesh = mesh_within_budget(robot, bodies, progress);
-    if (!mesh) {
-        // The mesher says which body, chamber or gap it is about.
-        int line = robot.bodies.front().line;
-        for (const Region& region : regions_of(robot)) {
-            if (!mesh.error().problems.empty() && mesh.error().problems.back().key == region.name) line = region.line;
-        }
-        return tl::unexpected(at(place(robot, line, "body", ""), mesh.error()));
-    }
+    if (!mesh) return tl::unexpected(at(place_of(robot, mesh.error()), mesh.error()));
     mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
     return mesh;
 }

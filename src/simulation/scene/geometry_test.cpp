@@ -9,6 +9,7 @@
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "base/core/test_variable.hpp"
 #include "base/zip/zip_file.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "robot/file/robot_file.hpp"
@@ -265,6 +266,24 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
     }
     check_problem(head + body("root", "geometry = \"" + folder.file("root.step") + "\"\npart = \"lid\""),
                   "has no solid \"lid\"");
+}
+
+TEST_CASE("an error of the mesher is told at the body that it is about, and else of the robot file") {
+    const auto problem_of = [](const std::string& bodies) {
+        const Result<Robot> robot = parse_robot(head + bodies, "bar.toml", {"mesh.size=0.8 mm"});
+        REQUIRE(robot);
+        Progress silent;
+        const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+        REQUIRE_FALSE(mesh);
+        return mesh.error().message;
+    };
+    const std::string bar = body("bar", "geometry = { box = [[0, 0, 0], [40, 10, 10]] }");
+    const std::string lost = body("lost", "geometry = { box = [[1, 1, 1], [2, 2, 2]] }");
+    CHECK(problem_of(lost + bar) == "bar.toml:12: body: body \"lost\" is empty: all of it belongs to later ones");
+    const std::string apart = body("apart", "geometry = { box = [[50, 0, 0], [60, 10, 10]] }");
+    CHECK(problem_of(apart + lost + bar).starts_with("bar.toml:16: body: body \"lost\" is empty"));
+    const pliant::test::Variable soon("PLIANT_MESH_SECONDS", "1e-6");
+    CHECK(problem_of(bar).starts_with("bar.toml: meshing took longer than 1e-06 s and was ended"));
 }
 
 namespace {
