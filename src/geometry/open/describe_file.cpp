@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/core/counted.hpp"
 #include "geometry/files/tet_file.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/mesher/step_file.hpp"
@@ -39,8 +40,8 @@ Result<std::string> solids_text(const std::filesystem::path& path) {
     if (!volume) return tl::unexpected(volume.error());
     const std::size_t count = std::get<StepSolid>((*solids)->shape).numbers.size();
     const Vec3 size = bounds(*solids).size();
-    return fmt::format("STEP file: {} {}, volume {:.6g} mm^3, {:.6g} x {:.6g} x {:.6g} mm", count,
-                       count == 1 ? "solid" : "solids", *volume, size.x, size.y, size.z);
+    return fmt::format("STEP file: {}, volume {:.6g} mm^3, {:.6g} x {:.6g} x {:.6g} mm", counted(count, "solid"),
+                       *volume, size.x, size.y, size.z);
 }
 
 }  // namespace
