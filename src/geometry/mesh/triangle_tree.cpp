@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -121,17 +123,13 @@ int TriangleTree::build(int begin, int end) {
     const int index = static_cast<int>(nodes_.size());
     nodes_.push_back(node);
     if (end - begin <= leaf_size) return index;
-    const Vec3 size = middles.size();
-    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto key = [&](int triangle) {
+    const std::size_t axis = longest_axis(middles);
+    const int half = begin + (end - begin) / 2;
+    const auto items =
+        std::span(order_).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+    halve(items, static_cast<std::size_t>(half - begin), [&](int triangle) {
         const auto t = corners(triangle);
         return t[0][axis] + t[1][axis] + t[2][axis];
-    };
-    const int half = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, [&](int a, int b) {
-        const double ka = key(a);
-        const double kb = key(b);
-        return ka < kb || (ka == kb && a < b);
     });
     const int left = build(begin, half);
     const int right = build(half, end);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/curved_tets.hpp"
 #include "geometry/mesh/mesh_report.hpp"
 #include "geometry/meshing/drawn_improver.hpp"
@@ -69,13 +70,6 @@ Entities import_solids(const std::string& file, double scale) {
     std::erase_if(solids, [](const auto& entity) { return entity.first != 3; });
     if (scale != 1 && !solids.empty()) occ::dilate(solids, scale);
     return solids;
-}
-
-bool boxes_meet(const Box3& a, const Box3& b, double margin) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (a.low[i] > b.high[i] + margin || b.low[i] > a.high[i] + margin) return false;
-    }
-    return true;
 }
 
 /// Turns an expression into Open CASCADE volumes.
@@ -298,7 +292,7 @@ std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std:
     std::vector<std::string> notes;
     for (std::size_t i = 0; i < solids.size(); ++i) {
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
-            if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid), 0)) continue;
+            if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid))) continue;
             const double overlap = common_volume(volumes[i], volumes[j]);
             if (overlap <= 1e-9 * std::min(mass(volumes[i]), mass(volumes[j]))) continue;
             notes.push_back(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/mesh_report.hpp"
 #include "geometry/mesh/tet_locator.hpp"
 #include "geometry/meshing/gmsh_kernel.hpp"
@@ -441,12 +442,7 @@ void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
 std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, double margin) {
     std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
     const auto near = [&](const BodyGeometry& a, const BodyGeometry& b) {
-        const Box3 one = bounds(a);
-        const Box3 other = bounds(b);
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (one.low[k] > other.high[k] + margin || other.low[k] > one.high[k] + margin) return false;
-        }
-        return true;
+        return boxes_meet(bounds(a), bounds(b), margin);
     };
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const auto* surface = std::get_if<TriMesh>(&bodies[i].shape);

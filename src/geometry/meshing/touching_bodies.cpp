@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/core/boxes.hpp"
 #include "base/core/disjoint_sets.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 #include "geometry/meshing/gmsh_kernel.hpp"
@@ -15,13 +16,6 @@ namespace {
 constexpr double touch = 0.01;
 /// How well triangles follow a solid, as a share of the size.
 constexpr double chord = 0.02;
-
-bool near(const Box3& a, const Box3& b, double margin) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (a.low[k] > b.high[k] + margin || b.low[k] > a.high[k] + margin) return false;
-    }
-    return true;
-}
 
 /// A surface with what is asked of it again and again.
 struct Shape {
@@ -43,7 +37,7 @@ bool reaches(const Shape& one, const Shape& other, double size) {
         const double area = norm(normal);
         Box3 box;
         for (const int n : {i, j, k}) box.add(at(n));
-        if (!(area > 0) || !near(box, other.box, touch * size)) continue;
+        if (!(area > 0) || !boxes_meet(box, other.box, touch * size)) continue;
         const Vec3 aside = touch * size / area * normal;
         const double longest = std::max({norm(u), norm(v), norm(u - v)});
         const int rows = static_cast<int>(std::clamp(std::ceil(longest / size), 1.0, static_cast<double>(most)));
@@ -69,7 +63,8 @@ public:
         for (std::size_t j = 1; j < bodies_.size(); ++j) {
             for (std::size_t i = 0; i < j; ++i) {
                 const int one = static_cast<int>(i), other = static_cast<int>(j);
-                if (groups.find(one) == groups.find(other) || !near(boxes_[i], boxes_[j], touch * size_)) continue;
+                if (groups.find(one) == groups.find(other) || !boxes_meet(boxes_[i], boxes_[j], touch * size_))
+                    continue;
                 const Result<bool> joined = do_touch(i, j);
                 if (!joined) return tl::unexpected(joined.error());
                 if (*joined) groups.join(one, other);

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/tet_locator.hpp"
 
 namespace pliant::mesh {
@@ -27,13 +28,6 @@ Piece piece_of(const TetMesh& mesh, int region) {
     Piece piece{std::move(extract.mesh), {}, std::move(extract.node), region_faces(mesh, region)};
     for (const Vec3& p : piece.mesh.points) piece.box.add(p);
     return piece;
-}
-
-bool boxes_near(const Box3& a, const Box3& b, double tolerance) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (a.low[k] > b.high[k] + tolerance || b.low[k] > a.high[k] + tolerance) return false;
-    }
-    return true;
 }
 
 /// How far the surface of `one` stands from `other`, and where it is most; 0 where no face is near without being
@@ -76,7 +70,7 @@ std::vector<NarrowGap> narrow_gaps(const TetMesh& mesh, double tolerance) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         for (std::size_t j = i + 1; j < pieces.size(); ++j) {
             const bool empty = pieces[i].mesh.tet_count() == 0 || pieces[j].mesh.tet_count() == 0;
-            if (empty || !boxes_near(pieces[i].box, pieces[j].box, tolerance)) continue;
+            if (empty || !boxes_meet(pieces[i].box, pieces[j].box, tolerance)) continue;
             const auto there = widest(mesh, pieces[i], pieces[j], locator(j), tolerance);
             const auto back = widest(mesh, pieces[j], pieces[i], locator(i), tolerance);
             const auto& [width, at] = there.first >= back.first ? there : back;

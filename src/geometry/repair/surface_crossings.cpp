@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/box_tree.hpp"
+#include "base/core/boxes.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -79,13 +82,6 @@ bool overlap(const Corners& one, const Corners& other) {
     return true;
 }
 
-bool boxes_meet(const Box3& a, const Box3& b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
-    }
-    return true;
-}
-
 bool meet(const Corners& one, const Corners& other) {
     if (!boxes_meet(one.box, other.box)) return false;
     const auto common = std::count_if(one.node.begin(), one.node.end(), [&](int n) { return has_node(other, n); });
@@ -97,27 +93,31 @@ bool meet(const Corners& one, const Corners& other) {
 
 bool cuts_itself(const TriMesh& surface) {
     std::vector<Corners> triangles;
+    std::vector<Bounds> boxes;
     for (const auto& nodes : surface.triangles) {
         Corners t{{}, nodes, {}};
+        Bounds around;
         for (std::size_t k = 0; k < 3; ++k) {
             t.p[k] = surface.points[static_cast<std::size_t>(nodes[k])];
             t.box.add(t.p[k]);
+            around.add(t.p[k]);
         }
         triangles.push_back(t);
+        boxes.push_back(around);
     }
-    const Vec3 size = bounds(surface).size();
-    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    std::sort(triangles.begin(), triangles.end(),
-              [&](const Corners& a, const Corners& b) { return a.box.low[axis] < b.box.low[axis]; });
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        std::erase_if(open, [&](std::size_t o) { return triangles[o].box.high[axis] < triangles[i].box.low[axis]; });
-        for (const std::size_t o : open) {
-            if (meet(triangles[i], triangles[o])) return true;
-        }
-        open.push_back(i);
+    const BoxTree tree(boxes);
+    const BoxTree::Fit fit = tree.fit(boxes);
+    // Of two the one that begins farther along the surface is asked first: rounding may tell them apart.
+    const std::size_t axis = longest_axis(bounds(surface));
+    const auto begins = [&](int t) { return std::pair(triangles[static_cast<std::size_t>(t)].box.low[axis], t); };
+    bool found = false;
+    for (std::size_t leaf = 0; leaf < tree.leaf_count() && !found; ++leaf) {
+        tree.visit_overlaps(fit, leaf, tree, fit, [&](int i, int j) {
+            if (begins(i) < begins(j)) std::swap(i, j);
+            found = found || meet(triangles[static_cast<std::size_t>(i)], triangles[static_cast<std::size_t>(j)]);
+        });
     }
-    return false;
+    return found;
 }
 
 double finest_detail(const TriMesh& surface) {

@@ -6,7 +6,7 @@
 namespace pliant::mesh {
 
 /// True if an edge meets a triangle that it has no corner in common with, or triangles lie upon each other; touching
-/// counts, within rounding. Cost: about n log n for triangles of like size.
+/// counts, within rounding. Cost: about n log n.
 [[nodiscard]] bool cuts_itself(const TriMesh& surface);
 
 /// The smallest height of its triangles as a share of the surface's size (the diagonal of its box).

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 #include "geometry/repair/surface_shells.hpp"
 
@@ -117,13 +118,6 @@ void measure(const TriMesh& surface, Shell& shell) {
         for (const int corner : {a, b, c}) shell.box.add(at(corner));
         shell.volume += dot(at(a) - origin, cross(at(b) - origin, at(c) - origin)) / 6;
     }
-}
-
-bool boxes_meet(const Box3& a, const Box3& b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
-    }
-    return true;
 }
 
 bool lies_in(const Box3& inner, const Box3& outer) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/boxes.hpp"
 #include "base/core/text.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "geometry/files/tet_file.hpp"
@@ -66,13 +67,6 @@ std::vector<mesh::Solid> drawn_air(const Robot& robot) {
         if (solid != nullptr && !std::holds_alternative<mesh::EnclosedSolid>((*solid)->shape)) solids.push_back(*solid);
     }
     return solids;
-}
-
-bool boxes_overlap(const Box3& a, const Box3& b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (a.low[k] >= b.high[k] || b.low[k] >= a.high[k]) return false;
-    }
-    return true;
 }
 
 /// Where drawn bodies overlap the later one is printed, as it is the later one that is meshed.
@@ -162,6 +156,12 @@ Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyG
             continue;
         }
         return input_error(
+            "{}: fill_notches needs shapes, STEP files or closed surfaces of few flat faces, which \"{}\" is not",
+            robot.file.string(), body.name);
+    }
+    return crossed_notches(robot, walls, air);
+}
+
 /// The mesher says which body, chamber or gap it is about, if it is about one.
 Diagnostic place_of(const Robot& robot, const Error& error) {
     for (const Region& region : regions_of(robot)) {
@@ -169,12 +169,6 @@ Diagnostic place_of(const Robot& robot, const Error& error) {
             return place(robot, region.line, "body", "");
     }
     return place(robot, 0, "", "");
-}
-
-            "{}: fill_notches needs shapes, STEP files or closed surfaces of few flat faces, which \"{}\" is not",
-            robot.file.string(), body.name);
-    }
-    return crossed_notches(robot, walls, air);
 }
 
 Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) {

@@ -20,10 +20,10 @@
 #include <variant>
 #include <vector>
 
+#include "base/core/box_tree.hpp"
 #include "base/core/error.hpp"
 #include "geometry/mesh/tri_mesh.hpp"
 #include "simulation/contact/belonging.hpp"
-#include "simulation/contact/box_tree.hpp"
 #include "simulation/contact/ccd.hpp"
 #include "simulation/contact/friction.hpp"
 #include "simulation/contact/regions.hpp"

@@ -1,7 +1,8 @@
 #include "simulation/contact/regions.hpp"
 
 #include <algorithm>
-#include <utility>
+
+#include "base/core/boxes.hpp"
 
 namespace pliant::sim::contact {
 
@@ -45,13 +46,10 @@ std::size_t Regions::split(std::span<const double> positions, std::size_t begin,
     if (end - begin <= leaf_points) return node;
     Bounds box;
     for (std::size_t i = begin; i < end; ++i) box.add(node_at(positions, points_[i]));
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-        if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
-    const auto place = [&](int point) { return std::pair(node_at(positions, point)[axis], point); };
-    const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t axis = longest_axis(box);
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](int a, int b) { return place(a) < place(b); });
+    halve(std::span(points_).subspan(begin, end - begin), middle - begin,
+          [&](int point) { return node_at(positions, point)[axis]; });
     const std::size_t left = split(positions, begin, middle);
     const std::size_t right = split(positions, middle, end);
     nodes_[node].left = left;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "simulation/contact/box_tree.hpp"
+#include "base/core/box_tree.hpp"
 #include "simulation/contact/surface.hpp"
 
 namespace pliant::sim::contact {

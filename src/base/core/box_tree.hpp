@@ -9,7 +9,7 @@
 
 #include "base/core/vec3.hpp"
 
-namespace pliant::sim::contact {
+namespace pliant {
 
 /// An axis-aligned box, closed on all sides; empty until a point is added.
 struct Bounds {
@@ -186,4 +186,4 @@ private:
     std::vector<std::size_t> node_of_leaf_;
 };
 
-}  // namespace pliant::sim::contact
+}  // namespace pliant

@@ -1,18 +1,21 @@
-#include "simulation/contact/box_tree.hpp"
+#include "base/core/box_tree.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <random>
 #include <utility>
 
-#include "simulation/contact/test_derivatives.hpp"
-
 using namespace pliant;
-using namespace pliant::sim::contact;
 
 namespace {
 
 using IndexPairs = std::vector<std::pair<int, int>>;
+
+Vec3 random_vector(std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    return {uniform(random), uniform(random), uniform(random)};
+}
 
 std::vector<Bounds> random_boxes(std::size_t count, double size, unsigned seed) {
     std::mt19937 random(seed);

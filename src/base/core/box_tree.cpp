@@ -1,10 +1,11 @@
-#include "simulation/contact/box_tree.hpp"
+#include "base/core/box_tree.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <utility>
 
-namespace pliant::sim::contact {
+#include "base/core/boxes.hpp"
+
+namespace pliant {
 
 namespace {
 
@@ -46,14 +47,9 @@ std::size_t BoxTree::split(std::span<const Vec3> centres, std::size_t begin, std
     if (leaves > 1) {
         Bounds box;
         for (std::size_t i = begin; i < end; ++i) box.add(centres[order_[i]]);
-        std::size_t axis = 0;
-        for (std::size_t k = 1; k < 3; ++k)
-            if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
+        const std::size_t axis = longest_axis(box);
         const std::size_t middle = begin + (leaves + 1) / 2 * leaf_size;
-        const auto before = [&](int a, int b) {
-            return std::pair(centres[a][axis], a) < std::pair(centres[b][axis], b);
-        };
-        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, before);
+        halve(std::span(order_).subspan(begin, end - begin), middle - begin, [&](int i) { return centres[i][axis]; });
         split(centres, begin, middle);
         split(centres, middle, end);
     }
@@ -77,4 +73,4 @@ BoxTree::Fit BoxTree::fit(std::span<const Bounds> items) const {
     return fit;
 }
 
-}  // namespace pliant::sim::contact
+}  // namespace pliant
