@@ -42,6 +42,32 @@ struct Project {
     }
 };
 
+/// A studio with nothing in it, or with a file.
+std::unique_ptr<Studio> opened(const fs::path& file = {}) {
+    auto studio = Studio::open({file, "test"});
+    REQUIRE(studio);
+    return std::move(*studio);
+}
+
+/// With the bar of a project.
+std::unique_ptr<Studio> opened(const Project& project) {
+    return opened(project.base / "project" / "bar.toml");
+}
+
+/// With a robot of a project, once its model is built.
+std::unique_ptr<Studio> built(const Project& project, const std::string& robot = "bar.toml") {
+    auto studio = opened(project.base / "project" / robot);
+    REQUIRE(studio->simulation().wait_until_built());
+    return studio;
+}
+
+/// A page that has said its name.
+std::shared_ptr<Connection> joined(Studio& studio, const std::string& name) {
+    auto page = studio.join();
+    studio.receive(page, Json{{"type", "hello"}, {"page", name}}.dump());
+    return page;
+}
+
 Json head_of(const std::string& packet) {
     REQUIRE(packet.size() > 8);
     std::uint32_t length = 0;
@@ -80,17 +106,14 @@ std::string file_text(const fs::path& path) {
 
 TEST_CASE("a robot is opened, bent, edited, undone and saved") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    REQUIRE(studio.simulation().wait_until_built());
+    const auto owner = built(project);
+    Studio& studio = *owner;
     const Json scene = head_of(ask(studio, "GET", "/api/scene").body);
     CHECK(scene["robot"] == "bar");
     CHECK(scene["actuators"][0]["kind"] == "shortening_mm");
     CHECK(scene["actuators"][0]["rest"].get<double>() == near(40, {.relative = 1e-12}));
 
-    const auto page = studio.join();
-    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    const auto page = joined(studio, "first_page");
     studio.receive(page,
                    R"({"type":"drive","tag":1,"actuators":[{"name":"flexor","kind":"shortening_mm","value":2}]})");
     const Json bent = arrived(studio, page, 1);
@@ -129,12 +152,9 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
 
 TEST_CASE("a robot that was changed goes where the one before was wanted; another one starts from rest") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    REQUIRE(studio.simulation().wait_until_built());
-    const auto page = studio.join();
-    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
     studio.receive(page, R"({"type":"follow","tag":1,"time":0.5})");
     CHECK(arrived(studio, page, 1)["cables"][0]["length_mm"].get<double>() == near(39, {.relative = 1e-5}));
     const auto arrived_anew = [&](int revision, double time) {
@@ -178,12 +198,9 @@ TEST_CASE("expanding elements are steered by volume, and know no pressure") {
     std::ofstream(project.base / "project" / "bar.toml", std::ios::app)
         << "[[chamber]]\nname = \"air\"\nmodel = \"elements\"\ntarget = { volume_ratio = 1.2 }\n"
            "geometry = { box = [[5, 3, 2], [35, 7, 5]] }\n";
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    REQUIRE(studio.simulation().wait_until_built());
-    const auto page = studio.join();
-    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
     studio.receive(page, R"({"type":"drive","tag":1,"actuators":[{"name":"air","kind":"volume_ratio","value":1.15}]})");
     const Json blown = arrived(studio, page, 1);
     CHECK(blown["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
@@ -195,9 +212,8 @@ TEST_CASE("expanding elements are steered by volume, and know no pressure") {
 
 TEST_CASE("a page that comes back hears that there is neither job nor machine") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
     CHECK(studio.make().news() == std::vector<std::string>{R"({"revision":0,"type":"job"})"});
     CHECK(studio.print().news() == std::vector<std::string>{R"({"type":"machine"})"});
     CHECK(ask(studio, "GET", "/api/print/verdict").body == "null");
@@ -205,15 +221,11 @@ TEST_CASE("a page that comes back hears that there is neither job nor machine") 
 
 TEST_CASE("what the command line warns of, the page hears with every frame") {
     const Project project;
-    const auto through = project.base / "project" / "gripper.toml";
-    std::ofstream(through) << std::ifstream("examples/cable_gripper/gripper.toml").rdbuf()
-                           << "\n[contact]\nself = false\n";
-    auto opened = Studio::open({through, "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    REQUIRE(studio.simulation().wait_until_built());
-    const auto page = studio.join();
-    studio.receive(page, R"({"type":"hello","page":"first_page"})");
+    std::ofstream(project.base / "project" / "gripper.toml")
+        << std::ifstream("examples/cable_gripper/gripper.toml").rdbuf() << "\n[contact]\nself = false\n";
+    const auto owner = built(project, "gripper.toml");
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
     const auto gaps_closed = [](const Json& head) {
         const auto& all = head["warnings"];
         return std::any_of(all.begin(), all.end(), [](const Json& w) {
@@ -238,10 +250,8 @@ TEST_CASE("what the command line warns of, the page hears with every frame") {
 
 TEST_CASE("a mistake in the file is told with its line, and the robot before stays") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    REQUIRE(studio.simulation().wait_until_built());
+    const auto owner = built(project);
+    Studio& studio = *owner;
     std::string wrong = bar;
     wrong.replace(wrong.find("poisson_ratio"), 13, "poison_ratio_");
     CHECK(ask(studio, "PUT", "/api/robot", wrong).status == 200);
@@ -259,9 +269,8 @@ TEST_CASE("a mistake in the file is told with its line, and the robot before sta
 
 TEST_CASE("a text from the page reads no file outside of the folder") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
     for (const std::string& path : {std::string("../outside.stl"), (project.base / "outside.stl").string()}) {
         std::string text = bar;
         const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
@@ -276,12 +285,9 @@ TEST_CASE("a text from the page reads no file outside of the folder") {
 }
 
 TEST_CASE("who does not steer changes nothing") {
-    auto opened = Studio::open({"", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
-    const auto first = studio.join(), second = studio.join();
-    studio.receive(first, R"({"type":"hello","page":"first_page"})");
-    studio.receive(second, R"({"type":"hello","page":"second_page"})");
+    const auto owner = opened();
+    Studio& studio = *owner;
+    const auto first = joined(studio, "first_page"), second = joined(studio, "second_page");
     CHECK(ask(studio, "PUT", "/api/robot", bar, "second_page").status == 423);
     CHECK(ask(studio, "PUT", "/api/robot", bar).status == 423);
     CHECK(ask(studio, "PUT", "/api/robot", bar, "first_page").status == 200);
@@ -295,9 +301,8 @@ TEST_CASE("who does not steer changes nothing") {
 
 TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be given up") {
     const Project project;
-    auto opened = Studio::open({project.base / "project" / "bar.toml", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
     CHECK(ask(studio, "GET", "/api/job").status == 404);
     const auto page = studio.join();
     const auto wait_for_end = [&] {
@@ -330,9 +335,8 @@ TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be 
 }
 
 TEST_CASE("what is not there, and what the description says") {
-    auto opened = Studio::open({"", "test"});
-    REQUIRE(opened);
-    Studio& studio = **opened;
+    const auto owner = opened();
+    Studio& studio = *owner;
     CHECK(ask(studio, "GET", "/api/nothing").status == 404);
     CHECK(ask(studio, "GET", "/api/robot/").status == 404);
     CHECK(ask(studio, "DELETE", "/api/robot").status == 405);
