@@ -70,8 +70,8 @@ void add_plan(CLI::App& app, int& status) {
     command->add_flag("--spray", options->spray.wanted,
                       "report how clean the machine's spray heads get the finished part");
     command->add_option("--optimise-spray", options->spray.cleanness,
-                        "plan with the oscillation and time that remove this share of the film (0.95) with the least "
-                        "solution");
+                        "plan with the oscillation and time that remove this "
+                        "share of the film (0.95) with the least solution");
     command->add_option("--spray-picture", options->spray.picture_file,
                         "file for a picture of what the spray leaves on the part (.png)");
     add_output_options(*command, options->output, true);

@@ -126,9 +126,7 @@ Result<report::PictureSize> read_picture_size(const std::string& text) {
                       used == static_cast<int>(text.size());
     if (!read || std::min(size.width_px, size.height_px) < 100 || std::max(size.width_px, size.height_px) > 10000)
         return input_error(
-            "--picture-size: \"{}\" is not possible; write width and height, 100 to 10000 pixels, as in "
-            "800x500",
-            text);
+            "--picture-size: \"{}\" is not possible; write width and height, 100 to 10000 pixels, as in 800x500", text);
     return size;
 }
 

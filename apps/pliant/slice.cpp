@@ -170,8 +170,8 @@ void add_slice(CLI::App& app, int& status) {
     options->order.version = PLIANT_VERSION;
     add_slice_options(*command, *options);
     command->footer(
-        "Example: pliant slice examples/cable_gripper/gripper.toml --printer examples/printers/tower.toml -o "
-        "gripper.zip");
+        "Example: pliant slice examples/cable_gripper/gripper.toml "
+        "--printer examples/printers/tower.toml -o gripper.zip");
     on_call(*command, status, [options] { return slice(*options); });
 }
 

@@ -532,9 +532,8 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
             const auto is_left = [&](const auto& entry) { return entry.second == static_cast<int>(i); };
             if (std::none_of(solid_of_volume.begin(), solid_of_volume.end(), is_left))
                 return about(solids[i].name,
-                             {Cause::input, fmt::format("body \"{}\" is empty: all of it belongs to later "
-                                                        "ones",
-                                                        solids[i].name)});
+                             {Cause::input,
+                              fmt::format("body \"{}\" is empty: all of it belongs to later ones", solids[i].name)});
         }
         occ::synchronize();
         Entities joined;

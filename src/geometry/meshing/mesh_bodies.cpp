@@ -162,8 +162,8 @@ void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const
     Result<TetMesh> mesh = mesh_by_winding(surface, settings.size, settings.angle_deg, progress);
     if (!mesh || smallest_dihedral_deg(*mesh) <= angle) return;
     mesh->notes.front() = fmt::format(
-        "the surface could not be divided anew by Gmsh and was meshed from its winding number; check its volume: "
-        "{:.6g}",
+        "the surface could not be divided anew by Gmsh and was "
+        "meshed from its winding number; check its volume: {:.6g}",
         volume(*mesh));
     meshes = {std::move(*mesh)};
 }
@@ -361,10 +361,9 @@ std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const s
         const bool open = std::any_of(after.begin(), after.end(), [&](const NarrowGap& other) {
             return other.first == gap.first && other.second == gap.second;
         });
-        notes.push_back(told(gap, bodies) +
-                        (open ? " could not be closed: they are not joined there; draw them so that they touch or "
-                                "overlap"
-                              : " was closed; close_gaps says up to which width"));
+        notes.push_back(told(gap, bodies) + (open ? " could not be closed: they are not joined "
+                                                    "there; draw them so that they touch or overlap"
+                                                  : " was closed; close_gaps says up to which width"));
     }
     return notes;
 }

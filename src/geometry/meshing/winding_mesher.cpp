@@ -389,11 +389,10 @@ Status check_volumes(const TetMesh& mesh, const Task& task) {
         const double meshed = volume(mesh, static_cast<int>(s));
         const double expected = task.volumes[s];
         if (std::fabs(meshed - expected) <= 0.1 * expected) continue;
-        return kernel::about(
-            task.names[s],
-            {Cause::failed, fmt::format("the mesh of {} has a volume of {:.6g} instead of about {:.6g}; try "
-                                        "another mesh size",
-                                        task.names[s], meshed, expected)});
+        return kernel::about(task.names[s],
+                             {Cause::failed, fmt::format("the mesh of {} has a volume of {:.6g} "
+                                                         "instead of about {:.6g}; try another mesh size",
+                                                         task.names[s], meshed, expected)});
     }
     return {};
 }

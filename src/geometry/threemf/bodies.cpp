@@ -62,8 +62,8 @@ std::vector<Body> split_by_material(const Object& object, std::vector<std::strin
     }
     if (any_mixed)
         warnings.push_back(
-            fmt::format("{}: its triangles name {} materials or colours that do not bound volumes; it is "
-                        "printed in \"{}\"",
+            fmt::format("{}: its triangles name {} materials or colours "
+                        "that do not bound volumes; it is printed in \"{}\"",
                         object.name, object.materials.size(), mixed));
     std::vector<Body> bodies;
     for (const auto& [material, triangles] : triangles_of)

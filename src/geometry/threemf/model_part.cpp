@@ -57,8 +57,7 @@ private:
         model_.mm_per_unit = unit_mm(root.attribute("unit").value());
         if (model_.mm_per_unit == 0)
             problem_.note(
-                part_.at(root, fmt::format("unit=\"{}\" must be micron, millimeter, centimeter, inch, foot or "
-                                           "meter",
+                part_.at(root, fmt::format("unit=\"{}\" must be micron, millimeter, centimeter, inch, foot or meter",
                                            root.attribute("unit").value())));
         for (const std::string_view prefix : words(root.attribute("requiredextensions").value())) {
             const std::string_view address = part_.address_of_prefix(prefix);

@@ -69,8 +69,8 @@ private:
             const bool unknown = prefix.empty() && name != "xmlns" && !one_of(name, known);
             if (foreign || unknown)
                 once(node, attribute.name(),
-                     fmt::format("the core specification knows no attribute {} here (its section {}); it was passed "
-                                 "over",
+                     fmt::format("the core specification knows no attribute "
+                                 "{} here (its section {}); it was passed over",
                                  attribute.name(), foreign ? "2.3" : "3"));
         }
     }

@@ -96,9 +96,8 @@ std::string trapped(const twin::Report& r) {
     for (const twin::Trapped& t : r.trapped) ml += t.ml;
     const twin::Trapped& most = r.trapped.front();
     return fmt::format(
-        "<p class=\"message\">{:.3f} ml of liquid resin stay in the part, in {} {}; most of it in a {} between {:.2f} "
-        "and "
-        "{:.2f} mm.</p>\n",
+        "<p class=\"message\">{:.3f} ml of liquid resin stay in the part, "
+        "in {} {}; most of it in a {} between {:.2f} and {:.2f} mm.</p>\n",
         ml, r.trapped.size(), r.trapped.size() == 1 ? "place" : "places", most.closed ? "closed pocket" : "cup",
         most.z_begin_um / 1000.0, most.z_end_um / 1000.0);
 }

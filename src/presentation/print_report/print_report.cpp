@@ -183,8 +183,8 @@ std::string materials(const Printed& p) {
         const job::Material& material = m.materials[k];
         const int vat = p.plan.vat_of_material[k];
         out += fmt::format(
-            "<tr><td>{}{}</td><td>{}</td><td>{}</td><td>{:g} s</td><td>{:g} s</td><td>{:.3f} ml</td><td>{:.3f} "
-            "ml</td></tr>\n",
+            "<tr><td>{}{}</td><td>{}</td><td>{}</td><td>{:g} s</td><td>{:g} "
+            "s</td><td>{:.3f} ml</td><td>{:.3f} ml</td></tr>\n",
             swatch(static_cast<int>(k)), html_escaped(material.name), html_escaped(material.resin),
             vat < 0 ? "–" : fmt::format("{}", p.printer.vats[static_cast<std::size_t>(vat)].slot), material.exposure_s,
             material.bottom_exposure_s, resin[k].printed_ml, resin[k].all_ml);

@@ -79,9 +79,8 @@ std::string gantt(const plan::SwapTimeline& swap) {
     const double step = swap.seconds > 120 ? 30 : 10;
     for (double t = 0; t <= swap.seconds; t += step) {
         svg += fmt::format(
-            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1:.0f}\" stroke=\"#d9dde4\"/><text x=\"{0:.1f}\" "
-            "y=\"{2:.0f}\" "
-            "font-size=\"13\" text-anchor=\"middle\">{3:.0f}{4}</text>\n",
+            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1:.0f}\" stroke=\"#d9dde4\"/><text "
+            "x=\"{0:.1f}\" y=\"{2:.0f}\" font-size=\"13\" text-anchor=\"middle\">{3:.0f}{4}</text>\n",
             left + t * scale, rows * height, rows * height + 18, t, t == 0 ? " s" : "");
     }
     for (std::size_t d = 0; d < swap.devices.size(); ++d) {
@@ -171,8 +170,8 @@ std::string bed_table(const std::vector<Printer>& printers) {
     }
     return "<h2>How a swap follows from bed and motors</h2>\n" + text + "</table>\n" +
            fmt::format(
-               "<p class=\"note\">{}: the travel of its vats grows with the bed; accelerations and cleaning stay the "
-               "same.</p>\n",
+               "<p class=\"note\">{}: the travel of its vats grows with "
+               "the bed; accelerations and cleaning stay the same.</p>\n",
                html_escaped(p->name));
 }
 
@@ -224,24 +223,20 @@ std::string disagreements(const std::vector<Printer>& printers) {
         const Printer& tower = *kinds.tower;
         const plan::SwapSteps s = plan::figures(tower).swap;
         text += fmt::format(
-            "<li><b>62 or 63 s.</b> Table 4.1 says 62 s for a swap, the text 63 s; its parts 24 + 3 + 15 + 24 make 66 "
-            "s. They "
-            "agree if the hooks' 3 s lie within the 15 s of spray: 24 + 15 + 24 = 63. Reckoned from motions: {:.1f} + "
-            "{:.1f} "
-            "+ {:.1f} = {:.1f} s, the hooks' {:.1f} s among the spray.</li>\n",
+            "<li><b>62 or 63 s.</b> Table 4.1 says 62 s for a swap, the text 63 s; its parts 24 + 3 + 15 + 24 "
+            "make 66 s. They agree if the hooks' 3 s lie within the 15 s of spray: 24 + 15 + 24 = 63. Reckoned "
+            "from motions: {:.1f} + {:.1f} + {:.1f} = {:.1f} s, the hooks' {:.1f} s among the spray.</li>\n",
             s.push_s, s.clean_s, s.pull_s, s.total_s, s.hooks_s);
         text += pyramids();
         const auto times = plan::swap_over_vats(tower, {8, 32});
         text += fmt::format(
-            "<li><b>O(1).</b> To the next slot a swap takes {:.1f} s whatever the tower's height: its way is hidden "
-            "behind the "
-            "spray. To any slot it is O(n) too, with a small factor: {:.1f} s in the mean of 8 vats, {:.1f} s of "
-            "32.</li>\n",
+            "<li><b>O(1).</b> To the next slot a swap takes {:.1f} s whatever the tower's "
+            "height: its way is hidden behind the spray. To any slot it is O(n) too, "
+            "with a small factor: {:.1f} s in the mean of 8 vats, {:.1f} s of 32.</li>\n",
             times[0].next_s, times[0].mean_s, times[1].mean_s);
         text += fmt::format(
-            "<li><b>Packing.</b> About 0.6 is right for the four vats of the prototype ({:.2f}); eight in {:.0f} in "
-            "fill "
-            "{:.2f}, and the limit of vats and clearances of 4 in each is 0.50.</li>\n",
+            "<li><b>Packing.</b> About 0.6 is right for the four vats of the prototype ({:.2f}); eight "
+            "in {:.0f} in fill {:.2f}, and the limit of vats and clearances of 4 in each is 0.50.</li>\n",
             plan::tower_packing(tower, 4), plan::tower_height_mm(tower, 8) / 25.4, plan::tower_packing(tower, 8));
     }
     return text + "</ul>\n";

@@ -199,11 +199,11 @@ private:
         }
         const char place = marlin_place(printer_, axis).value_or(axis.letter);
         if (low->second > axis.min_um / 1000.0 + tolerance_mm || high->second < axis.max_um / 1000.0 - tolerance_mm) {
-            problems_.push_back(fmt::format(
-                "M211: {} may go from {} to {}, the printer file has {} to {}: build with {}_MIN_POS and {}_MAX_POS of "
-                "the travel",
-                axis.letter, decimal(low->second), decimal(high->second), decimal(axis.min_um / 1000.0),
-                decimal(axis.max_um / 1000.0), place, place));
+            problems_.push_back(
+                fmt::format("M211: {} may go from {} to {}, the printer file has {} "
+                            "to {}: build with {}_MIN_POS and {}_MAX_POS of the travel",
+                            axis.letter, decimal(low->second), decimal(high->second), decimal(axis.min_um / 1000.0),
+                            decimal(axis.max_um / 1000.0), place, place));
         }
     }
 

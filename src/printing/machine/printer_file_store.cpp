@@ -195,10 +195,9 @@ void check_wall(Reader& root, const Printer& p) {
     const Wall& w = p.wall;
     const int wide_um = p.carriage.along_y ? p.platform.width_um : p.platform.depth_um;
     if (w.columns > 1 && w.column_pitch_um < wide_um) {
-        root.problem("wall.column_pitch",
-                     fmt::format("is less than the platform is wide there, {:g} mm: the vats would not fit beside "
-                                 "each other",
-                                 wide_um / 1000.0));
+        root.problem("wall.column_pitch", fmt::format("is less than the platform is wide there, {:g} "
+                                                      "mm: the vats would not fit beside each other",
+                                                      wide_um / 1000.0));
     }
     if (w.lift_off_um >= w.clearance_um) root.problem("wall.lift_off", "must be less than the wall's clearance");
     if (w.rows > 1 && w.row_pitch_um - w.clearance_um < p.vat_shape.wall_um) {
@@ -259,10 +258,9 @@ void check_magnet(Reader& root, const Printer& p) {
     const double kg = m.vat_kg + most_ml * 1e-6 * m.resin_kg_m3;
     const double pull_N = kg * (m.friction * 9.81 + p.axis(Axis::carriage).acceleration_mm_s2 / 1000);
     if (m.force_N >= 2 * pull_N) return;
-    root.problem("hooks.force",
-                 fmt::format("{:g} N hold too little: to pull the fullest vat, {:.2f} kg, takes {:.1f} N, and a magnet "
-                             "needs twice that",
-                             m.force_N, kg, pull_N));
+    root.problem("hooks.force", fmt::format("{:g} N hold too little: to pull the fullest vat, "
+                                            "{:.2f} kg, takes {:.1f} N, and a magnet needs twice that",
+                                            m.force_N, kg, pull_N));
 }
 
 void check_store(Reader& root, const Printer& p) {

@@ -28,9 +28,8 @@ Status check_pressed(const Printer& printer, const Interlock& state, const Limit
     const int at_um = state.position()[s.axis];
     if (std::abs(at_um - end_um(printer, s)) <= switch_reach_um) return {};
     return failure(
-        "the {} limit switch of the {} is pressed, but the {} stands at {:.3f} mm: the switch is stuck, its wire is "
-        "off, "
-        "or \"inverted\" is wrong",
+        "the {} limit switch of the {} is pressed, but the {} stands at {:.3f} "
+        "mm: the switch is stuck, its wire is off, or \"inverted\" is wrong",
         end_name(s), axis_name(s.axis), axis_name(s.axis), at_um / 1000.0);
 }
 
@@ -40,9 +39,8 @@ Status check_both(const Printer& printer, const std::vector<LimitSwitch>& presse
         for (const LimitSwitch& high : pressed) {
             if (low.axis != high.axis || low.at_max || !high.at_max) continue;
             return failure(
-                "both limit switches of the {} are pressed: one of {} and {} is stuck, its wire is off, or "
-                "\"inverted\" "
-                "is wrong",
+                "both limit switches of the {} are pressed: one of {} and "
+                "{} is stuck, its wire is off, or \"inverted\" is wrong",
                 axis_name(low.axis), switch_names(printer, low).front(), switch_names(printer, high).front());
         }
     }

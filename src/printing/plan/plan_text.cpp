@@ -96,8 +96,8 @@ std::string solution_text(const SolutionUse& s) {
     if (s.pumped_ml <= 0) return "";
     if (!s.goes_round) return fmt::format("  {:<10}{:>7.0f} ml\n", "solution", s.used_ml);
     std::string text = fmt::format(
-        "  {:<10}{:>7.0f} ml   used up, of {:.0f} ml pumped; at the end {:.0f} ml with {:.2f} % of resin (spent at "
-        "{:g} %)\n",
+        "  {:<10}{:>7.0f} ml   used up, of {:.0f} ml pumped; at the "
+        "end {:.0f} ml with {:.2f} % of resin (spent at {:g} %)\n",
         "solution", s.used_ml, s.pumped_ml, s.liquid_ml, 100 * s.resin_share, 100 * s.spent_share);
     constexpr std::size_t most = 5;
     for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)

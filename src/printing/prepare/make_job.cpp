@@ -377,8 +377,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
         add_drawn(stacks[i].material, lit[i] * voxel_mm3, 0, job.manifest.materials);
         if (lost_px[i] * voxel_mm3 > voxel_mm3)
             job.manifest.warnings.push_back(
-                fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, "
-                            "which keep them",
+                fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, which keep them",
                             stacks[i].material, lost_px[i] * voxel_mm3));
     }
     job.summary.layer_count = source.count;

@@ -128,10 +128,9 @@ void note_far_exposure(const std::string& option, double seconds, double usual_s
                        const machine::Resin& resin, double layer_um, std::vector<std::string>& warnings) {
     constexpr double far = 2;
     if (usual_s <= 0 || (seconds * far >= usual_s && seconds <= usual_s * far)) return;
-    std::string text = fmt::format(
-        "--exposure {}: {:.4g} s is {:.3g} times the {:.4g} s that the printer file gives resin "
-        "\"{}\"",
-        option, seconds, seconds / usual_s, usual_s, resin.name);
+    std::string text =
+        fmt::format("--exposure {}: {:.4g} s is {:.3g} times the {:.4g} s that the printer file gives resin \"{}\"",
+                    option, seconds, seconds / usual_s, usual_s, resin.name);
     if (resin.penetration_um > 0 || (resin.cure_depth_um > 0 && resin.critical_share > 0))
         text += fmt::format(
             "; it cures {:.3g} um deep, layers are {:.4g} um",
@@ -233,8 +232,7 @@ Status add_support_material(const Order& order, const machine::Printer& printer,
         if (std::find(names.begin(), names.end(), resin.name) == names.end()) names.push_back(resin.name);
     }
     return input_error(
-        "--support {0}: is neither a material of the part nor a resin of the printer ({1}); or say "
-        "--resin {0}=RESIN",
+        "--support {0}: is neither a material of the part nor a resin of the printer ({1}); or say --resin {0}=RESIN",
         order.support, join_names(names));
 }
 
@@ -281,10 +279,10 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
     if (!asked) return asked;
     if (!*stacked) {
         if (!drawing.stacks.empty() && order.layer.empty())
-            drawing.warnings.push_back(fmt::format(
-                "layer images do not say how high their layers are: {} of the printer file are assumed; --layer says "
-                "otherwise",
-                um_text(*asked)));
+            drawing.warnings.push_back(
+                fmt::format("layer images do not say how high their layers are: {} "
+                            "of the printer file are assumed; --layer says otherwise",
+                            um_text(*asked)));
         return asked;
     }
     const double um = std::round(**stacked);

@@ -94,8 +94,8 @@ void judge_material(MaterialReport& m, bool exact_images, Verdict& verdict) {
     using Kind = Finding::Kind;
     // Showing rounds grey to whole values; a job made for another projector is further off.
     if (!exact_images && std::abs(m.wanted_mm3 - m.asked_mm3) > 0.01 * m.asked_mm3)
-        verdict.add(Kind::image, fmt::format("{}: on this projector the images hold {:.3f} mm^3, the job says {:.3f} "
-                                             "(grey, mask)",
+        verdict.add(Kind::image, fmt::format("{}: on this projector the images hold "
+                                             "{:.3f} mm^3, the job says {:.3f} (grey, mask)",
                                              m.name, m.wanted_mm3, m.asked_mm3));
     const double off = m.model_mm3 > 0 ? std::abs(m.cured_mm3 - m.model_mm3) : 0;
     m.passed = off <= m.tolerance_mm3 && m.foreign_mm3 == 0 && m.missing_mm3 == 0;

@@ -38,10 +38,9 @@ std::vector<std::string> overcure_warnings(const Cure& cure, const machine::Prin
         const double beyond_mm3 = cure.overcure_beyond_mm3()[vat];
         if (resin == nullptr || beyond_mm3 <= 0) continue;
         warnings.push_back(fmt::format(
-            "overcure: light will cure {:.3f} mm^3 of {} more than {:.0f} um below undersides (deepest of all: {:.0f} "
-            "um "
-            "at row {}, column {} of z {} um); \"print --twin\" fails unless --accept overcure says that it is meant; "
-            "less light, more absorber or bleed_compensation in the printer file helps",
+            "overcure: light will cure {:.3f} mm^3 of {} more than {:.0f} um below undersides (deepest of "
+            "all: {:.0f} um at row {}, column {} of z {} um); \"print --twin\" fails unless --accept overcure "
+            "says that it is meant; less light, more absorber or bleed_compensation in the printer file helps",
             beyond_mm3, resin->name, allowed_overcure_um(*resin), cure.deepest_overcure_um(), place.row, place.column,
             place.z_um));
     }

@@ -234,9 +234,8 @@ void read_actuators(Reader& root, Context& context) {
     const auto uses = [](const CableSpec& cable) { return cable.gap_elements; };
     if (context.robot.gaps.empty() && std::any_of(cables.begin(), cables.end(), uses))
         root.problem("",
-                     "a cable has model = \"gap-elements\", but there is no [[gap]]; fill_notches = true makes one of "
-                     "the notches that "
-                     "the cable crosses");
+                     "a cable has model = \"gap-elements\", but there is no [[gap]]; "
+                     "fill_notches = true makes one of the notches that the cable crosses");
 }
 
 }  // namespace pliant::robot

@@ -89,8 +89,7 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     if (reader.has("stiffest")) {
         (void)reader.raw("stiffest");
         reader.problem("stiffest",
-                       "goes with a shape_parameter by name: \"thesis\", \"small-strain\" or "
-                       "\"calibrated\"");
+                       "goes with a shape_parameter by name: \"thesis\", \"small-strain\" or \"calibrated\"");
     }
     material::ShapeBlend blend = material::shape_blend(material.youngs_modulus_Pa, nu);
     if (given != nullptr) {
@@ -199,8 +198,8 @@ void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& mat
     if (!(shear > 0)) {
         const std::string_view key = law == "ogden" ? "mu" : "c10";
         if (reader.has(key))
-            reader.problem(key, fmt::format("the initial shear modulus, {}, is {:.4g} MPa; a stable solid needs one "
-                                            "above zero",
+            reader.problem(key, fmt::format("the initial shear modulus, {}, is {:.4g} "
+                                            "MPa; a stable solid needs one above zero",
                                             shear_formula(law), shear / 1e6));
     }
     const double K = read_bulk(reader, shear > 0 ? shear : 1);

@@ -106,10 +106,10 @@ std::vector<std::string> ModelDraft::notes_on_points() const {
     std::vector<std::string> notes;
     for (const auto& [kind, counted] : points) {
         if (counted.outside == 0) continue;
-        notes.push_back(fmt::format(
-            "{} of {} {} lie outside the mesh, by up to {:.3g} mm; the nearest tetrahedra carry them (mesh.point_reach "
-            "is {:.3g} mm)",
-            counted.outside, counted.all, kind, 1e3 * counted.farthest_m, 1e3 * point_reach));
+        notes.push_back(
+            fmt::format("{} of {} {} lie outside the mesh, by up to {:.3g} mm; the "
+                        "nearest tetrahedra carry them (mesh.point_reach is {:.3g} mm)",
+                        counted.outside, counted.all, kind, 1e3 * counted.farthest_m, 1e3 * point_reach));
     }
     return notes;
 }
