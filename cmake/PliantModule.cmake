@@ -32,6 +32,8 @@ add_library(pliant_flags INTERFACE)
 target_compile_options(pliant_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                               $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # false alarms of GCC 12
                                               $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # what ccache asks for
+# All code may become part of the shared library, which shows its public interface alone.
+target_compile_options(pliant_flags INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
 if(PLIANT_SANITIZE)
   target_compile_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -g)
   target_link_options(pliant_flags INTERFACE -fsanitize=${PLIANT_SANITIZE})
