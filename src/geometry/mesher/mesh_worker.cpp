@@ -1,5 +1,6 @@
 #include "geometry/mesher/mesh_worker.hpp"
 
+#include <dlfcn.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -167,6 +168,23 @@ void pass_on(const std::string& bytes, Progress& progress) {
     if (in.finished()) progress.advance(stage, fraction);
 }
 
+/// Of the program, or of the shared library that this is part of.
+std::filesystem::path folder_of_this_code() {
+    Dl_info found{};
+    if (::dladdr(reinterpret_cast<const void*>(&mesher_limits), &found) == 0 || found.dli_fname == nullptr) return {};
+    return std::filesystem::path(found.dli_fname).parent_path();
+}
+
+/// Where the program may be, seen from a folder of programs or of libraries (which may be two levels below lib).
+std::vector<std::filesystem::path> mesher_near(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> paths{folder / "pliant-mesh"};
+    for (const char* up : {"..", "../.."}) {
+        paths.push_back(folder / up / "libexec/pliant/pliant-mesh");
+        paths.push_back(folder / up / "bin/pliant-mesh");
+    }
+    return paths;
+}
+
 }  // namespace
 
 MesherLimits mesher_limits() {
@@ -185,10 +203,12 @@ Result<std::filesystem::path> mesher_program() {
         return input_error("PLIANT_MESH names \"{}\", which is no file; it must be the program pliant-mesh", named);
     }
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& path :
-         {here / "pliant-mesh", here / "../libexec/pliant/pliant-mesh", fs::path(PLIANT_MESH_BUILT)}) {
-        if (fs::is_regular_file(path, error)) return path;
+    for (const fs::path& folder : {here, folder_of_this_code()}) {
+        for (const fs::path& path : mesher_near(folder)) {
+            if (fs::is_regular_file(path, error)) return path;
+        }
     }
+    if (fs::is_regular_file(PLIANT_MESH_BUILT, error)) return fs::path(PLIANT_MESH_BUILT);
     return failure(
         "shapes and surfaces are meshed by the program pliant-mesh, which is not beside {}; install it there, or set "
         "PLIANT_MESH to where it is",

@@ -67,7 +67,8 @@ TEST_CASE("bars stand where their times and layers are") {
 TEST_CASE("a plan without swaps or layers has a picture too") {
     plan::Plan plan;
     CHECK(plan_picture(plan, {}));
-    plan.job = std::string(300, 'x') + "\xff";
+    plan.job.assign(300, 'x');
+    plan.job.push_back('\xff');
     plan.layers = 1;
     plan.order = {{}};
     CHECK(plan_picture(plan, {}));

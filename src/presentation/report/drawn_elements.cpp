@@ -25,7 +25,7 @@ double turn_of(const std::vector<Point2>& border) {
     return sum;
 }
 
-DrawnFace drawn_face(const mesh::Face& face, const std::vector<Vec3>& positions, const Frame& frame,
+DrawnFace drawn_face(const mesh::Face& face, std::span<const Vec3> positions, const Frame& frame,
                      const Camera& camera) {
     // Corners and, where the mesh is quadratic, the nodes in the middle of the edges between them.
     static constexpr std::array<std::size_t, 7> round = {0, 3, 1, 4, 2, 5, 0};

@@ -157,10 +157,14 @@ TEST_CASE("input that does not fit together is refused with the reason") {
     CHECK(refused(robot, [](Simulation& s) { s.fields = nullptr; }) == "report: no function for the fields");
 
     auto broken = report::test::bent_bar(2, 1);
-    broken.result.steps[1].positions.pop_back();
+    const std::span<const Vec3> all = broken.result.steps[1].positions;
+    broken.result.steps[1].positions = std::vector<Vec3>(all.begin(), all.end() - 1);
     CHECK(refused(broken, [](Simulation&) {}).starts_with("report: step 1 has "));
     broken = report::test::bent_bar(2, 1);
-    broken.result.steps[2].positions[7].y = std::nan("");
+    const std::span<const Vec3> here = broken.result.steps[2].positions;
+    std::vector<Vec3> positions(here.begin(), here.end());
+    positions[7].y = std::nan("");
+    broken.result.steps[2].positions = positions;
     CHECK(refused(broken, [](Simulation&) {}) == "report: step 2 has positions that are not numbers");
     broken = report::test::bent_bar(2, 1);
     broken.result.steps[2].markers.clear();

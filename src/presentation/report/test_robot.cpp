@@ -105,7 +105,9 @@ Robot bent_bar(int steps, int order) {
     for (int i = 0; i <= steps; ++i) {
         sim::Step step = step_at(i, steps);
         const double angle = full * step.time;
-        for (const Vec3& p : robot.mesh.points) step.positions.push_back(bent(p, angle));
+        std::vector<Vec3> positions;
+        for (const Vec3& p : robot.mesh.points) positions.push_back(bent(p, angle));
+        step.positions = std::move(positions);
         std::vector<Vec3> cable = {{-0.02, 0.01, height}};
         for (int k = 0; k <= 8; ++k) cable.push_back(bent({size_m.x * k / 8, 0.01, height}, angle));
         double length = 0;

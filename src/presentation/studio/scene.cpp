@@ -70,12 +70,12 @@ double cable_length_m(const sim::Model& model, std::size_t c) {
     return length;
 }
 
-std::span<const double> flat(const std::vector<Vec3>& points) {
+std::span<const double> flat(std::span<const Vec3> points) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     return {&points.data()->x, 3 * points.size()};
 }
 
-std::vector<Vec3> wall_points(const sim::Wall& wall, const std::vector<Vec3>& positions) {
+std::vector<Vec3> wall_points(const sim::Wall& wall, std::span<const Vec3> positions) {
     std::vector<Vec3> points;
     for (const sim::Attachment& point : wall.points) points.push_back(sim::position(point, flat(positions)));
     return points;

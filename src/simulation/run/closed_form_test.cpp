@@ -129,7 +129,7 @@ std::vector<std::pair<std::array<double, 4>, double>> tet_points() {
 }
 
 /// Norm of (u - exact) over that of exact, both in L2.
-double l2_error(const mesh::TetMesh& mesh, const std::vector<Vec3>& positions, double amplitude) {
+double l2_error(const mesh::TetMesh& mesh, std::span<const Vec3> positions, double amplitude) {
     double wrong = 0;
     double whole = 0;
     for (const auto& [b, weight] : tet_points()) {

@@ -5,7 +5,6 @@
 
 #include "base/core/stopwatch.hpp"
 #include "simulation/run/describe.hpp"
-#include "simulation/run/live_inputs.hpp"
 #include "simulation/run/warnings.hpp"
 #include "simulation/stepper/stepper.hpp"
 
@@ -20,7 +19,7 @@ constexpr double least_way = 1e-300;
 
 /// Inputs change direction at any time: only the last state tells where the next one is.
 StepperOptions options_of(const Program& program) {
-    return {program.solver, program.tolerance, most_iterations, std::nullopt, 1};
+    return {program.solver, program.tolerance, most_iterations, std::nullopt, 1, program.duration / program.steps};
 }
 
 }  // namespace
@@ -28,16 +27,12 @@ StepperOptions options_of(const Program& program) {
 class Live::Walk {
 public:
     Walk(const Model& model, const Program& program)
-        : stepper_(model, options_of(program)),
-          units_(stepper_.system(), program.duration / program.steps),
-          spring_(stepper_.system(), stepper_.laplacian()) {
+        : stepper_(model, options_of(program)), spring_(stepper_.system(), stepper_.laplacian()) {
         return_to_rest();
     }
 
     void return_to_rest() {
         robot_ = stepper_.rest();
-        inputs_ = {0, target_at(0).drives, Eigen::Vector3d::Zero()};
-        before_.reset();
         spring_.let_go();
         last_ = {};
         stride_ = 1;
@@ -45,20 +40,10 @@ public:
     }
 
     [[nodiscard]] LiveTarget target_at(double time) const {
-        const Controls controls = system().controls(time);
-        LiveTarget target{time, {}, std::nullopt};
-        for (std::size_t a = 0; a < steered(); ++a) target.drives.push_back(controls.drives[a]);
-        return target;
+        return {time, stepper_.program(time).drives, std::nullopt};
     }
 
-    [[nodiscard]] Drive hold(std::size_t a, Drive::Kind kind) const {
-        const Eigen::VectorXd& x = robot_.x();
-        const double g = system().actuators()[a].measure({x.data(), static_cast<std::size_t>(x.size())});
-        const double m = robot_.now.state.multiplier[static_cast<Eigen::Index>(a)];
-        if (kind == Drive::Kind::measure) return {kind, g};
-        if (kind == Drive::Kind::multiplier) return {kind, m};
-        return {kind, (system().model().description().ambient_pressure_Pa - m) * g};
-    }
+    [[nodiscard]] Drive hold(std::size_t a, Drive::Kind kind) const { return stepper_.hold(robot_, a, kind); }
 
     LiveProgress advance(const LiveTarget& target, const Progress& progress) {
         Stopwatch watch;
@@ -74,7 +59,7 @@ public:
 
     [[nodiscard]] Step describe() const {
         Step step;
-        step.time = inputs_.time;
+        step.time = robot_.inputs.time;
         step.iterations = last_.iterations;
         step.wall_s = wall_s_;
         step.solver = last_.solver;
@@ -95,7 +80,7 @@ public:
 
     [[nodiscard]] Vec3 pull_force_N() const {
         if (!spring_.pull()) return {};
-        return {inputs_.force_N[0], inputs_.force_N[1], inputs_.force_N[2]};
+        return {robot_.inputs.force_N[0], robot_.inputs.force_N[1], robot_.inputs.force_N[2]};
     }
 
     [[nodiscard]] std::vector<double> rest_measures() const {
@@ -114,39 +99,38 @@ private:
     /// Another point that is pulled, or another kind of drive: from there on the way is a new one.
     void take_up(const LiveTarget& target) {
         if (target.pull && spring_.take_up(*target.pull, robot_)) {
-            if (inputs_.force_N.squaredNorm() > 0) stale_ = true;  // it was let go of in one go
-            inputs_.force_N.setZero();
-            before_.reset();
+            if (robot_.inputs.force_N.squaredNorm() > 0) stale_ = true;  // it was let go of in one go
+            robot_.inputs.force_N.setZero();
+            robot_.before.reset();
         }
         for (std::size_t a = 0; a < steered(); ++a) {
-            if (inputs_.drives[a].kind == target.drives[a].kind) continue;
-            inputs_.drives[a] = hold(a, target.drives[a].kind);
-            before_.reset();
+            if (robot_.inputs.drives[a].kind == target.drives[a].kind) continue;
+            robot_.inputs.drives[a] = hold(a, target.drives[a].kind);
+            robot_.before.reset();
         }
     }
 
     /// Without a pull the force falls to zero on the way.
     [[nodiscard]] Eigen::Vector3d wanted_force(const std::optional<Pull>& pull) const {
-        return pull ? spring_.balance(robot_.x(), inputs_.force_N) : Eigen::Vector3d::Zero();
+        return pull ? spring_.balance(robot_.x(), robot_.inputs.force_N) : Eigen::Vector3d::Zero();
     }
 
     [[nodiscard]] bool is_settled(const std::optional<Pull>& pull) const {
-        return !pull || spring_.is_settled(robot_.x(), inputs_.force_N);
+        return !pull || spring_.is_settled(robot_.x(), robot_.inputs.force_N);
     }
 
     /// How far `wanted` is, in pieces at a stride of 1.
     [[nodiscard]] double distance(const Inputs& wanted) const {
-        double most = units_.distance(inputs_, wanted);
+        double most = stepper_.units().distance(robot_.inputs, wanted);
         if (stale_) most = std::max(most, least_way);
-        const Eigen::Vector3d change = wanted.force_N - inputs_.force_N;
+        const Eigen::Vector3d change = wanted.force_N - robot_.inputs.force_N;
         if (change.squaredNorm() == 0) return most;
-        return std::max(
-            {most, spring_.pull() ? spring_.distance(change) : change.norm() / units_.tension_N(), least_way});
+        return std::max({most, spring_.pull() ? spring_.distance(change) : change.norm() / stepper_.units().tension_N(),
+                         least_way});
     }
 
     [[nodiscard]] Controls controls_of(const Inputs& inputs) const {
-        Controls controls = stepper_.controls(robot_, inputs.time);
-        for (std::size_t a = 0; a < steered(); ++a) controls.drives[a] = inputs.drives[a];
+        Controls controls = stepper_.controls(robot_, inputs);
         if (spring_.pull()) spring_.add_force(inputs.force_N, controls.external_N);
         return controls;
     }
@@ -154,7 +138,7 @@ private:
     LiveProgress go(const Inputs& wanted, double way, const Progress& progress) {
         LiveProgress result;
         for (;;) {
-            const Inputs next = between(inputs_, wanted, std::min(1.0, stride_ / way));
+            const Inputs next = between(robot_.inputs, wanted, std::min(1.0, stride_ / way));
             const StepReport report = leap(next, progress);
             result.iterations += report.iterations;
             if (report.arrived) {
@@ -175,34 +159,31 @@ private:
 
     /// On along the way of the last piece where this one goes the same way, or back; else from where it is.
     StepReport leap(const Inputs& next, const Progress& progress) {
-        const double onward = before_ ? units_.onward_share(*before_, inputs_, next) : 0;
-        robot_.now.along = 0;
-        if (!robot_.past.empty()) robot_.past.back().along = -1;
-        const Way way{onward != 0 ? onward : 1, [&](double) { return controls_of(next); }, 0, onward != 0};
+        const bool onward = stepper_.set_course(robot_, next);
+        const Way way{1, [&](double) { return controls_of(next); }, 0, onward};
+        const Inputs now = robot_.inputs;
         const Vec3 point = spring_.pull() ? spring_.point_at(robot_.x()) : Vec3{};
         StepReport report = stepper_.leap(robot_, way, progress);
         if (!report.arrived) return report;
-        if (spring_.pull()) learn(next, spring_.point_at(robot_.x()) - point);
-        before_ = std::exchange(inputs_, next);
+        if (spring_.pull()) learn(now, next, spring_.point_at(robot_.x()) - point);
+        robot_.before = now;
+        robot_.inputs = next;
         stale_ = false;
         return report;
     }
 
-    void learn(const Inputs& next, const Vec3& moved_m) {
-        const Eigen::Vector3d force = next.force_N - inputs_.force_N;
-        const double pieces = force.norm() / units_.tension_N();
+    void learn(const Inputs& now, const Inputs& next, const Vec3& moved_m) {
+        const Eigen::Vector3d force = next.force_N - now.force_N;
+        const double pieces = force.norm() / stepper_.units().tension_N();
         if (!(pieces > 1e-9)) return;
-        if (units_.change(inputs_, next).norm() > 1.05 * pieces) return;  // others moved it too
+        if (stepper_.units().change(now, next).norm() > 1.05 * pieces) return;  // others moved it too
         spring_.learn(force, moved_m);
     }
 
     Stepper stepper_;
-    InputUnits units_;
     PullSpring spring_;
     RobotState robot_;
-    Inputs inputs_;                 ///< of the state
-    std::optional<Inputs> before_;  ///< of the state before, if the way from it is worth following
-    bool stale_ = false;            ///< the state is not in equilibrium with its inputs
+    bool stale_ = false;  ///< the state is not in equilibrium with its inputs
     double stride_ = 1;
     StepReport last_;  ///< of the piece that led to the state
     double wall_s_ = 0;

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
 #include "base/core/stopwatch.hpp"
 #include "simulation/run/describe.hpp"
+#include "simulation/run/position_file.hpp"
 #include "simulation/run/warnings.hpp"
 
 namespace pliant::sim {
@@ -21,7 +23,11 @@ public:
           options_(std::move(options)),
           stepper_(model, stepper_options(program)),
           rest_(stepper_.rest()),
-          checks_(stepper_, program, rest_) {}
+          checks_(stepper_, program, rest_) {
+        const auto nodes = static_cast<std::size_t>(model.node_count());
+        const auto steps = static_cast<std::size_t>(program.steps) + 1;
+        if (steps * nodes * sizeof(Vec3) > options_.memory_bytes) file_ = PositionFile::make(steps, nodes);
+    }
 
     Trajectory run(Progress& progress) {
         begin();
@@ -45,6 +51,7 @@ private:
         if (options_.begin) {
             now_ = *std::exchange(options_.begin, std::nullopt);
             checks_.set_state(now_.checks);
+            for (Step& step : now_.so_far.steps) put_on_disk(step);
         } else {
             now_.robot = rest_;
             now_.checks = checks_.state();
@@ -102,7 +109,12 @@ private:
         if (program_.dynamics) step.kinetic_energy_J = stepper_.kinetic_energy_J(robot);
     }
 
+    void put_on_disk(Step& step) {
+        if (file_) step.positions = file_->keep(static_cast<std::size_t>(step.index), step.positions);
+    }
+
     void add(Step step) {
+        put_on_disk(step);
         if (options_.on_step) options_.on_step(step);
         now_.so_far.steps.push_back(std::move(step));
     }
@@ -133,12 +145,14 @@ private:
     RobotState rest_;
     RunChecks checks_;
     RunState now_;
+    std::unique_ptr<PositionFile> file_;  ///< null: in memory
 };
 
 }  // namespace
 
 StepperOptions stepper_options(const Program& program) {
-    return {program.solver, program.tolerance, program.iteration_limit, program.dynamics};
+    return {program.solver,   program.tolerance,       program.iteration_limit,
+            program.dynamics, RotatingStep::most_past, program.duration / program.steps};
 }
 
 Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options) {

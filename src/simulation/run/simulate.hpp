@@ -28,6 +28,8 @@ struct RunOptions {
     /// Called after every `checkpoint_every` steps; an error ends the run. May be empty.
     std::function<Status(const RunState&)> on_checkpoint{};
     int checkpoint_every = 1;
+    /// What the positions of all steps may take of memory; beyond it they are in a file that has no name.
+    std::size_t memory_bytes = std::size_t{256} << 20U;
     /// Goes on from here instead of from rest: a state of a run of the same model and program.
     std::optional<RunState> begin{};
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/core/vec3.hpp"
+#include "simulation/run/node_positions.hpp"
 #include "simulation/solver/iteration_record.hpp"
 
 namespace pliant::sim {
@@ -71,7 +72,7 @@ struct Step {
     bool met = false;                ///< the robot has met itself, where contact with itself waits for that
     std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
     std::vector<MarkerState> markers;
-    std::vector<Vec3> positions;  ///< (n, 3)
+    NodePositions positions;  ///< (n, 3)
 };
 
 struct Trajectory {

@@ -3,11 +3,13 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "simulation/elements/inertia.hpp"
 #include "simulation/solver/equilibrium.hpp"
 #include "simulation/solver/solver_memory.hpp"
+#include "simulation/stepper/inputs.hpp"
 
 namespace pliant::sim {
 
@@ -27,8 +29,10 @@ struct PastMoment {
 /// solved in between. Belongs to one model. Materials have no internal variables: their forces follow from the
 /// positions.
 struct RobotState {
-    Moment now;                 ///< positions and multipliers
-    std::vector<Drive> drives;  ///< (actuators) as they were asked for: `controls` may hold weighted lengths instead
+    Moment now;                    ///< positions and multipliers
+    Inputs inputs;                 ///< as they were asked for: `controls` may hold weighted lengths instead
+    std::optional<Inputs> before;  ///< of the last state of the past, where a step by inputs led on from it
+    std::vector<Drive> drives;     ///< (actuators) as `inputs`, and those that nobody steers
     /// Under which it is in equilibrium, with contact and friction as they were found.
     Controls controls;
     Evaluation evaluation;  ///< of all this; follows from it

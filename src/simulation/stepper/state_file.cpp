@@ -36,6 +36,12 @@ Json json_of(const std::vector<Drive>& drives) {
     return {{"kind", packed(std::span<const int>(kinds))}, {"value", packed(std::span<const double>(values))}};
 }
 
+Json json_of(const Inputs& inputs) {
+    return {{"time", inputs.time},
+            {"drives", json_of(inputs.drives)},
+            {"force_N", packed(Eigen::VectorXd(inputs.force_N))}};
+}
+
 Json json_of(const History& history) {
     return {{"x", packed(history.x)},
             {"v", packed(history.v)},
@@ -127,15 +133,20 @@ Json json_of(const SolverMemory& memory) {
 
 /// How long the vectors of a model are.
 struct Sizes {
-    Eigen::Index coordinates, free_coordinates, actuators, obstacle_coordinates;
+    Eigen::Index coordinates, free_coordinates, actuators, steered, obstacle_coordinates;
     std::size_t supports;
 };
 
 Sizes sizes_of(const Stepper& stepper) {
     const Model& model = stepper.model();
     const Controls controls = stepper.system().controls(0);
-    return {3 * model.node_count(), 3 * model.free_count(), static_cast<Eigen::Index>(controls.drives.size()),
-            controls.obstacles.size(), controls.support_share.size()};
+    const Description& d = model.description();
+    return {3 * model.node_count(),
+            3 * model.free_count(),
+            static_cast<Eigen::Index>(controls.drives.size()),
+            static_cast<Eigen::Index>(d.cables.size() + d.chambers.size()),
+            controls.obstacles.size(),
+            controls.support_share.size()};
 }
 
 /// What is read of one map; where something is wrong `status` says it, and the rest is of no use.
@@ -149,7 +160,9 @@ public:
         Reader in(json);
         RobotState robot;
         robot.now = {in.number("along"), state(in.at("state"))};
-        robot.drives = drives(in.at("drives"));
+        robot.inputs = inputs(in.at("inputs"));
+        if (in.has("before")) robot.before = inputs(in.at("before"));
+        robot.drives = drives(in.at("drives"), sizes_.actuators);
         robot.controls = controls(in.at("controls"));
         for (const Json& past : list(in, "past")) {
             Reader one(past);
@@ -188,13 +201,20 @@ private:
         return state;
     }
 
-    std::vector<Drive> drives(const Json& json) {
+    Inputs inputs(const Json& json) {
+        Reader in(json);
+        Inputs inputs{in.number("time"), drives(in.at("drives"), sizes_.steered), in.vector("force_N", 3)};
+        take(in);
+        return inputs;
+    }
+
+    std::vector<Drive> drives(const Json& json, Eigen::Index count) {
         Reader in(json);
         const std::vector<int> kinds = in.numbers<int>("kind");
-        const Eigen::VectorXd values = in.vector("value", sizes_.actuators);
+        const Eigen::VectorXd values = in.vector("value", count);
         take(in);
         std::vector<Drive> drives;
-        if (static_cast<Eigen::Index>(kinds.size()) != sizes_.actuators) fail("kinds of drives are missing");
+        if (static_cast<Eigen::Index>(kinds.size()) != count) fail("kinds of drives are missing");
         for (std::size_t a = 0; status_ && a < kinds.size(); ++a) {
             if (kinds[a] < 0 || kinds[a] > static_cast<int>(Drive::Kind::gas)) fail("a drive of no kind");
             drives.push_back({static_cast<Drive::Kind>(kinds[a]), values[static_cast<Eigen::Index>(a)]});
@@ -259,7 +279,7 @@ private:
         controls.external_N = in.vector("external_N", sizes_.coordinates);
         const Eigen::VectorXd support = in.vector("support_share", static_cast<Eigen::Index>(sizes_.supports));
         controls.support_share.assign(support.begin(), support.end());
-        controls.drives = drives(in.at("drives"));
+        controls.drives = drives(in.at("drives"), sizes_.actuators);
         controls.shares = shares(in);
         controls.obstacles = in.vector("obstacles", sizes_.obstacle_coordinates);
         controls.met = in.boolean("met");
@@ -400,11 +420,13 @@ std::string state_bytes(const Model& model, const RobotState& robot) {
               {"mesh", mesh_digest(model.mesh())},
               {"along", robot.now.along},
               {"state", json_of(robot.now.state)},
+              {"inputs", json_of(robot.inputs)},
               {"drives", json_of(robot.drives)},
               {"controls", json_of(robot.controls)},
               {"past", Json::array()}};
     for (const PastMoment& past : robot.past)
         json["past"].push_back({{"along", past.along}, {"state", json_of(*past.state)}});
+    if (robot.before) json["before"] = json_of(*robot.before);
     if (robot.history.x.size() > 0) json["history"] = json_of(robot.history);
     if (robot.memory) json["memory"] = json_of(*robot.memory);
     std::string bytes;

@@ -10,7 +10,8 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double rounding = 1e-7;  // of the shortest piece
+constexpr double rounding = 1e-7;            // of the shortest piece
+constexpr double smallest_share = 1.0 / 64;  // of a step by inputs
 constexpr int friction_rounds = 30;
 constexpr int most_in_vain = 3000;  // iterations, as quasi-newton may take for one attempt
 
@@ -41,7 +42,8 @@ Stepper::Stepper(const Model& model, const StepperOptions& options)
       options_(options),
       system_(model),
       laplacian_(system_),
-      solvers_(make_chain(options.solver, system_, laplacian_)) {
+      solvers_(make_chain(options.solver, system_, laplacian_)),
+      units_(system_, options.time_unit) {
     if (options.dynamics) motion_.emplace(model, options.dynamics->damping);
 }
 
@@ -52,6 +54,7 @@ RobotState Stepper::rest() const {
     robot.now = {0, system_.rest()};
     robot.controls = system_.controls(0);
     robot.drives = robot.controls.drives;
+    robot.inputs = program(0);
     robot.evaluation = system_.evaluate(robot.now.state, robot.controls);
     if (motion_) robot.history = MotionInTime::at_rest(robot.x());
     return robot;
@@ -61,6 +64,67 @@ Controls Stepper::controls(const RobotState& robot, double time) const {
     Controls controls = system_.controls(time);
     controls.met = robot.controls.met;
     return controls;
+}
+
+Inputs Stepper::program(double time) const {
+    std::vector<Drive> drives = system_.controls(time).drives;
+    drives.resize(steered());
+    return {time, std::move(drives)};
+}
+
+/// Cables and chambers; pressure loads follow the program.
+std::size_t Stepper::steered() const {
+    const Description& d = model_.description();
+    return d.cables.size() + d.chambers.size();
+}
+
+Controls Stepper::controls(const RobotState& robot, const Inputs& inputs) const {
+    Controls wanted = controls(robot, inputs.time);
+    std::copy(inputs.drives.begin(), inputs.drives.end(), wanted.drives.begin());
+    return wanted;
+}
+
+Drive Stepper::hold(const RobotState& robot, std::size_t a, Drive::Kind kind) const {
+    const double g = system_.actuators()[a].measure({robot.x().data(), static_cast<std::size_t>(robot.x().size())});
+    const double m = robot.now.state.multiplier[static_cast<Eigen::Index>(a)];
+    if (kind == Drive::Kind::measure) return {kind, g};
+    if (kind == Drive::Kind::multiplier) return {kind, m};
+    return {kind, (model_.description().ambient_pressure_Pa - m) * g};
+}
+
+bool Stepper::set_course(RobotState& robot, const Inputs& wanted) const {
+    const double onward = robot.before ? units_.onward_share(*robot.before, robot.inputs, wanted) : 0;
+    const bool known = onward != 0 && !robot.past.empty();
+    robot.now.along = 0;
+    if (known) robot.past.back().along = -1 / onward;
+    return known;
+}
+
+StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress) {
+    for (std::size_t a = 0; a < steered(); ++a) {
+        Drive& drive = robot.inputs.drives[a];
+        if (drive.kind == wanted.drives[a].kind) continue;
+        drive = hold(robot, a, wanted.drives[a].kind);
+        robot.before.reset();
+    }
+    const Inputs begin = robot.inputs;
+    const bool in_time = motion_.has_value();
+    if (in_time && !(wanted.time > begin.time)) {
+        StepReport report;
+        report.reason = "a step in time must lead to a later time";
+        return report;
+    }
+    const double length = in_time ? wanted.time - begin.time : 1;
+    const bool onward = set_course(robot, wanted) || in_time;
+    if (in_time) robot.now.along = begin.time;
+    const double from = robot.now.along;
+    const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
+    const Way way{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
+                  smallest_share * length, onward};
+    StepReport report = step(robot, way, progress);
+    robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
+    if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
+    return report;
 }
 
 StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& progress) {
@@ -153,6 +217,9 @@ void Stepper::accept(RobotState& robot, const Target& target, Controls controls,
     if (robot.past.size() > options_.most_past) robot.past.pop_front();
     robot.now = {target.along, std::move(next)};
     robot.drives = target.controls.drives;
+    robot.inputs = {controls.time,
+                    {robot.drives.begin(), robot.drives.begin() + static_cast<std::ptrdiff_t>(steered())}};
+    robot.before.reset();
     robot.controls = std::move(controls);
     robot.evaluation = std::move(outcome.evaluation);
 }

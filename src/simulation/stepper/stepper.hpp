@@ -22,6 +22,7 @@ struct StepperOptions {
     int iteration_limit = 0;                          ///< for one piece of a step; 0: the solver's own
     std::optional<Dynamics> dynamics = std::nullopt;  ///< none: at rest at every instant
     std::size_t most_past = RotatingStep::most_past;  ///< states that a prediction may look back on
+    double time_unit = 1;                             ///< of the model's program: what usually goes in one step
 };
 
 /// Where a step leads, and on which way: what is wanted at each place on it.
@@ -56,6 +57,16 @@ public:
     [[nodiscard]] RobotState rest() const;
     /// What the program wants at `time` of a robot in this state.
     [[nodiscard]] Controls controls(const RobotState& robot, double time) const;
+    /// The same as inputs.
+    [[nodiscard]] Inputs program(double time) const;
+    /// What these inputs want; without their force, which belongs to a point that they do not know.
+    [[nodiscard]] Controls controls(const RobotState& robot, const Inputs& inputs) const;
+    /// A drive of `kind` that keeps actuator `a` as it is.
+    [[nodiscard]] Drive hold(const RobotState& robot, std::size_t a, Drive::Kind kind) const;
+    /// Prepares a step from `robot.inputs` to `wanted` on a way from 0 to 1: true if it goes on, or back, along that of
+    /// the last step, which then tells where it leads.
+    [[nodiscard]] bool set_course(RobotState& robot, const Inputs& wanted) const;
+    [[nodiscard]] const InputUnits& units() const { return units_; }
 
     /// Goes to the end of the way, halving what does not converge. Where it does not arrive `robot` is as far as it
     /// got. With dynamics `along` is time in seconds.
@@ -65,6 +76,11 @@ public:
     /// To equilibrium from `guess`, with `robot` standing still otherwise: on another branch of equilibria than that
     /// of the last steps, which are forgotten. Without convergence `robot` is as before.
     [[nodiscard]] StepReport settle_beside(RobotState& robot, State guess, const Progress& progress);
+    /// To where the inputs are wanted, on a straight way from where they are, halving what does not converge; what is
+    /// driven by another kind than before begins as it is. With
+    /// dynamics the step takes the time until `wanted.time`, which must be later. Where it does not arrive `robot` and
+    /// its inputs are as far as they got.
+    [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress);
     /// An equilibrium at `controls` from `state`, as a trial. False: none was found, and `state` is of no use.
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
@@ -79,6 +95,7 @@ public:
 
 private:
     struct Target;
+    [[nodiscard]] std::size_t steered() const;
     [[nodiscard]] StepOutcome go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress);
     [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
                                       const Progress& progress);
@@ -93,6 +110,7 @@ private:
     Equilibrium system_;
     FactoredLaplacian laplacian_;
     SolverChain solvers_;
+    InputUnits units_;
     mutable std::optional<MotionInTime> motion_;  ///< keeps a pattern that it has made
     std::shared_ptr<const SolverMemory> live_;    ///< what the solvers remember; null: nothing that a state has
 };

@@ -1,4 +1,4 @@
-#include "simulation/run/live_inputs.hpp"
+#include "simulation/stepper/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

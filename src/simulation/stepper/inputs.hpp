@@ -1,4 +1,4 @@
-// All inputs of a live robot, as numbers between which one can interpolate, and how far apart two sets of them are.
+// All inputs of a robot, as numbers between which one can interpolate, and how far apart two sets of them are.
 #pragma once
 
 #include <Eigen/Core>

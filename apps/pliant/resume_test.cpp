@@ -1,0 +1,131 @@
+// A run with checkpoints that is killed again and again ends with the same results as one that was never touched.
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/core/files.hpp"
+#include "base/core/process.hpp"
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kills = 10;
+
+/// A bar that takes some ten milliseconds a step.
+const std::string bar = R"(
+    name = "bar"
+    length_unit = "mm"
+    material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 }
+    mesh = { order = 2, size = "4 mm" }
+    body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [80, 10, 10]] } }]
+    fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+    marker = [{ name = "tip", point = [80, 5, 5] }]
+    cable = [{ name = "flexor", points = [[0, 5, 9], [40, 5, 9], [80, 5, 9]], target.shortening = "20 mm" }]
+    program = { steps = 80 }
+)";
+
+pid_t started(const fs::path& robot, const fs::path& results, std::vector<std::string> more) {
+    std::vector<std::string> words{"simulate", robot.string(), "-o", results.string(), "--pictures", "none", "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto process = start_process(PLIANT_PROGRAM, words, {});
+    REQUIRE(process);
+    return *process;
+}
+
+int exit_status(pid_t process) {
+    int status = 0;
+    REQUIRE(::waitpid(process, &status, 0) == process);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+/// How much is kept, bytes; 0 before the first checkpoint is whole.
+std::uintmax_t kept(const fs::path& results) {
+    std::error_code none;
+    if (!fs::exists(results.string() + ".checkpoint/state", none)) return 0;
+    const std::uintmax_t size = fs::file_size(results.string() + ".checkpoint/steps", none);
+    return none ? 0 : size;
+}
+
+/// All of a file, without the column of wall times.
+std::string table(const fs::path& file) {
+    std::ifstream in(file);
+    std::string line, out;
+    std::getline(in, line);
+    int wall = -1, column = 0;
+    std::string cell;
+    for (const char c : line + ',') {
+        if (c != ',') {
+            cell += c;
+            continue;
+        }
+        if (cell.find("wall") != std::string::npos) wall = column;
+        ++column;
+        cell.clear();
+    }
+    while (std::getline(in, line)) {
+        column = 0;
+        for (const char c : line + ',') {
+            if (column != wall) out += c;
+            if (c == ',') ++column;
+        }
+        out += '\n';
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a run that is killed at ten moments and resumed ends with the same results") {
+    const test::Folder folder;
+    const fs::path robot = folder / "bar.toml", whole = folder / "whole", pieces = folder / "pieces";
+    REQUIRE(write_file(robot, bar));
+    CHECK(exit_status(started(robot, whole, {})) == 0);
+    int killed = 0;
+    std::vector<std::string> options{"--checkpoint-every", "1"};
+    for (int k = 0; k < kills; ++k) {
+        const pid_t process = started(robot, pieces, options);
+        // As soon as it has got further, and then at some moment within the next steps.
+        const std::uintmax_t before = kept(pieces);
+        for (int wait = 0; wait < 20000 && kept(pieces) <= before; ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(3 * k));
+        ::kill(process, SIGKILL);
+        if (exit_status(process) == -SIGKILL) ++killed;
+        options = {"--resume"};
+        if (fs::exists(pieces)) break;  // it was quicker
+    }
+    CHECK(killed >= 3);
+    if (!fs::exists(pieces)) CHECK(exit_status(started(robot, pieces, options)) == 0);
+    CHECK_FALSE(fs::exists(pieces.string() + ".checkpoint"));
+    for (const char* file : {"markers.csv", "iterations.csv", "robot.glb", "frames/frame_0080.vtu"}) {
+        CAPTURE(file);
+        CHECK(read_file(pieces / file).value() == read_file(whole / file).value());
+    }
+    CHECK(table(pieces / "steps.csv") == table(whole / "steps.csv"));
+    CHECK(table(whole / "steps.csv").size() > 1000);
+}
+
+TEST_CASE("a checkpoint of another robot, or none at all, is refused before anything is solved") {
+    const test::Folder folder;
+    const fs::path robot = folder / "bar.toml", results = folder / "out";
+    REQUIRE(write_file(robot, bar));
+    CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
+    const pid_t process = started(robot, results, {"--checkpoint-every", "1"});
+    for (int wait = 0; wait < 20000 && kept(results) == 0; ++wait)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(process, SIGKILL);
+    CHECK(exit_status(process) == -SIGKILL);
+    CHECK(exit_status(started(robot, results, {"--resume", "--set", "program.tolerance=1e-5"})) == 2);
+    REQUIRE(write_file(robot, bar + "\n# changed\n"));
+    CHECK(exit_status(started(robot, results, {"--resume"})) == 2);
+}

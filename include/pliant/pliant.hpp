@@ -1,0 +1,7 @@
+/// @file
+/// All of Pliant's library.
+#pragma once
+
+#include "pliant/base.hpp"        // IWYU pragma: export
+#include "pliant/printing.hpp"    // IWYU pragma: export
+#include "pliant/simulation.hpp"  // IWYU pragma: export

@@ -1,0 +1,48 @@
+// Between the library and its users: errors become exceptions, a Watch a Progress.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "base/core/error.hpp"
+#include "base/core/progress.hpp"
+#include "pliant/base.hpp"
+
+namespace pliant::library {
+
+[[noreturn]] void fail(const Error& error);
+
+template <class T>
+[[nodiscard]] T value_of(Result<T> result) {
+    if (!result) fail(result.error());
+    return std::move(*result);
+}
+inline void check(const Status& status) {
+    if (!status) fail(status.error());
+}
+
+/// What a Watch throws ends the work as if it had asked for an end, and is thrown again by rethrow().
+class WatchedProgress final : public Progress {
+public:
+    /// `watch` must outlive it.
+    explicit WatchedProgress(const Watch& watch) : watch_(watch) {}
+    void advance(std::string_view stage, double fraction) override;
+    /// Asks the Watch again, on its own thread.
+    [[nodiscard]] bool cancelled() const override;
+    void rethrow() const;
+
+private:
+    void ask() const;
+
+    const Watch& watch_;
+    std::thread::id thread_ = std::this_thread::get_id();
+    std::string stage_;
+    double share_ = 0;
+    mutable std::atomic<bool> cancelled_ = false;
+    mutable std::exception_ptr thrown_;
+};
+
+}  // namespace pliant::library

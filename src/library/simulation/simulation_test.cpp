@@ -1,0 +1,189 @@
+// The library as its users see it: values that can be copied, kept and compared, and errors with a place.
+#include "pliant/simulation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+
+namespace {
+
+/// A bar of 60 mm with a cable along its upper side; in time where `dynamics` says so.
+Robot bar(const std::string& more = "") {
+    return Robot::parse(R"(
+        name = "bar"
+        length_unit = "mm"
+        material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, density = "1100 kg/m^3" }
+        mesh = { order = 1, size = "5 mm" }
+        body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [60, 10, 10]] } }]
+        fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+        marker = [{ name = "tip", point = [60, 5, 5] }]
+        cable = [{ name = "flexor", points = [[0, 5, 9], [30, 5, 9], [60, 5, 9]], target.shortening = "4 mm" }]
+    )" + more);
+}
+
+Inputs pulled(const State& state, double shortening_m) {
+    Inputs inputs = state.inputs();
+    inputs.cables[0].value -= shortening_m;
+    return inputs;
+}
+
+double tip_mm(const Stepper& stepper, const State& state) {
+    return 1e3 * stepper.observe(state).markers[0].position_m[2];
+}
+
+}  // namespace
+
+TEST_CASE("a model tells what it is made of") {
+    const Model model(bar());
+    CHECK(model.order() == 1);
+    CHECK(model.tets().size() == 4 * model.tet_count());
+    CHECK(model.rest_positions().size() == model.node_count());
+    CHECK(model.regions().size() == model.tet_count());
+    CHECK(model.cables() == std::vector<std::string>{"flexor"});
+    CHECK(model.markers() == std::vector<std::string>{"tip"});
+    CHECK(model.chambers().empty());
+    double volume = 0;  // of the closed surface, by the divergence theorem
+    const std::vector<Point> points = model.rest_positions();
+    for (const auto& t : model.surface()) {
+        const Point &a = points[static_cast<std::size_t>(t[0])], &b = points[static_cast<std::size_t>(t[1])],
+                    &c = points[static_cast<std::size_t>(t[2])];
+        volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                   a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                  6;
+    }
+    CHECK(volume == near(6e-6, {.relative = 1e-9}));
+}
+
+TEST_CASE("steps to the program's end and the program itself come to the same state") {
+    const Model model(bar());
+    Stepper stepper(model, {.tolerance = 1e-8});
+    State state = stepper.rest();
+    for (int k = 1; k <= 4; ++k) CHECK(stepper.step(state, stepper.program(0.25 * k)).arrived);
+    std::vector<ProgramStep> steps;
+    const ProgramResult result = run(model, [&](const ProgramStep& step) { steps.push_back(step); });
+    CHECK(result.converged);
+    REQUIRE(steps.size() == 31);
+    CHECK(steps.front().index == 0);
+    const Observation seen = stepper.observe(state), last = steps.back().observed;
+    CHECK(seen.cables[0].length_m == near(0.056, {.relative = 1e-5}));
+    CHECK(seen.cables[0].tension_N == near(last.cables[0].tension_N, {.relative = 1e-3}));
+    CHECK(seen.markers[0].position_m[2] == near(last.markers[0].position_m[2], {.relative = 1e-3}));
+    CHECK(seen.supports.size() == 1);
+}
+
+TEST_CASE("a state is a value: copies, bytes and other steppers lead on with the same bits") {
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    for (int k = 0; k < 3; ++k) stepper.step(state, pulled(state, 0.001));
+    const State kept = state;
+    CHECK(kept == state);
+    const Inputs more = pulled(state, 0.001);
+    stepper.step(state, more);
+    CHECK_FALSE(kept == state);
+    State aside = stepper.rest();
+    stepper.step(aside, pulled(aside, 0.01));  // something else in between
+    State again = kept;
+    stepper.step(again, more);
+    CHECK(again == state);
+    Stepper other(model);
+    State from_bytes = other.state_from(kept.bytes());
+    CHECK(from_bytes == kept);
+    other.step(from_bytes, more);
+    CHECK(from_bytes == state);
+    const test::Folder folder;
+    kept.save(folder / "bar.state");
+    CHECK(other.load(folder / "bar.state") == kept);
+}
+
+TEST_CASE("back and forth, and from length to tension and back, leads to where it began") {
+    const Model model(bar());
+    Stepper stepper(model, {.tolerance = 1e-9});
+    State state = stepper.rest();
+    const double flat = tip_mm(stepper, state);
+    stepper.step(state, pulled(state, 0.003));
+    const double bent = tip_mm(stepper, state);
+    const double tension = stepper.observe(state).cables[0].tension_N;
+    CHECK(bent - flat > 5);
+    Inputs inputs = state.inputs();
+    inputs.cables[0] = {Drive::By::tension, tension / 2};
+    CHECK(stepper.step(state, inputs).arrived);
+    CHECK(stepper.observe(state).cables[0].tension_N == near(tension / 2, {.relative = 1e-6}));
+    inputs.cables[0] = {Drive::By::tension, tension};
+    stepper.step(state, inputs);
+    CHECK(tip_mm(stepper, state) == near(bent, {.relative = 1e-6}));
+    inputs.cables[0] = {Drive::By::length, 0.06};
+    stepper.step(state, inputs);
+    CHECK(tip_mm(stepper, state) == near(flat, {.relative = 1e-6}));
+}
+
+TEST_CASE("in time a bar that is let go swings, and time only leads on") {
+    const Model model(bar("program = { duration = \"0.2 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = state.inputs();
+    for (int k = 1; k <= 5; ++k) {
+        inputs.time = 0.002 * k;
+        CHECK(stepper.step(state, inputs).arrived);
+    }
+    double fastest = 0;
+    for (const Point& v : state.velocities()) fastest = std::max(fastest, std::fabs(v[2]));
+    CHECK(fastest > 1e-4);
+    CHECK(stepper.observe(state).kinetic_energy_J > 0);
+    CHECK_THROWS_AS(stepper.step(state, inputs), Failure);
+}
+
+TEST_CASE("errors are thrown with their kind and place") {
+    try {
+        (void)bar("materail.soft = {}\n");
+        FAIL("a misspelt key passed");
+    } catch (const Failure& failure) {
+        CHECK(failure.kind() == Failure::Kind::input);
+        CHECK(failure.line() == 10);
+        CHECK(failure.key() == "materail");
+        CHECK(std::string(failure.what()).find("did you mean") != std::string::npos);
+    }
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    const auto message = [&](const Inputs& inputs) -> std::string {
+        try {
+            stepper.step(state, inputs);
+        } catch (const Failure& failure) {
+            return failure.what();
+        }
+        return "";
+    };
+    CHECK(message({}) == "the inputs drive 0 cables and 0 chambers; the robot has 1 and 0");
+    CHECK(message({0, {{Drive::By::volume, 1}}, {}}) == "cable \"flexor\": is driven by length or tension");
+    CHECK(message({0, {{Drive::By::length, NAN}}, {}}) == "cable \"flexor\": driven by a number that is not finite");
+    CHECK(message({0, {{Drive::By::tension, -1}}, {}}) ==
+          "cable \"flexor\": -1 is not possible: it must not be negative");
+    CHECK_THROWS_WITH_AS((void)stepper.state_from("nothing"), "not a state that Pliant has written, or damaged",
+                         Failure);
+    const Model other(bar());
+    Stepper elsewhere(other);
+    CHECK_THROWS_WITH_AS((void)elsewhere.observe(state), "the state is one of another model", Failure);
+    CHECK_THROWS_AS(Stepper(model, {.tolerance = 0.0}), Failure);
+}
+
+TEST_CASE("a watch ends the work, and what it throws comes through") {
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    try {
+        stepper.step(state, pulled(state, 0.003), [](std::string_view, double) { return false; });
+        FAIL("it was not cancelled");
+    } catch (const Failure& failure) {
+        CHECK(failure.kind() == Failure::Kind::cancelled);
+    }
+    CHECK_THROWS_AS(stepper.step(state, pulled(state, 0.003),
+                                 [](std::string_view, double) -> bool { throw std::logic_error("mine"); }),
+                    std::logic_error);
+    CHECK(stepper.step(state, pulled(state, 0.003)).arrived);
+}

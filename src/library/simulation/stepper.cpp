@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "base/core/files.hpp"
+#include "library/base/calls.hpp"
+#include "library/simulation/data.hpp"
+#include "simulation/run/describe.hpp"
+#include "simulation/run/fields.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/stepper/state_file.hpp"
+
+namespace pliant {
+namespace {
+
+/// Inputs change direction at any time: only the last state tells where the next one is.
+sim::StepperOptions options_for(const sim::Program& program, const StepOptions& asked) {
+    sim::StepperOptions options = sim::stepper_options(program);
+    if (asked.tolerance) options.tolerance = *asked.tolerance;
+    if (asked.iteration_limit) options.iteration_limit = *asked.iteration_limit;
+    options.most_past = 1;
+    if (!(options.tolerance > 0 && options.tolerance < 1))
+        throw Failure(Failure::Kind::input,
+                      fmt::format("a tolerance of {:g} is not possible: it is between 0 and 1", options.tolerance));
+    if (options.iteration_limit < 0) throw Failure(Failure::Kind::input, "the iteration limit is negative");
+    return options;
+}
+
+std::vector<Vec3> vectors_of(const Eigen::VectorXd& x) {
+    std::vector<Vec3> points;
+    for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) points.push_back({x[k], x[k + 1], x[k + 2]});
+    return points;
+}
+
+}  // namespace
+
+struct Stepper::Work {
+    Work(std::shared_ptr<const Model::Data> data, const StepOptions& options)
+        : model(std::move(data)), stepper(model->model, options_for(model->program, options)) {}
+
+    [[nodiscard]] const sim::RobotState& robot_of(const State& state) const {
+        if (state.data().model == model) return state.data().robot;
+        throw Failure(Failure::Kind::input, "the state is one of another model");
+    }
+    [[nodiscard]] State state_of(sim::RobotState robot) const {
+        return State(std::make_shared<const State::Data>(State::Data{model, std::move(robot)}));
+    }
+
+    std::shared_ptr<const Model::Data> model;
+    sim::Stepper stepper;
+};
+
+Stepper::Stepper(const Model& model, const StepOptions& options)
+    : work_(std::make_unique<Work>(model.data(), options)) {}
+Stepper::Stepper(Stepper&&) noexcept = default;
+Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+Stepper::~Stepper() = default;
+
+State Stepper::rest() const {
+    return work_->state_of(work_->stepper.rest());
+}
+
+Inputs Stepper::program(double time) const {
+    if (!std::isfinite(time)) throw Failure(Failure::Kind::input, "the time is not finite");
+    return library::inputs_of(work_->model->model, work_->stepper.program(time));
+}
+
+StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch) {
+    sim::RobotState robot = work_->robot_of(state);
+    const sim::Inputs wanted = library::inputs_for(work_->model->model, inputs);
+    if (work_->stepper.options().dynamics && !(wanted.time > robot.inputs.time))
+        throw Failure(Failure::Kind::input, fmt::format("a step in time from {:g} s to {:g} s does not lead on",
+                                                        robot.inputs.time, wanted.time));
+    library::WatchedProgress progress(watch);
+    progress.advance("step", 0);
+    const sim::StepReport report = work_->stepper.drive(robot, wanted, progress);
+    const double residual = robot.evaluation.residual;
+    state = work_->state_of(std::move(robot));
+    progress.rethrow();
+    if (progress.cancelled() && !report.arrived) library::check(cancelled());
+    return {report.arrived, report.loose, report.reason, report.iterations, report.pieces, residual};
+}
+
+Observation Stepper::observe(const State& state) const {
+    const sim::RobotState& robot = work_->robot_of(state);
+    sim::Step step;
+    sim::describe(work_->model->model, work_->stepper.system(), robot.now.state, robot.controls, robot.evaluation,
+                  step);
+    if (work_->stepper.options().dynamics) step.kinetic_energy_J = work_->stepper.kinetic_energy_J(robot);
+    return library::observation_of(step);
+}
+
+Fields Stepper::fields(const State& state) const {
+    const std::vector<Vec3> positions = vectors_of(work_->robot_of(state).x());
+    sim::Fields fields = sim::compute_fields(work_->model->model, positions);
+    return {std::move(fields.J), std::move(fields.von_mises_Pa), std::move(fields.max_stretch),
+            std::move(fields.energy_density_Pa)};
+}
+
+State Stepper::state_from(std::string_view bytes) const {
+    return work_->state_of(library::value_of(sim::state_from_bytes(work_->stepper, bytes)));
+}
+
+State Stepper::load(const std::filesystem::path& file) const {
+    const std::string bytes = library::value_of(read_file(file));
+    auto robot = sim::state_from_bytes(work_->stepper, bytes);
+    if (!robot)
+        throw Failure(Failure::Kind::input, fmt::format("{}: {}", file.string(), robot.error().message), file.string());
+    return work_->state_of(std::move(*robot));
+}
+
+ProgramResult run(const Model& model, const std::function<void(const ProgramStep&)>& on_step, const Watch& watch) {
+    library::WatchedProgress progress(watch);
+    sim::RunOptions options;
+    options.on_step = [&](const sim::Step& step) {
+        const StepResult result{true, !step.converged, step.reason, step.iterations, step.substeps, step.residual};
+        if (on_step)
+            on_step({step.index, step.time, result, library::observation_of(step), library::points_of(step.positions)});
+    };
+    const sim::Trajectory trajectory =
+        sim::run(model.data()->model, model.data()->program, progress, std::move(options));
+    progress.rethrow();
+    return {trajectory.converged, trajectory.message, trajectory.warnings};
+}
+
+}  // namespace pliant

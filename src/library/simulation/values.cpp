@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/core/files.hpp"
+#include "library/base/calls.hpp"
+#include "library/simulation/data.hpp"
+#include "simulation/stepper/state_file.hpp"
+
+namespace pliant {
+namespace {
+
+using By = Drive::By;
+using Kind = sim::Drive::Kind;
+
+/// A chamber's multiplier is minus its pressure.
+Drive drive_of(const sim::Drive& drive, bool cable) {
+    switch (drive.kind) {
+        case Kind::measure:
+            return {cable ? By::length : By::volume, drive.value};
+        case Kind::multiplier:
+            return {cable ? By::tension : By::pressure, cable ? drive.value : 0 - drive.value};
+        case Kind::gas:
+            break;
+    }
+    return {By::gas, drive.value};
+}
+
+sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
+    const auto wrong = [&](const std::string& why) {
+        throw Failure(Failure::Kind::input, fmt::format("{} \"{}\": {}", cable ? "cable" : "chamber", name, why));
+    };
+    if (!std::isfinite(drive.value)) wrong("driven by a number that is not finite");
+    const bool of_cable = drive.by == By::length || drive.by == By::tension;
+    if (of_cable != cable) wrong(cable ? "is driven by length or tension" : "is driven by volume, pressure or gas");
+    const bool positive = drive.by == By::volume || drive.by == By::gas;
+    if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0))
+        wrong(
+            fmt::format("{:g} is not possible: it must {}", drive.value, positive ? "be above 0" : "not be negative"));
+    if (drive.by == By::length || drive.by == By::volume) return {Kind::measure, drive.value};
+    if (drive.by == By::gas) return {Kind::gas, drive.value};
+    return {Kind::multiplier, cable ? drive.value : -drive.value};
+}
+
+std::vector<Point> points_of(const Eigen::VectorXd& x) {
+    std::vector<Point> points;
+    points.reserve(static_cast<std::size_t>(x.size()) / 3);
+    for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) points.push_back({x[k], x[k + 1], x[k + 2]});
+    return points;
+}
+
+}  // namespace
+
+namespace library {
+
+std::vector<Point> points_of(std::span<const Vec3> points) {
+    std::vector<Point> out;
+    out.reserve(points.size());
+    for (const Vec3& p : points) out.push_back({p.x, p.y, p.z});
+    return out;
+}
+
+Inputs inputs_of(const sim::Model& model, const sim::Inputs& inputs) {
+    Inputs out;
+    out.time = inputs.time;
+    const std::size_t cables = model.description().cables.size();
+    for (std::size_t a = 0; a < inputs.drives.size(); ++a)
+        (a < cables ? out.cables : out.chambers).push_back(drive_of(inputs.drives[a], a < cables));
+    return out;
+}
+
+sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs) {
+    const sim::Description& d = model.description();
+    if (!std::isfinite(inputs.time)) throw Failure(Failure::Kind::input, "the time is not finite");
+    if (inputs.cables.size() != d.cables.size() || inputs.chambers.size() != d.chambers.size())
+        throw Failure(Failure::Kind::input,
+                      fmt::format("the inputs drive {} cables and {} chambers; the robot has {} and {}",
+                                  inputs.cables.size(), inputs.chambers.size(), d.cables.size(), d.chambers.size()));
+    sim::Inputs out{inputs.time, {}};
+    for (std::size_t c = 0; c < d.cables.size(); ++c)
+        out.drives.push_back(drive_for(inputs.cables[c], d.cables[c].name, true));
+    for (std::size_t c = 0; c < d.chambers.size(); ++c)
+        out.drives.push_back(drive_for(inputs.chambers[c], d.chambers[c].name, false));
+    return out;
+}
+
+Observation observation_of(const sim::Step& step) {
+    const auto point = [](const Vec3& v) { return Point{v.x, v.y, v.z}; };
+    Observation seen;
+    for (const auto& c : step.cables) seen.cables.push_back({c.name, c.length_m, c.tension_N});
+    for (const auto& c : step.chambers) seen.chambers.push_back({c.name, c.volume_m3, c.pressure_Pa});
+    for (const auto& m : step.markers) seen.markers.push_back({m.name, point(m.position_m)});
+    for (const auto& s : step.supports) seen.supports.push_back({s.name, point(s.force_N)});
+    for (const auto& c : step.contacts) seen.contacts.push_back({c.name, point(c.force_N)});
+    seen.self_contact_N = step.self_contact_N;
+    seen.energy_J = step.energy_J;
+    seen.kinetic_energy_J = step.kinetic_energy_J;
+    seen.min_J = step.min_J;
+    return seen;
+}
+
+}  // namespace library
+
+State::State(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+std::vector<Point> State::positions() const {
+    return points_of(data_->robot.x());
+}
+
+std::vector<Point> State::velocities() const {
+    const Eigen::VectorXd& v = data_->robot.history.v;
+    return points_of(v.size() > 0 ? v : Eigen::VectorXd(Eigen::VectorXd::Zero(data_->robot.x().size())));
+}
+
+Inputs State::inputs() const {
+    return library::inputs_of(data_->model->model, data_->robot.inputs);
+}
+
+std::string State::bytes() const {
+    return sim::state_bytes(data_->model->model, data_->robot);
+}
+
+void State::save(const std::filesystem::path& file) const {
+    library::check(write_file(file, bytes()));
+}
+
+bool operator==(const State& a, const State& b) {
+    return a.data_ == b.data_ || a.bytes() == b.bytes();
+}
+
+}  // namespace pliant
