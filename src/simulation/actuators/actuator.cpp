@@ -45,6 +45,11 @@ void Actuator::apply_skew(std::span<const double> x, double factor, std::span<co
     if (const auto* wall = std::get_if<ChamberSurface>(&geometry_)) wall->apply_skew(x, factor, v, result);
 }
 
+void Actuator::add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
+                        const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    if (const auto* wall = std::get_if<ChamberSurface>(&geometry_)) wall->add_skew(x, factor, index, pattern, values);
+}
+
 void Actuator::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     std::visit([&](const auto& geometry) { geometry.append_cliques(free_index, cliques); }, geometry_);
 }

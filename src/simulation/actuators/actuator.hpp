@@ -43,6 +43,10 @@ public:
     /// has one, its force is not the gradient of g.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
+    /// The same part as a matrix, factor * S, S^T = -S: its blocks at and below the diagonal of a pattern of block 3
+    /// that holds the cliques; `index` (n) of each node in it, or -1.
+    void add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
+                  const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
     [[nodiscard]] const CablePath& cable() const { return std::get<CablePath>(geometry_); }

@@ -217,6 +217,18 @@ void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::s
     spread(on_points, result);
 }
 
+void ChamberSurface::add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
+                              const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    const std::vector<Vec3> points = points_at(x);
+    for (const WallFace& face : wall_.faces) {
+        const FaceMatrix between = second_gradient(face, 0.5 * factor, points);
+        for (std::size_t i = 0; i < points_of(face); ++i) {
+            for (std::size_t j = 0; j < points_of(face); ++j)
+                add_pair(face[i], face[j], between[i][j] - between[j][i].transpose(), index, pattern, values);
+        }
+    }
+}
+
 void ChamberSurface::append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     for (const WallFace& face : wall_.faces) {
         std::vector<int> clique;

@@ -35,6 +35,10 @@ public:
     /// result (3n) += factor * (what the second gradient lacks where it is made symmetric) * v; zero for closed walls.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
+    /// The same as a matrix, of which values += the blocks at and below the diagonal; those above are minus their
+    /// transposes.
+    void add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
+                  const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
 private:

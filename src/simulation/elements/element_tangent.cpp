@@ -83,4 +83,31 @@ void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std
     sums.add(fill, 9, values, scratch_);
 }
 
+void Elements::add_skew(std::span<const double> x, const std::vector<int>& index,
+                        const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+    if (has_energy_) return;
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        if (material::has_energy(law(t))) continue;
+        for (int q = 0; q < points_per_tet_; ++q) {
+            const Matrix9 H = material::tangent(law(t), deformation_gradient(t, q, x));
+            const Matrix9 skew = 0.5 * point_volume(t, q) * (H - H.transpose());
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const int j = index[node(t, b)];
+                if (j < 0) continue;
+                const Vec3 gb = shape_gradient(t, q, b);
+                Eigen::Matrix<double, 9, 3> change = gb.x * skew.leftCols<3>();
+                change += gb.y * skew.middleCols<3>(3) + gb.z * skew.rightCols<3>();
+                for (int a = 0; a < nodes_per_tet_; ++a) {
+                    const int i = index[node(t, a)];
+                    if (i < j) continue;
+                    const Vec3 ga = shape_gradient(t, q, a);
+                    Matrix3 K = ga.x * change.topRows<3>();
+                    K += ga.y * change.middleRows<3>(3) + ga.z * change.bottomRows<3>();
+                    pattern.add_block(values, i, j, [&](int r, int c) { return K(r, c); });
+                }
+            }
+        }
+    }
+}
+
 }  // namespace pliant::sim

@@ -40,6 +40,12 @@ public:
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
+    /// Adds the skew part of the tangent, which only laws without an energy have and add_tangent leaves out, to a
+    /// pattern of block 3; `index` (n) of each node in it, or -1. The blocks at and below the diagonal are set; those
+    /// above are minus their transposes. Precondition: min_J > 0.
+    void add_skew(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                  std::span<double> values) const;
+
     /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
     /// for each pair of the pattern of the sums; W = stiffness_bound(law) times volume.
     void add_laplacian(const BlockSums& sums, std::span<double> values) const;

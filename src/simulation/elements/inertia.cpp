@@ -67,16 +67,24 @@ void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) co
     forces += rate_ * rate_ * mass_times(*elements_, x - coast_) + rate_ * damping_force(x - from_);
 }
 
-void Inertia::add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const {
-    elements_->add_mass(*free_index_, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
+void Inertia::add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                          std::span<double> values) const {
+    elements_->add_mass(index, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
     if (!stiffness_) return;
     const linalg::SymmetricPattern& own = *stiffness_->pattern;
+    std::vector<int> place(static_cast<std::size_t>(own.nodes));  // of each free node in the pattern
+    for (std::size_t node = 0; node < index.size(); ++node) {
+        if ((*free_index_)[node] >= 0) place[static_cast<std::size_t>((*free_index_)[node])] = index[node];
+    }
+    const double factor = rate_ * damping_.stiffness_s;
     for (int j = 0; j < own.nodes; ++j) {
         for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
-            const int i = own.node_row[k];
+            const int row = place[own.node_row[k]], column = place[j];
             const double* block = stiffness_->values.data() + static_cast<std::size_t>(k) * own.block_entries();
-            pattern.add_block(values, i, j,
-                              [&](int r, int c) { return rate_ * damping_.stiffness_s * block[3 * c + r]; });
+            if (row >= column)
+                pattern.add_block(values, row, column, [&](int r, int c) { return factor * block[3 * c + r]; });
+            else
+                pattern.add_block(values, column, row, [&](int r, int c) { return factor * block[3 * r + c]; });
         }
     }
 }

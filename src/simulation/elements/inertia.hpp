@@ -41,8 +41,9 @@ public:
     [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
     /// forces (3n) += gradient: inertia and damping.
     void add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const;
-    /// For a pattern over free nodes (block 3) that holds the elements' cliques.
-    void add_hessian(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+    /// For a pattern (block 3) that holds the elements' cliques; `index` (n) of each node in it, or -1.
+    void add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                     std::span<double> values) const;
 
     /// What the step leads from, and how long it is.
     [[nodiscard]] const History& start() const { return start_; }

@@ -130,10 +130,21 @@ Status HeldNodes::check_shared(std::span<const Support> supports, const std::vec
 
 void HeldNodes::place(std::span<const Support> supports, std::span<const Vec3> rest, std::span<const double> shares,
                       Eigen::VectorXd& x) const {
-    const auto wanted = [&](std::size_t s, int node) {
-        return linalg::vector(supports[s].position(rest[static_cast<std::size_t>(node)], shares[s]));
-    };
-    for (std::size_t s = 0; s < supports.size(); ++s) {
+    move(
+        [&](std::size_t s, int node) -> Eigen::Vector3d {
+            return linalg::vector(supports[s].position(rest[static_cast<std::size_t>(node)], shares[s]));
+        },
+        x);
+}
+
+Eigen::VectorXd HeldNodes::motion(const Wanted& wanted) const {
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(fixed_.size()));
+    move(wanted, motion);
+    return motion;
+}
+
+void HeldNodes::move(const Wanted& wanted, Eigen::VectorXd& x) const {
+    for (std::size_t s = 0; s < directions_.size(); ++s) {
         const bool whole = directions_[s].rows() == 3;
         for (const int node : alone_[s]) {
             auto place = x.segment<3>(3 * node);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -36,6 +38,12 @@ public:
     void place(std::span<const Support> supports, std::span<const Vec3> rest, std::span<const double> shares,
                Eigen::VectorXd& x) const;
 
+    /// Where, or how fast, a support wants a node of its own to be: (support, node), m.
+    using Wanted = std::function<Eigen::Vector3d(std::size_t support, int node)>;
+    /// (3n) the motion of the held nodes along the directions in which they are held, if the supports want them to move
+    /// so; zero elsewhere.
+    [[nodiscard]] Eigen::VectorXd motion(const Wanted& wanted) const;
+
     /// The force that each support exerts on the robot, (supports) N. `out_of_balance` (3n) are internal minus external
     /// forces. What two supports share at a node is split by the smallest forces that do it.
     [[nodiscard]] std::vector<Vec3> reactions(std::span<const Support> supports,
@@ -49,6 +57,7 @@ private:
         Directions directions;      ///< of all of them, one below the other
     };
     HeldNodes() = default;
+    void move(const Wanted& wanted, Eigen::VectorXd& x) const;
     [[nodiscard]] Status add_shared(std::span<const Support> supports, int node, const std::vector<int>& holders);
     [[nodiscard]] Status check_shared(std::span<const Support> supports, const std::vector<int>& holders) const;
 

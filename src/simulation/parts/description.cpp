@@ -10,6 +10,15 @@ Vec3 Support::position(const Vec3& rest, double share_now) const {
     return turn.center_m + turned(rest - turn.center_m, unit(turn.axis), share_now * turn.angle_rad) + shift;
 }
 
+Vec3 Support::turned_arm(const Vec3& arm, double share_now) const {
+    return turned(arm, unit(turn.axis), share_now * turn.angle_rad);
+}
+
+Vec3 Support::velocity(const Vec3& rest, double share_now) const {
+    const Vec3 arm = turned_arm(rest - turn.center_m, share_now);
+    return move_m + turn.angle_rad * cross(unit(turn.axis), arm);
+}
+
 Vec3 position(const Attachment& point, std::span<const double> x) {
     if (point.nodes.empty()) return point.fixed;
     Vec3 sum;

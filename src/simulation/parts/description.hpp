@@ -49,6 +49,10 @@ struct Support {
     [[nodiscard]] bool moves() const { return turn.angle_rad != 0 || !(move_m == Vec3{}); }
     /// Where a node is that lay at `rest`, both in metres.
     [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
+    /// An arm of that node after the turn alone: the derivative of its place by `rest`, along `arm`.
+    [[nodiscard]] Vec3 turned_arm(const Vec3& arm, double share_now) const;
+    /// How fast that place moves with the share, m.
+    [[nodiscard]] Vec3 velocity(const Vec3& rest, double share_now) const;
 };
 
 /// A force that keeps its direction: share * force.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/core/parallel.hpp"
@@ -69,6 +70,8 @@ std::string_view name(Flaw flaw) {
 Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     const Description& d = model.description();
     const Eigen::Index n = model.node_count();
+    all_nodes_.resize(static_cast<std::size_t>(n));
+    std::iota(all_nodes_.begin(), all_nodes_.end(), 0);
     rest_.resize(3 * n);
     gravity_.resize(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -436,14 +439,16 @@ contact::Forces Equilibrium::contact_forces(const State& state, const Controls& 
     return contact->forces(contact->find(x), x, controls.friction.get());
 }
 
-std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls) const {
+std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls,
+                                                           TangentNodes of) const {
     std::vector<std::vector<int>> cliques;
     const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return cliques;
+    const std::vector<int>& index = index_of(of);
     const auto add = [&](std::span<const int> nodes) {
         std::vector<int> clique;
         for (const int node : nodes) {
-            if (node < model_->node_count()) clique.push_back(model_->free_index()[static_cast<std::size_t>(node)]);
+            if (node < model_->node_count()) clique.push_back(index[static_cast<std::size_t>(node)]);
         }
         cliques.push_back(std::move(clique));
     };
@@ -456,35 +461,37 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
     return cliques;
 }
 
-TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching) const {
-    auto cliques = model_->elements().cliques(model_->free_index());
-    for (const Actuator& actuator : actuators_) actuator.append_cliques(model_->free_index(), cliques);
-    for (const Plate& plate : plates_) plate.append_clique(model_->free_index(), cliques);
-    for (const SpringPath& spring : springs_) spring.append_clique(model_->free_index(), cliques);
+TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching, TangentNodes nodes) const {
+    const std::vector<int>& index = index_of(nodes);
+    auto cliques = model_->elements().cliques(index);
+    for (const Actuator& actuator : actuators_) actuator.append_cliques(index, cliques);
+    for (const Plate& plate : plates_) plate.append_clique(index, cliques);
+    for (const SpringPath& spring : springs_) spring.append_clique(index, cliques);
     for (const std::vector<int>& clique : touching) cliques.push_back(clique);
-    TangentLayout layout{linalg::make_pattern(model_->free_count(), 3, cliques), {}};
-    const Eigen::VectorXd rest = free_positions(rest_);
+    const bool all = nodes == TangentNodes::all;
+    TangentLayout layout{
+        linalg::make_pattern(all ? model_->node_count() : model_->free_count(), 3, cliques), {}, nodes};
+    const Eigen::VectorXd rest = all ? rest_ : free_positions(rest_);
     for (Eigen::Index k = 0; k < rest.size(); k += 3)
         layout.pattern.points.push_back({rest[k], rest[k + 1], rest[k + 2]});
-    layout.element_sums = model_->elements().block_sums(model_->free_index(), layout.pattern);
+    layout.element_sums = model_->elements().block_sums(index, layout.pattern);
     return layout;
 }
 
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
+    const std::vector<int>& index = index_of(layout.nodes);
     model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
-    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), model_->free_index(), pattern, values);
-    for (const SpringPath& spring : springs_)
-        spring.add_hessian(view(state.x), model_->free_index(), pattern, values, project);
-    if (controls.inertia) controls.inertia->add_hessian(pattern, values);
+    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
+    for (const SpringPath& spring : springs_) spring.add_hessian(view(state.x), index, pattern, values, project);
+    if (controls.inertia) controls.inertia->add_hessian(index, pattern, values);
     if (const contact::Contact* contact = this->contact(controls)) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
-        const auto& free_index = model_->free_index();
         const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
             if (a >= model_->node_count() || b >= model_->node_count()) return;
-            const int i = free_index[static_cast<std::size_t>(a)];
-            const int j = free_index[static_cast<std::size_t>(b)];
+            const int i = index[static_cast<std::size_t>(a)];
+            const int j = index[static_cast<std::size_t>(b)];
             if (j >= 0 && i >= j) pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
         };
         contact->visit_hessian(contact->find(x), x, project, add);
@@ -493,10 +500,38 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
         if (multiplier != 0 || actuators_[a].gaps() != nullptr)
-            actuators_[a].add_hessian(view(state.x), multiplier, model_->free_index(), pattern, values, project,
-                                      controls.shares[a]);
+            actuators_[a].add_hessian(view(state.x), multiplier, index, pattern, values, project, controls.shares[a]);
     }
-    decouple_rollers(pattern, values);
+    if (layout.nodes == TangentNodes::free) decouple_rollers(pattern, values);
+}
+
+void Equilibrium::add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const {
+    const std::vector<int>& index = index_of(layout.nodes);
+    model_->elements().add_skew(view(state.x), index, layout.pattern, values);
+    std::vector<std::size_t> patches = skew_;
+    if (layout.nodes == TangentNodes::all) {  // where its rim is held, it takes part in the force on the other nodes
+        const std::size_t first = cable_count() + model_->description().chambers.size();
+        patches.resize(actuators_.size() - first);
+        std::iota(patches.begin(), patches.end(), first);
+    }
+    for (const std::size_t a : patches)
+        actuators_[a].add_skew(view(state.x), state.multiplier[static_cast<Eigen::Index>(a)], index, layout.pattern,
+                               values);
+}
+
+Eigen::VectorXd Equilibrium::obstacle_stiffness_times(const State& state, const Controls& controls,
+                                                      const Eigen::VectorXd& motion) const {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(state.x.size());
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return change;
+    const int robot = model_->node_count();
+    const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
+        if (a < robot && b >= robot) change.segment<3>(3 * a) += block * motion.segment<3>(3 * (b - robot));
+    };
+    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
+    contact->visit_hessian(contact->find(x), x, false, add);
+    if (controls.friction) controls.friction->visit_hessian(x, add);
+    return change;
 }
 
 void Equilibrium::decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const {

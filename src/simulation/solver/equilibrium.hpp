@@ -63,10 +63,15 @@ struct Evaluation {
 /// What an impossible state does, for messages: "turns a tetrahedron inside out".
 [[nodiscard]] std::string_view name(Evaluation::Flaw flaw);
 
+/// Which nodes a tangent is about: the free ones, in the order of Model::free_index, or all, also those that are held,
+/// in their own.
+enum class TangentNodes { free, all };
+
 /// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
 struct TangentLayout {
-    linalg::SymmetricPattern pattern;  ///< over free nodes, block 3
+    linalg::SymmetricPattern pattern;  ///< over these nodes, block 3
     BlockSums element_sums;            ///< of the tets
+    TangentNodes nodes = TangentNodes::free;
 };
 
 /// A node that a support holds in one or two directions.
@@ -99,14 +104,25 @@ public:
     /// where the laws have none.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
-    /// Node lists that contact couples at one state, as free indices.
-    [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls) const;
+    /// Node lists that contact couples at one state, as indices of the nodes that a tangent is about.
+    [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls,
+                                                                TangentNodes nodes = TangentNodes::free) const;
     /// For the body, its actuators and these cliques.
-    [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {}) const;
-    /// Adds the tangent at fixed multipliers, without the constraints and the compressibility of gas. With `project`
-    /// every part is replaced by the nearest positive semi-definite one. Precondition: min_J > 0.
+    [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {},
+                                                TangentNodes nodes = TangentNodes::free) const;
+    /// Adds the symmetric part of the tangent at fixed multipliers, without the constraints and the compressibility of
+    /// gas. With `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes,
+    /// rollers are decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project) const;
+    /// Adds what add_tangent leaves out, of a law without an energy and of pressure on patches with a free rim (over
+    /// all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below the
+    /// diagonal.
+    void add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const;
+    /// (3n) the change of the out-of-balance force with a motion of the obstacles (3 obstacle nodes). Zero without
+    /// contact.
+    [[nodiscard]] Eigen::VectorXd obstacle_stiffness_times(const State& state, const Controls& controls,
+                                                           const Eigen::VectorXd& motion) const;
 
     /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
     /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
@@ -155,6 +171,10 @@ public:
     [[nodiscard]] Eigen::VectorXd free_positions(const Eigen::VectorXd& full) const;
 
 private:
+    /// (n) where a node stands among those that a tangent is about, or -1.
+    [[nodiscard]] const std::vector<int>& index_of(TangentNodes nodes) const {
+        return nodes == TangentNodes::all ? all_nodes_ : model_->free_index();
+    }
     void add_actuators();
     /// Where a node is held in a direction, the tangent couples that direction to nothing else.
     void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
@@ -183,6 +203,7 @@ private:
     std::vector<Actuator> actuators_;
     std::vector<Plate> plates_;
     std::vector<SpringPath> springs_;
+    std::vector<int> all_nodes_;     ///< (n) 0, 1, 2, ...
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim

@@ -1,0 +1,314 @@
+#include "simulation/linearisation/linear_system.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/linalg/gmres.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::sim {
+namespace {
+
+constexpr double wanted_residual = 1e-13, allowed_residual = 1e-12;
+constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
+constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
+constexpr int most_rounds = 8, most_products = 400;
+constexpr double singular = 1e-14;   // smallest over largest singular value, in balanced units
+constexpr double redundant = 1e-11;  // pivots of the Schur complement
+constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+std::span<double> view(Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// Mean size of the diagonal, N/m.
+double mean_diagonal(const LinearSystem& system) {
+    const linalg::SymmetricPattern& p = system.layout->pattern;
+    double sum = 0;
+    for (int j = 0; j < p.nodes; ++j) {
+        const double* block = system.symmetric.data() + 9 * static_cast<std::size_t>(p.node_start[j]);
+        sum += std::fabs(block[0]) + std::fabs(block[4]) + std::fabs(block[8]);
+    }
+    return sum > 0 ? sum / (3 * p.nodes) : 1;
+}
+
+/// `size` over the norm of each column; `size` where that is zero.
+Eigen::VectorXd balance(const Eigen::MatrixXd& columns, double size) {
+    Eigen::VectorXd scale(columns.cols());
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        const double norm = columns.col(k).norm();
+        scale[k] = norm > 0 ? size / norm : size;
+    }
+    return scale;
+}
+
+/// Always the same numbers of either sign, to try a matrix with.
+Eigen::VectorXd some_vector(Eigen::Index size) {
+    Eigen::VectorXd v(size);
+    unsigned state = 1;
+    for (double& entry : v) {
+        state = 1664525U * state + 1013904223U;
+        entry = static_cast<double>(state) / 4294967296.0 - 0.5;
+    }
+    return v / v.norm();
+}
+
+}  // namespace
+
+void add_skew_product(const linalg::SymmetricPattern& p, const std::vector<double>& values, const Eigen::VectorXd& v,
+                      double factor, Eigen::VectorXd& result) {
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
+            const int i = p.node_row[k];
+            const Eigen::Map<const Eigen::Matrix3d> block(values.data() + 9 * static_cast<std::size_t>(k));
+            result.segment<3>(3 * i) += factor * block * v.segment<3>(3 * j);
+            if (i != j) result.segment<3>(3 * j) -= factor * block.transpose() * v.segment<3>(3 * i);
+        }
+    }
+}
+
+void LinearSystem::leave_out_held(Eigen::VectorXd& v) const {
+    for (const FreeRoller& roller : rollers)
+        v.segment<3>(3 * roller.free) = (roller.may_move * v.segment<3>(3 * roller.free)).eval();
+}
+
+Eigen::VectorXd LinearSystem::multiply(const Eigen::VectorXd& v, Side side) const {
+    const Eigen::Index n = free_size(), m = forces.cols();
+    Eigen::VectorXd motion = v.head(n);
+    leave_out_held(motion);
+    const Eigen::VectorXd multiplier = v.tail(m);
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
+    linalg::add_product(layout->pattern, symmetric, view(std::as_const(motion)), 1, view(force));
+    if (!skew.empty()) add_skew_product(layout->pattern, skew, motion, side == Side::direct ? 1 : -1, force);
+    force += (side == Side::direct ? forces : constraints) * multiplier;
+    leave_out_held(force);
+    Eigen::VectorXd result(n + m);
+    result << force,
+        (side == Side::direct ? constraints : forces).transpose() * motion + compliance.cwiseProduct(multiplier);
+    return result;
+}
+
+SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system), factor_(system.layout->pattern) {
+    stiffness_ = mean_diagonal(system);
+    const Eigen::Index count = system.forces.cols();
+    column_ = balance(system.forces, stiffness_);
+    row_ = balance(system.constraints, stiffness_);
+    for (Eigen::Index k = 0; k < count; ++k) {  // no constraint but on the multiplier itself
+        if (system.constraints.col(k).isZero(0) && system.compliance[k] != 0)
+            row_[k] = stiffness_ / std::fabs(system.compliance[k] * column_[k]);
+    }
+    forces_ = system.forces * column_.asDiagonal();
+    constraints_ = system.constraints * row_.asDiagonal();
+    compliance_ = row_.cwiseProduct(system.compliance).cwiseProduct(column_);
+}
+
+/// K as it is if it is positive definite; else with as much more on the diagonal as it takes. False: not even then.
+bool SystemSolver::factorise() {
+    if (factor_.factorise(system_->symmetric)) return true;
+    const linalg::SymmetricPattern& p = system_->layout->pattern;
+    for (double shift = first_shift; shift < largest_shift; shift *= shift_growth) {
+        std::vector<double> values = system_->symmetric;
+        for (int j = 0; j < p.nodes; ++j) {
+            double* block = values.data() + 9 * static_cast<std::size_t>(p.node_start[j]);
+            const double size = (std::fabs(block[0]) + std::fabs(block[4]) + std::fabs(block[8])) / 3;
+            for (int c = 0; c < 3; ++c) block[4 * c] += shift * std::max(size, 1e-9 * stiffness_);
+        }
+        if (factor_.factorise(values)) return true;
+    }
+    return false;
+}
+
+void SystemSolver::take_schur_complement() {
+    const auto solve = [&](Eigen::MatrixXd columns) {
+        if (columns.cols() > 0)
+            factor_.solve({columns.data(), static_cast<std::size_t>(columns.size())}, static_cast<int>(columns.cols()));
+        return columns;
+    };
+    from_forces_ = solve(forces_);
+    from_constraints_ = system_->forces == system_->constraints ? from_forces_ : solve(constraints_);
+    Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
+    S.diagonal() += compliance_;
+    schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
+    if (S.size() == 0) return;
+    // Stiff and soft actuators side by side: balanced once more, so that what is small is small beside its own kind.
+    Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt();
+    for (double& s : scale) s = s > 0 ? 1 / s : 1;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(redundant);
+    decomposition.compute(scale.asDiagonal() * S * scale.asDiagonal());
+    schur_inverse_ = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+    if (decomposition.rank() == S.cols()) return;
+    const Eigen::MatrixXd kept = decomposition.pseudoInverse() * (scale.asDiagonal() * S * scale.asDiagonal());
+    schur_null_ = Eigen::MatrixXd::Identity(S.cols(), S.cols()) - kept;
+}
+
+Status SystemSolver::prepare() {
+    if (!prepared_) {
+        prepared_ = true;
+        const bool begun = factorise();
+        factor_.release_work_space();
+        if (begun) take_schur_complement();
+        singular_ = !begun || is_singular();
+        if (singular_ && schur_null_.cols() == 0) {
+            take_whole_factor();
+            singular_ = whole_ == nullptr || is_singular();
+        }
+    }
+    if (!singular_) return {};
+    return failure(
+        "the tangent of this state is singular: it stands at a limit point or at a bifurcation, or a part of the robot "
+        "can move without a force; a state a little before or after it has a solution");
+}
+
+/// Slow and large, but it takes any matrix that is not singular.
+void SystemSolver::take_whole_factor() {
+    const linalg::SymmetricPattern& p = system_->layout->pattern;
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](int i, int j, const Eigen::Matrix3d& block) {
+        for (int c = 0; c < 3; ++c) {
+            for (int r = 0; r < 3; ++r) entries.emplace_back(3 * i + r, 3 * j + c, block(r, c));
+        }
+    };
+    std::vector<Eigen::Matrix3d> may_move(static_cast<std::size_t>(p.nodes), Eigen::Matrix3d::Identity());
+    for (const FreeRoller& roller : system_->rollers) may_move[static_cast<std::size_t>(roller.free)] = roller.may_move;
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
+            const std::size_t at = 9 * static_cast<std::size_t>(k);
+            const int i = p.node_row[k];
+            const Eigen::Matrix3d symmetric = Eigen::Map<const Eigen::Matrix3d>(system_->symmetric.data() + at);
+            Eigen::Matrix3d skew = Eigen::Matrix3d::Zero();
+            if (!system_->skew.empty())
+                skew = may_move[static_cast<std::size_t>(i)] *
+                       Eigen::Map<const Eigen::Matrix3d>(system_->skew.data() + at) *
+                       may_move[static_cast<std::size_t>(j)];
+            add(i, j, symmetric + skew);
+            if (i != j) add(j, i, (symmetric - skew).transpose());
+        }
+    }
+    const int n = static_cast<int>(forces_.rows()), m = static_cast<int>(forces_.cols());
+    for (int k = 0; k < m; ++k) {
+        for (int i = 0; i < n; ++i) {
+            if (forces_(i, k) != 0) entries.emplace_back(i, n + k, forces_(i, k));
+            if (constraints_(i, k) != 0) entries.emplace_back(n + k, i, constraints_(i, k));
+        }
+        entries.emplace_back(n + k, n + k, compliance_[k]);
+    }
+    Eigen::SparseMatrix<double> matrix(n + m, n + m);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    whole_ = std::make_shared<Whole>(matrix);
+    if (whole_->info() != Eigen::Success) whole_ = nullptr;
+}
+
+Eigen::VectorXd SystemSolver::multiply(const Eigen::VectorXd& v, Side side) const {
+    const Eigen::Index m = forces_.cols();
+    const bool direct = side == Side::direct;
+    Eigen::VectorXd scaled = v;
+    scaled.tail(m).array() *= (direct ? column_ : row_).array();
+    scaled = system_->multiply(scaled, side);
+    scaled.tail(m).array() *= (direct ? row_ : column_).array();
+    return scaled;
+}
+
+Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) const {
+    const Eigen::Index n = forces_.rows(), m = forces_.cols();
+    const bool direct = side == Side::direct;
+    if (whole_) return direct ? Eigen::VectorXd(whole_->solve(v)) : Eigen::VectorXd(whole_->transpose().solve(v));
+    Eigen::VectorXd motion = v.head(n);
+    factor_.solve(view(motion), 1);
+    const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;
+    const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion;
+    const Eigen::VectorXd multiplier =
+        direct ? Eigen::VectorXd(schur_inverse_ * left) : Eigen::VectorXd(schur_inverse_.transpose() * left);
+    motion -= (direct ? from_forces_ : from_constraints_) * multiplier;
+    Eigen::VectorXd result(n + m);
+    result << motion, multiplier;
+    return result;
+}
+
+/// What rounding x leaves of b - A x.
+double SystemSolver::rounding_of(const Eigen::VectorXd& x, Side side) const {
+    const Eigen::Index n = forces_.rows(), m = forces_.cols();
+    std::vector<double> sizes(system_->symmetric.size());
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+        sizes[k] = std::fabs(system_->symmetric[k]);
+        if (!system_->skew.empty()) sizes[k] += std::fabs(system_->skew[k]);
+    }
+    const bool direct = side == Side::direct;
+    const Eigen::VectorXd motion = x.head(n).cwiseAbs(), multiplier = x.tail(m).cwiseAbs();
+    Eigen::VectorXd force = (direct ? forces_ : constraints_).cwiseAbs() * multiplier;
+    linalg::add_product(system_->layout->pattern, sizes, view(motion), 1, view(force));
+    const Eigen::VectorXd rest = (direct ? constraints_ : forces_).cwiseAbs().transpose() * motion +
+                                 compliance_.cwiseAbs().cwiseProduct(multiplier);
+    return rounding * std::hypot(force.norm(), rest.norm());
+}
+
+/// x in balanced units, or nothing.
+std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
+    const auto product = [&](const Eigen::VectorXd& v) { return multiply(precondition(v, side), side); };
+    double left = b.norm();
+    const double wanted = wanted_residual * left;
+    for (int round = 0; round < most_rounds && left > wanted; ++round) {
+        const Eigen::VectorXd step =
+            linalg::gmres(product, residual / left, std::max(inner_tolerance, 0.3 * wanted / left), most_products);
+        const Eigen::VectorXd next = x + left * precondition(step, side);
+        const Eigen::VectorXd rest = b - multiply(next, side);
+        if (!(rest.norm() < left)) break;
+        const bool slow = rest.norm() > 0.5 * left;
+        x = next;
+        residual = rest;
+        left = rest.norm();
+        if (slow) break;
+    }
+    if (!(left <= allowed_residual * b.norm()) && !(left <= rounding_of(x, side))) return std::nullopt;
+    return x;
+}
+
+/// By a step of inverse iteration with A^T A: how large a solution can be beside what asks for it.
+bool SystemSolver::is_singular() const {
+    const Eigen::Index m = forces_.cols();
+    Eigen::VectorXd v = some_vector(system_->size());
+    system_->leave_out_held(v);
+    if (schur_null_.cols() > 0) v.tail(m) -= (schur_null_ * v.tail(m)).eval();
+    const auto once = refine(v / v.norm(), Side::direct);
+    if (!once) return true;
+    const auto twice = refine(*once / once->norm(), Side::transposed);
+    return !twice || !(twice->norm() * stiffness_ * singular < 1);
+}
+
+std::string SystemSolver::names_of_redundant() const {
+    std::string names;
+    const double largest = schur_null_.cwiseAbs().maxCoeff();
+    for (Eigen::Index k = 0; k < schur_null_.rows(); ++k) {
+        if (!(schur_null_.row(k).cwiseAbs().maxCoeff() > 1e-6 * largest)) continue;
+        names += (names.empty() ? "" : ", ") + system_->multipliers[static_cast<std::size_t>(k)];
+    }
+    return names;
+}
+
+Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side) {
+    if (Status status = prepare(); !status) return tl::unexpected(status.error());
+    const Eigen::Index m = forces_.cols();
+    const bool direct = side == Side::direct;
+    Eigen::VectorXd balanced = b;
+    system_->leave_out_held(balanced);
+    balanced.tail(m).array() *= (direct ? row_ : column_).array();
+    std::optional<Eigen::VectorXd> x = refine(balanced, side);
+    if (!x && schur_null_.cols() > 0)
+        return failure("{} do the same and are asked for different things: nothing gives both", names_of_redundant());
+    if (!x)
+        return failure(
+            "the tangent of this state is too near to a singular one to be solved with: it stands near a "
+            "limit point or a bifurcation");
+    x->tail(m).array() *= (direct ? column_ : row_).array();
+    return std::move(*x);
+}
+
+}  // namespace pliant::sim

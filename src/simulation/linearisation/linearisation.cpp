@@ -1,0 +1,230 @@
+#include "simulation/linearisation/linearisation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "base/linalg/sparse.hpp"
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+std::span<double> view(Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// cable "left", as messages call it.
+std::string name_of(const Description& d, std::size_t actuator) {
+    const std::size_t chambers = d.cables.size(), pressures = chambers + d.chambers.size();
+    if (actuator < chambers) return fmt::format("cable \"{}\"", d.cables[actuator].name);
+    if (actuator < pressures) return fmt::format("chamber \"{}\"", d.chambers[actuator - chambers].name);
+    return fmt::format("load \"{}\"", d.pressures[actuator - pressures].name);
+}
+
+/// As the state's contact couples them.
+TangentLayout layout_at(const Equilibrium& system, const State& state, const Controls& controls, TangentNodes nodes) {
+    return system.lay_out_tangent(system.contact_cliques(state, controls, nodes), nodes);
+}
+
+struct Parts {
+    std::vector<double> symmetric, skew;
+};
+
+Parts assembled(const Equilibrium& system, const State& state, const Controls& controls, const TangentLayout& layout) {
+    Parts parts;
+    parts.symmetric.assign(layout.pattern.entries(), 0.0);
+    system.add_tangent(state, controls, layout, parts.symmetric, false);
+    parts.skew.assign(layout.pattern.entries(), 0.0);
+    system.add_skew(state, layout, parts.skew);
+    const auto is_zero = [](double entry) { return entry == 0; };
+    if (std::ranges::all_of(parts.skew, is_zero)) parts.skew.clear();
+    return parts;
+}
+
+}  // namespace
+
+Quantity marker_coordinate(const Equilibrium& system, std::size_t marker, const Vec3& direction) {
+    const Model& model = system.model();
+    const Attachment& point = model.description().markers[marker].point;
+    Quantity quantity{Eigen::VectorXd::Zero(3 * model.node_count()),
+                      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.actuators().size()))};
+    for (std::size_t k = 0; k < point.nodes.size(); ++k)
+        quantity.by_positions.segment<3>(3 * point.nodes[k]) += point.weights[k] * linalg::vector(direction);
+    return quantity;
+}
+
+Quantity multiplier_of(const Equilibrium& system, std::size_t actuator) {
+    Quantity quantity{Eigen::VectorXd::Zero(3 * system.model().node_count()),
+                      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.actuators().size()))};
+    quantity.by_multipliers[static_cast<Eigen::Index>(actuator)] = 1;
+    return quantity;
+}
+
+/// The tangent over all nodes, with the forces and constraints of the multipliers that are solved for.
+struct Linearisation::Whole {
+    TangentLayout layout;
+    Parts tangent;
+    Eigen::MatrixXd constraints;  ///< (3n, solved)
+};
+
+Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls) {
+    const Evaluation evaluation = system.evaluate(state, controls);
+    if (!evaluation.possible()) return failure("a state that {} has no linearisation", name(evaluation.flaw));
+    Linearisation made;
+    made.system_ = &system;
+    made.state_ = {state.x, evaluation.multiplier};
+    made.controls_ = controls;
+    made.find_unknowns();
+    made.assemble();
+    return made;
+}
+
+void Linearisation::find_unknowns() {
+    const auto& actuators = system_->actuators();
+    slack_.assign(actuators.size(), false);
+    for (std::size_t a = 0; a < actuators.size(); ++a) {
+        if (controls_.drives[a].kind == Drive::Kind::multiplier) continue;
+        solved_.push_back(a);
+        slack_[a] = actuators[a].only_pulls() && !(state_.multiplier[static_cast<Eigen::Index>(a)] > 0);
+    }
+}
+
+bool Linearisation::is_slack(std::size_t actuator) const {
+    return slack_[actuator];
+}
+
+void Linearisation::assemble() {
+    matrix_ = std::make_shared<LinearSystem>();
+    LinearSystem& A = *matrix_;
+    A.layout = std::make_shared<const TangentLayout>(layout_at(*system_, state_, controls_, TangentNodes::free));
+    A.rollers = system_->rollers();
+    Parts parts = assembled(*system_, state_, controls_, *A.layout);
+    A.symmetric = std::move(parts.symmetric);
+    A.skew = std::move(parts.skew);
+    const auto count = static_cast<Eigen::Index>(solved_.size());
+    A.forces = A.constraints = Eigen::MatrixXd::Zero(3 * system_->model().free_count(), count);
+    A.compliance = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const std::size_t a = solved_[static_cast<std::size_t>(k)];
+        const Actuator& actuator = system_->actuators()[a];
+        A.multipliers.push_back(name_of(system_->model().description(), a));
+        Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
+        actuator.add_gradient(view(state_.x), 1, view(full), controls_.shares[a]);
+        A.forces.col(k) = system_->restrict_to_free(full);
+        if (slack_[a]) {
+            A.compliance[k] = 1;
+            continue;
+        }
+        full.setZero();
+        actuator.add_measure_gradient(view(state_.x), 1, view(full), controls_.shares[a]);
+        A.constraints.col(k) = system_->restrict_to_free(full);
+        if (controls_.drives[a].kind == Drive::Kind::gas)
+            A.compliance[k] =
+                -system_->gas_compliance(controls_.drives[a], state_.multiplier[static_cast<Eigen::Index>(a)]);
+    }
+}
+
+Eigen::VectorXd Linearisation::equations(const State& state, const Controls& controls) const {
+    const double ambient = system_->model().description().ambient_pressure_Pa;
+    Controls given = controls;
+    Eigen::VectorXd rows(static_cast<Eigen::Index>(solved_.size()));
+    for (std::size_t k = 0; k < solved_.size(); ++k) {
+        const std::size_t a = solved_[k];
+        const double m = state.multiplier[static_cast<Eigen::Index>(a)];
+        const double wanted = controls.drives[a].kind == Drive::Kind::gas ? controls.drives[a].value / (ambient - m)
+                                                                          : controls.drives[a].value;
+        rows[static_cast<Eigen::Index>(k)] =
+            slack_[a] ? m : system_->actuators()[a].measure(view(state.x), controls.shares[a]) - wanted;
+        given.drives[a] = {Drive::Kind::multiplier, m};
+    }
+    const Evaluation evaluation = system_->evaluate(state, given);
+    if (!evaluation.possible()) return Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
+    Eigen::VectorXd all(size());
+    all << system_->restrict_to_free(evaluation.out_of_balance), rows;
+    return all;
+}
+
+Change Linearisation::change_of(const Eigen::VectorXd& unknowns) const {
+    Change change{Eigen::VectorXd::Zero(state_.x.size()), Eigen::VectorXd::Zero(state_.multiplier.size())};
+    const Eigen::Index n = matrix_->free_size();
+    system_->add_free(unknowns.head(n), 1, change.positions);
+    for (std::size_t k = 0; k < solved_.size(); ++k)
+        change.multipliers[static_cast<Eigen::Index>(solved_[k])] = unknowns[n + static_cast<Eigen::Index>(k)];
+    return change;
+}
+
+Eigen::VectorXd Linearisation::unknowns_of(const Change& change) const {
+    Eigen::VectorXd unknowns(size());
+    const Eigen::Index n = matrix_->free_size();
+    unknowns.head(n) = system_->restrict_to_free(change.positions);
+    for (std::size_t k = 0; k < solved_.size(); ++k)
+        unknowns[n + static_cast<Eigen::Index>(k)] = change.multipliers[static_cast<Eigen::Index>(solved_[k])];
+    return unknowns;
+}
+
+SystemSolver& Linearisation::solver() {
+    if (!solver_) solver_ = std::make_shared<SystemSolver>(*matrix_);
+    return *solver_;
+}
+
+const Linearisation::Whole& Linearisation::whole() {
+    if (whole_) return *whole_;
+    auto whole = std::make_shared<Whole>();
+    whole->layout = layout_at(*system_, state_, controls_, TangentNodes::all);
+    whole->tangent = assembled(*system_, state_, controls_, whole->layout);
+    whole->constraints = Eigen::MatrixXd::Zero(state_.x.size(), static_cast<Eigen::Index>(solved_.size()));
+    for (std::size_t k = 0; k < solved_.size(); ++k) {
+        Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state_.x.size());
+        const std::size_t a = solved_[k];
+        if (!slack_[a])
+            system_->actuators()[a].add_measure_gradient(view(state_.x), 1, view(gradient), controls_.shares[a]);
+        whole->constraints.col(static_cast<Eigen::Index>(k)) = gradient;
+    }
+    whole_ = std::move(whole);
+    return *whole_;
+}
+
+Eigen::VectorXd Linearisation::equations_of_motion(const Eigen::VectorXd& motion) {
+    const Whole& all = whole();
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
+    linalg::add_product(all.layout.pattern, all.tangent.symmetric, view(motion), 1, view(force));
+    if (!all.tangent.skew.empty()) add_skew_product(all.layout.pattern, all.tangent.skew, motion, 1, force);
+    Eigen::VectorXd rows(size());
+    rows << system_->restrict_to_free(force), all.constraints.transpose() * motion;
+    return rows;
+}
+
+Eigen::VectorXd Linearisation::motion_weights(const Eigen::VectorXd& weights) {
+    const Whole& all = whole();
+    const Eigen::Index n = matrix_->free_size();
+    Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
+    system_->add_free(weights.head(n), 1, full);
+    Eigen::VectorXd result = all.constraints * weights.tail(weights.size() - n);
+    linalg::add_product(all.layout.pattern, all.tangent.symmetric, view(std::as_const(full)), 1, view(result));
+    if (!all.tangent.skew.empty()) add_skew_product(all.layout.pattern, all.tangent.skew, full, -1, result);
+    return result;
+}
+
+Result<Change> Linearisation::response(const Derivative& by) {
+    const Result<Eigen::VectorXd> answer = solve(by.equations);
+    if (!answer) return tl::unexpected(answer.error());
+    Change change = change_of(-*answer);
+    change.positions += by.direct.positions;
+    change.multipliers += by.direct.multipliers;
+    return change;
+}
+
+Result<Adjoint> Linearisation::adjoint(const Quantity& quantity) {
+    Result<Eigen::VectorXd> weights = solve_transposed(unknowns_of({quantity.by_positions, quantity.by_multipliers}));
+    if (!weights) return tl::unexpected(weights.error());
+    return Adjoint{quantity, std::move(*weights)};
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,137 @@
+// The equations of a converged state, linearised: what the state answers to a small change of anything.
+//
+//     const Equilibrium system(model);                          // state, controls: as a solver left them
+//     auto at = Linearisation::create(system, state, controls);
+//     const Quantity tip = marker_coordinate(system, 0, {0, 0, 1});
+//     // One solution tells what an input does to everything:
+//     for (const Parameter& input : inputs(*at)) {
+//         const Result<Change> change = at->response(derivative(*at, input));
+//         fmt::print("{}: {} m per {}\n", input.name, tip.derivative(*change), input.unit);
+//     }
+//     // One transposed solution tells what everything does to a quantity:
+//     const Result<Adjoint> adjoint = at->adjoint(tip);
+//     for (const Parameter& input : inputs(*at)) fmt::print("{}\n", adjoint->derivative(derivative(*at, input)));
+//
+// docs/theory.md, "Linearisation", has the equations.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "simulation/linearisation/linear_system.hpp"
+#include "simulation/solver/equilibrium.hpp"
+
+namespace pliant::sim {
+
+/// A small change of a state, of anything that it is a function of: all numbers for each unit of that.
+struct Change {
+    Eigen::VectorXd positions;    ///< (3n) m
+    Eigen::VectorXd multipliers;  ///< (actuators) tension of cables, N; minus the pressure of air, Pa
+};
+
+/// How the equations change with a number p while all unknowns stay, and what of the state p moves by itself.
+struct Derivative {
+    Eigen::VectorXd equations;  ///< (unknowns) dF/dp
+    Change direct;              ///< of held nodes, and of multipliers that are given
+};
+
+/// A function q of the state, to first order: dq = by_positions . dx + by_multipliers . dm.
+struct Quantity {
+    Eigen::VectorXd by_positions;    ///< (3n)
+    Eigen::VectorXd by_multipliers;  ///< (actuators)
+    [[nodiscard]] double derivative(const Change& change) const {
+        return by_positions.dot(change.positions) + by_multipliers.dot(change.multipliers);
+    }
+};
+
+/// Coordinate of a marker along `direction`, m if it is of length 1.
+[[nodiscard]] Quantity marker_coordinate(const Equilibrium& system, std::size_t marker, const Vec3& direction);
+/// Multiplier of an actuator: the tension of a cable, minus the pressure of a chamber.
+[[nodiscard]] Quantity multiplier_of(const Equilibrium& system, std::size_t actuator);
+
+/// What a quantity asks of the equations: weights w with A^T w = dq/dz, so that dq/dp = dq of the direct part - w .
+/// dF/dp.
+struct Adjoint {
+    Quantity quantity;
+    Eigen::VectorXd weights;  ///< (unknowns)
+    [[nodiscard]] double derivative(const Derivative& by) const {
+        return quantity.derivative(by.direct) - weights.dot(by.equations);
+    }
+};
+
+/// Of the equations F(z) = 0 in the unknowns z: the positions of the free nodes (3 free, in the order of
+/// Model::free_index), then the multipliers of the actuators that are not given, in ascending order. F has as many
+/// rows:
+///   of a free node         its out-of-balance force, N: elements, plates, springs, gap elements, inertia, contact,
+///                          friction as it is lagged, loads, and the multipliers' forces
+///   driven by its measure  g - wanted, m or m^3; of a slack cable its tension m, N
+///   of a sealed chamber    g - value / (p_ambient - m), m^3
+/// Where a roller holds a free node in a direction, neither that unknown nor that row exists: its component is left out
+/// of what comes in and zero in what goes out. Cables with friction have the tension shares of the controls, and
+/// contact the friction that is frozen there. Contact is as stiff as it is for the parts that are nearest now.
+class Linearisation {
+public:
+    /// Copies state and controls; `system` must outlive it. The state need not be converged, but F is not zero then.
+    /// An error: the state is one that no body can have.
+    [[nodiscard]] static Result<Linearisation> create(const Equilibrium& system, const State& state,
+                                                      const Controls& controls);
+
+    [[nodiscard]] const Equilibrium& system() const { return *system_; }
+    [[nodiscard]] const State& state() const { return state_; }
+    [[nodiscard]] const Controls& controls() const { return controls_; }
+    [[nodiscard]] Eigen::Index size() const { return matrix_->size(); }
+    /// Actuators whose multipliers are unknown.
+    [[nodiscard]] const std::vector<std::size_t>& solved() const { return solved_; }
+    /// True for a cable that is driven by length and does not pull.
+    [[nodiscard]] bool is_slack(std::size_t actuator) const;
+
+    /// F at another state and other controls, with the same actuators slack; not a number where no body can be so.
+    [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const;
+    /// A v and A^T w with A = dF/dz; (unknowns) -> (unknowns). Exact.
+    [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v) const {
+        return matrix_->multiply(v, Side::direct);
+    }
+    [[nodiscard]] Eigen::VectorXd multiply_transposed(const Eigen::VectorXd& w) const {
+        return matrix_->multiply(w, Side::transposed);
+    }
+    /// A^-1 b and A^-T b, also where the equilibrium is unstable; precision and errors as of SystemSolver. The first
+    /// call factorises.
+    [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b) { return solver().solve(b, Side::direct); }
+    [[nodiscard]] Result<Eigen::VectorXd> solve_transposed(const Eigen::VectorXd& b) {
+        return solver().solve(b, Side::transposed);
+    }
+
+    /// Of the unknowns, as a change of the state: nodes that are held, and multipliers that are given, stay.
+    [[nodiscard]] Change change_of(const Eigen::VectorXd& unknowns) const;
+    /// Of positions (3n) and multipliers (actuators), what belongs to the unknowns.
+    [[nodiscard]] Eigen::VectorXd unknowns_of(const Change& change) const;
+    /// The change of F with a motion (3n) of any nodes, also of those that are held. The first call assembles.
+    [[nodiscard]] Eigen::VectorXd equations_of_motion(const Eigen::VectorXd& motion);
+    /// (3n) its transpose times weights (unknowns).
+    [[nodiscard]] Eigen::VectorXd motion_weights(const Eigen::VectorXd& weights);
+
+    /// What the whole state does for each unit of p: the direct part, and -A^-1 dF/dp.
+    [[nodiscard]] Result<Change> response(const Derivative& by);
+    [[nodiscard]] Result<Adjoint> adjoint(const Quantity& quantity);
+
+private:
+    struct Whole;
+    Linearisation() = default;
+    void find_unknowns();
+    void assemble();
+    [[nodiscard]] const Whole& whole();
+    [[nodiscard]] SystemSolver& solver();
+
+    const Equilibrium* system_ = nullptr;
+    State state_;
+    Controls controls_;
+    std::vector<std::size_t> solved_;
+    std::vector<bool> slack_;  ///< (actuators)
+    std::shared_ptr<LinearSystem> matrix_;
+    std::shared_ptr<SystemSolver> solver_;
+    std::shared_ptr<const Whole> whole_;
+};
+
+}  // namespace pliant::sim

@@ -1,0 +1,418 @@
+// A linearisation against differences of the equations, for everything that acts on a robot.
+#include "simulation/linearisation/linearisation.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+#include "simulation/actuators/attach.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/test_differences.hpp"
+#include "simulation/peers/reference_problems.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using namespace pliant::sim::testing;
+
+namespace {
+
+constexpr double side = 0.01;
+
+const std::vector<std::pair<const char*, material::Law>> laws = {
+    {"neo-hookean", material::neo_hookean(1e6, 0.4)},
+    {"shape-blend", material::shape_blend(1e6, 0.4)},
+    {"shape-blend, rigid", material::ShapeBlend{1e6, 1.0}},
+    {"st-venant-kirchhoff", material::st_venant_kirchhoff(1e6, 0.3)},
+    {"mooney-rivlin", material::MooneyRivlin{1.2e5, 0.5e5, 18e5}},
+    {"yeoh", material::Yeoh{1.2e5, -0.1e5, 0.02e5, 18e5}},
+    {"ogden", material::Ogden{2, {1.5e5, -0.3e5}, {1.3, -2.0}, 18e5}},
+    {"corotated", material::corotated(1e6, 0.4)},
+    {"linear", material::linear(1e6, 0.4)},
+};
+
+/// A clamped block with an empty box in the middle.
+Description block(int order, const material::Law& law) {
+    const auto region = [](Vec3 c) {
+        const auto inside = [](double v, double low, double high) { return v > low && v < high; };
+        return inside(c.x, side, 2 * side) && inside(c.y, side / 3, 2 * side / 3) && inside(c.z, side / 3, 2 * side / 3)
+                   ? 1
+                   : 0;
+    };
+    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 3, 3, 3, region);
+    whole.region_names = {"solid", "air"};
+    if (order == 2) whole = mesh::to_quadratic(whole);
+    mesh::Extract solid = mesh::extract_regions(whole, {true, false});
+    Description d;
+    d.mesh = std::move(solid.mesh);
+    d.materials = {{"A", law, 1000}};
+    d.material_of_region = {0};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}});
+    return d;
+}
+
+/// Through nodes near these points.
+Cable cable_through(const mesh::TetMesh& mesh, std::vector<Vec3> points, const CableTarget& target) {
+    Cable cable{"c", {}, target};
+    const Attacher attacher(mesh);
+    for (const Vec3& p : points) cable.points.push_back(*attacher.carried_by_tet(p, 1e-6));
+    return cable;
+}
+
+Cable flexor(const mesh::TetMesh& mesh, const CableTarget& target) {
+    return cable_through(mesh,
+                         {{0.1 * side, 0.5 * side, 0.9 * side},
+                          {1.5 * side, 0.6 * side, 0.95 * side},
+                          {2.9 * side, 0.5 * side, 0.9 * side}},
+                         target);
+}
+
+/// Nodes off their places by up to a share of an element, those that are held too.
+State disturbed(const Equilibrium& system, double tension, double pressure, unsigned seed = 3) {
+    State state = system.rest();
+    Noise noise(seed);
+    for (double& entry : state.x) entry += 0.04 * side * noise();
+    for (std::size_t a = 0; a < system.actuators().size(); ++a)
+        state.multiplier[static_cast<Eigen::Index>(a)] = a < system.cable_count() ? tension : -pressure;
+    return state;
+}
+
+struct Case {
+    Model model;
+    Equilibrium system;
+    explicit Case(Description d) : model(make(std::move(d))), system(model) {}
+    static Model make(Description d) {
+        auto made = Model::create(std::move(d));
+        REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+        return std::move(*made);
+    }
+    [[nodiscard]] Linearisation at(const State& state, const Controls& controls) const {
+        auto made = Linearisation::create(system, state, controls);
+        REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+        return std::move(*made);
+    }
+};
+
+void check(Linearisation at, std::string_view what) {
+    CAPTURE(what);
+    const Measured e = errors_of(at, side);
+    MESSAGE(what, ": products ", e.product, ", transposed ", e.transpose, ", solutions ", e.solution, ", inputs ",
+            e.input);
+    CHECK(e.product < 1e-8);
+    CHECK(e.transpose < 1e-13);
+    CHECK(e.solution < 1e-12);
+    CHECK(e.input < 1e-8);
+}
+
+Description plain(int order = 1) {
+    Description d = block(order, material::neo_hookean(1e6, 0.4));
+    d.chambers.clear();
+    return d;
+}
+
+std::vector<int> end_of(const mesh::TetMesh& mesh) {
+    return reference::nodes_where(mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; });
+}
+
+/// The top, as a wall whose rim nothing holds but at the clamp.
+PressureLoad patch(const mesh::TetMesh& mesh, double from) {
+    const auto all = mesh::boundary_faces(mesh);
+    std::vector<mesh::Face> faces;
+    for (const mesh::Face& face : all) {
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3& p = mesh.points[static_cast<std::size_t>(face.nodes[static_cast<std::size_t>(k)])];
+            inside = inside && p.z > side - 1e-9 && p.x > from;
+        }
+        if (inside) faces.push_back(face);
+    }
+    std::vector<int> same(mesh.points.size());
+    for (std::size_t i = 0; i < same.size(); ++i) same[i] = static_cast<int>(i);
+    return {"gust", wall_of_faces(mesh, faces, same), 3e3};
+}
+
+}  // namespace
+
+TEST_CASE("every law, of either order, with a cable and a chamber") {
+    for (const int order : {1, 2}) {
+        for (const auto& [name, law] : laws) {
+            Description d = block(order, law);
+            d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+            d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.1};
+            const Case c(std::move(d));
+            check(c.at(disturbed(c.system, 0.5, 2e3), c.system.controls(1)), fmt::format("{}, order {}", name, order));
+        }
+    }
+}
+
+TEST_CASE("a cable by length, slack, by tension, with friction") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    {
+        const Case c(d);
+        const Linearisation at = c.at(disturbed(c.system, 0, 0), c.system.controls(1));
+        CHECK(at.is_slack(0));
+        check(at, "slack");
+    }
+    d.cables[0].target = {CableTarget::Kind::tension_N, 2};
+    {
+        const Case c(d);
+        const Linearisation at = c.at(disturbed(c.system, 0, 0), c.system.controls(1));
+        CHECK(at.solved().empty());
+        check(at, "by tension");
+    }
+    for (const auto& target :
+         {CableTarget{CableTarget::Kind::length_ratio, 0.9}, CableTarget{CableTarget::Kind::tension_N, 2}}) {
+        d.cables[0].target = target;
+        d.cables[0].friction = 0.4;
+        const Case c(d);
+        const State state = disturbed(c.system, 1, 0);
+        Controls controls = c.system.controls(1);
+        const std::vector<Drive> wanted = controls.drives, before = c.system.controls(0).drives;
+        c.system.freeze_cable_friction(state.x, wanted, before, controls);
+        REQUIRE(controls.shares[0].back() < 1);
+        check(c.at(state, controls), "with friction");
+    }
+}
+
+TEST_CASE("the wanted length of a cable with friction is the true one") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    d.cables[0].friction = 0.4;
+    const Case c(d);
+    const State state = disturbed(c.system, 1, 0);
+    const std::vector<Drive> before = c.system.controls(0).drives;
+    const auto weighted = [&](double change) {
+        Controls controls = c.system.controls(1);
+        std::vector<Drive> wanted = controls.drives;
+        wanted[0].value =
+            c.system.actuators()[0].measure({state.x.data(), static_cast<std::size_t>(state.x.size())}) + change;
+        c.system.freeze_cable_friction(state.x, wanted, before, controls);
+        return controls;
+    };
+    Linearisation at = c.at(state, weighted(0));
+    const Parameter length = inputs(at)[0];
+    CHECK(length.value ==
+          near(weighted(0).drives[0].value / at.equations(state, weighted(0)).size(), {.relative = 1e9}));
+    const double h = 1e-6;
+    const double by_hand = (weighted(h).drives[0].value - weighted(-h).drives[0].value) / (2 * h);
+    CHECK(-derivative(at, length).equations.tail(1)[0] == near(by_hand, {.relative = 1e-9}));
+    CHECK(by_hand < 0.99);
+}
+
+TEST_CASE("a chamber by volume, by pressure, with sealed gas") {
+    for (const int order : {1, 2}) {
+        Description d = block(order, material::neo_hookean(1e6, 0.4));
+        for (const auto& [kind, value] :
+             {std::pair{ChamberTarget::Kind::volume_ratio, 1.2}, std::pair{ChamberTarget::Kind::pressure_Pa, 3e3},
+              std::pair{ChamberTarget::Kind::gas_ratio, 1.2}}) {
+            d.chambers[0].target = {kind, value};
+            const Case c(d);
+            check(c.at(disturbed(c.system, 0, 3e3), c.system.controls(1)),
+                  fmt::format("chamber kind {}, order {}", static_cast<int>(kind), order));
+        }
+    }
+}
+
+TEST_CASE("pressure on a patch with a free rim, and on one whose rim is held") {
+    for (const int order : {1, 2}) {
+        Description d = plain(order);
+        d.pressures = {patch(d.mesh, -1)};
+        d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+        const Case c(d);
+        REQUIRE(c.system.has_skew());
+        check(c.at(disturbed(c.system, 0.5, 0), c.system.controls(1)), fmt::format("free rim, order {}", order));
+        // Held all around, but the supports move.
+        const auto rim = reference::nodes_where(d.mesh, [](Vec3 p) {
+            const auto outer = [](double v, double end) { return v < 1e-9 || v > end - 1e-9; };
+            return p.z > side - 1e-9 && p.x > 1e-9 && (outer(p.x, 3 * side) || outer(p.y, side));
+        });
+        d.supports.push_back({"rim", rim, {0.1 * side, 0, 0.2 * side}});
+        d.supports.back().turn = {0.3, {1, 2, 3}, {side, 0, 0}};
+        const Case held(d);
+        REQUIRE_FALSE(held.system.has_skew());
+        State state = disturbed(held.system, 0.5, 0);
+        const Controls controls = held.system.controls(0.1);
+        held.system.place_supports(controls, state.x);
+        check(held.at(state, controls), fmt::format("held rim, order {}", order));
+    }
+}
+
+TEST_CASE("rollers, also those that move and those that two supports share") {
+    Description d = plain();
+    d.supports.push_back(
+        {"roller", end_of(d.mesh), {0.02 * side, 0, 0.01 * side}, ramp(0, 1), {0.1, {1, 1, 0}, {}}, {{0, 1, 1}}});
+    d.supports.push_back({"symmetry",
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.y < 1e-9 && p.x > 1e-9; }),
+                          {},
+                          ramp(0, 1),
+                          {},
+                          {{1, 0, 0}}});
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    d.pressures = {patch(d.mesh, -1)};
+    const Case c(std::move(d));
+    REQUIRE_FALSE(c.system.rollers().empty());
+    State state = disturbed(c.system, 0.5, 0);
+    const Controls controls = c.system.controls(1);
+    c.system.place_supports(controls, state.x);
+    check(c.at(state, controls), "rollers");
+}
+
+TEST_CASE("springs, plates, loads and gravity") {
+    Description d = plain();
+    const Cable path = flexor(d.mesh, {});
+    d.springs = {{"coil", path.points, 300, 0.8 * 3 * side},
+                 {"pressed", path.points, 30, 5 * side},
+                 {"band", path.points, 100, 0.5 * side, true},
+                 {"loose", path.points, 1000, 9 * side, true}};
+    d.plates = {{"plate", end_of(d.mesh)}};
+    const std::vector<int> end = end_of(d.mesh);
+    d.loads = {{"hook", end, std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())), {0.1, 0, -0.3}}};
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Case c(std::move(d));
+    check(c.at(disturbed(c.system, 0, 0), c.system.controls(0.7)), "springs, plates, loads");
+}
+
+TEST_CASE("the thesis' actuators: gap elements and air") {
+    for (const int order : {1, 2}) {
+        const auto region = [](Vec3 c) { return c.z > side / 2 && c.x > side && c.x < 2 * side ? 1 : 0; };
+        Description d;
+        d.mesh = reference::kuhn_box({3 * side, side, side}, 6, 2, 4, region);
+        d.mesh.region_names = {"solid", "gap"};
+        if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
+        d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}, {"gap", gap_law(1e6), 0}};
+        d.material_of_region = {0, 1};
+        d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+        d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+        d.growths = {{1, {1, 0, 0}, 0, 1e5, side, {1.5 * side, 0.5 * side, 0.9 * side}}};
+        const Case c(std::move(d));
+        REQUIRE(c.system.actuators()[0].gaps() != nullptr);
+        check(c.at(disturbed(c.system, -0.4, 0), c.system.controls(1)), fmt::format("gap elements, order {}", order));
+    }
+}
+
+TEST_CASE("motion in time") {
+    Description d = block(1, material::neo_hookean(1e6, 0.4));
+    d.supports.push_back({"grip", end_of(d.mesh), {0.1 * side, 0, 0.2 * side}});
+    const Case c(std::move(d));
+    State state = disturbed(c.system, 0, 2e3);
+    const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
+    const TangentLayout layout = c.system.lay_out_tangent();
+    auto stiffness = std::make_shared<StiffnessMatrix>();
+    stiffness->pattern = &layout.pattern;
+    stiffness->values.assign(layout.pattern.entries(), 0.0);
+    c.model.elements().add_tangent({rest.x.data(), static_cast<std::size_t>(rest.x.size())}, layout.element_sums,
+                                   stiffness->values, true);
+    const History history{before.x, before.x - rest.x, rest.x, before.x, 0};
+    Controls controls = c.system.controls(1);
+    c.system.place_supports(controls, state.x);
+    controls.inertia = std::make_shared<const Inertia>(c.model.elements(), c.model.free_index(), history, 1e-3,
+                                                       Damping{2, 1e-3}, stiffness);
+    check(c.at(state, controls), "inertia");
+}
+
+TEST_CASE("contact with an obstacle that moves and with itself, with friction as it is lagged") {
+    // A block over a table, and a second one that hangs over the first.
+    mesh::TetMesh mesh = reference::kuhn_box({2 * side, side, side}, 4, 2, 2, [](Vec3) { return 0; });
+    const std::size_t lower = mesh.points.size();
+    const auto nodes = mesh.nodes;
+    for (std::size_t i = 0; i < lower; ++i)
+        mesh.points.push_back(mesh.points[i] + Vec3{0.13 * side, 0.07 * side, 1.05 * side});
+    for (const int node : nodes) mesh.nodes.push_back(node + static_cast<int>(lower));
+    mesh.region.resize(2 * mesh.region.size(), 0);
+    Description d;
+    d.mesh = std::move(mesh);
+    d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
+    d.material_of_region = {0};
+    d.supports = {
+        {"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 0.14 * side; }), {0, 0, 0.05 * side}}};
+    ContactRules rules;
+    rules.surface = contact::robot_surface(d.mesh);
+    rules.settings = {0.1 * side, 1e5, 0.4, 0.1 * side, true};
+    const contact::HalfSpace table{{0, 0, -0.2 * side}, {0, 0.1, 1}};
+    rules.obstacles.push_back({{"table", table, 0.3}, {0.02 * side, 0, 0.24 * side}});
+    d.contact = std::move(rules);
+    Case c(std::move(d));
+    c.system.set_met(true);
+    State state = c.system.rest();
+    Noise noise(5);
+    for (double& entry : state.x) entry += 0.003 * side * noise();
+    for (auto i = static_cast<Eigen::Index>(lower); 3 * i < state.x.size(); ++i) state.x[3 * i + 2] -= 0.035 * side;
+    Controls controls = c.system.controls(0.9);
+    c.system.place_supports(controls, state.x);
+    State start = state;
+    for (double& entry : start.x) entry += 0.02 * side * noise();
+    controls.friction = c.system.freeze_friction(state, start, controls, c.system.controls(0.8));
+    REQUIRE(c.system.evaluate(state, controls).possible());
+    REQUIRE(controls.friction->pairs().size() > 5);
+    const contact::Forces forces = c.system.contact_forces(state, controls);
+    REQUIRE(forces.self_N > 0);
+    REQUIRE(norm(forces.on_robot_N[0]) > 0);
+    check(c.at(state, controls), "contact");
+}
+
+TEST_CASE("solutions where the equilibrium is unstable") {
+    // Past the largest pressure of a chamber the tangent is indefinite; and a column that is pressed far beyond
+    // buckling.
+    Description d = block(1, material::neo_hookean(1e6, 0.4));
+    d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, 1e3};
+    const Case c(std::move(d));
+    for (const double shortened : {0.7, 0.5}) {
+        CAPTURE(shortened);
+        State state = c.system.rest();
+        for (Eigen::Index i = 0; i < state.x.size(); i += 3) state.x[i] *= shortened;
+        Linearisation at = c.at(state, c.system.controls(1));
+        Noise noise(7);
+        const Eigen::VectorXd b = at.multiply(noise.vector(at.size()));
+        const auto x = at.solve(b);
+        REQUIRE_MESSAGE(x, x.error().message);
+        CHECK((b - at.multiply(*x)).norm() < 1e-12 * b.norm());
+        // Indefinite: some motion has a negative stiffness.
+        Eigen::VectorXd v = noise.vector(at.size());
+        for (int k = 0; k < 30; ++k) v = at.solve(v.normalized()).value();
+        CHECK(v.dot(at.multiply(v)) < 0);
+    }
+}
+
+TEST_CASE("cables that do the same share what they do; asked for different things, they say so") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9}),
+                flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    d.cables[0].name = "left";
+    d.cables[1].name = "right";
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Case c(d);
+    d.cables.pop_back();
+    const Case single(std::move(d));
+    Linearisation at = c.at(disturbed(c.system, 0.5, 0), c.system.controls(1));
+    Linearisation one = single.at(disturbed(single.system, 1, 0), single.system.controls(1));
+    const auto by_gravity = [](Linearisation& of) { return of.response(derivative(of, inputs(of).back())).value(); };
+    const Change both = by_gravity(at), alone = by_gravity(one);
+    CHECK((both.positions - alone.positions).norm() < 1e-9 * alone.positions.norm());
+    CHECK(both.multipliers[0] == near(0.5 * alone.multipliers[0], {.relative = 1e-8}));
+    CHECK(both.multipliers[1] == near(0.5 * alone.multipliers[0], {.relative = 1e-8}));
+    const auto differ = at.response(derivative(at, inputs(at)[0]));
+    REQUIRE_FALSE(differ);
+    CHECK(differ.error().message ==
+          "cable \"left\", cable \"right\" do the same and are asked for different things: nothing gives both");
+}
+
+TEST_CASE("a singular tangent is an error") {
+    // Held along x alone at one end: nothing keeps the block from sliding along y and z and from rolling.
+    Description d = plain();
+    d.supports[0].directions = {{1, 0, 0}};
+    const Case c(std::move(d));
+    Linearisation at = c.at(c.system.rest(), c.system.controls(0));
+    Noise noise(7);
+    const auto x = at.solve(noise.vector(at.size()));
+    REQUIRE_FALSE(x);
+    CHECK(x.error().message.starts_with("the tangent of this state is singular: "));
+}
+
+TEST_CASE("a state that no body can have is an error") {
+    const Case c(plain());
+    State state = c.system.rest();
+    state.x *= -1;
+    const auto at = Linearisation::create(c.system, state, c.system.controls(0));
+    REQUIRE_FALSE(at);
+    CHECK(at.error().message == "a state that turns a tetrahedron inside out has no linearisation");
+}

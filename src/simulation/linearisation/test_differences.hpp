@@ -1,0 +1,241 @@
+// What the tests of linearisations share: states of small robots, and differences to hold derivatives against.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "base/linalg/vectors.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/parameters.hpp"
+#include "simulation/solver/curvature.hpp"
+#include "simulation/solver/friction_rounds.hpp"
+
+namespace pliant::sim::testing {
+
+/// Numbers between -1 and 1, the same on every system.
+class Noise {
+public:
+    explicit Noise(unsigned seed) : engine_(seed) {}
+    double operator()() { return static_cast<double>(engine_()) / 2147483648.0 - 1; }
+    Eigen::VectorXd vector(Eigen::Index size) {
+        Eigen::VectorXd v(size);
+        for (double& entry : v) entry = (*this)();
+        return v;
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+struct Settled {
+    State state;
+    Controls controls;
+    bool converged = false;
+};
+
+/// The program in `steps` equal steps up to time 1, as far as it converges; with damping, in time.
+inline Settled settle(Equilibrium& system, int steps, double tolerance, const Damping* damping = nullptr) {
+    const FactoredLaplacian laplacian(system);
+    SolverChain solvers = make_chain(Solver::automatic, system, laplacian);
+    Progress silent;
+    Settled last{system.rest(), system.controls(0), true};
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(last.state.x.size());
+    History history{last.state.x, still, last.state.x, still, 0};
+    for (int step = 1; step <= steps; ++step) {
+        const double time = static_cast<double>(step) / steps;
+        Controls controls = system.controls(time);
+        if (damping != nullptr)
+            controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
+                                                               history, 1.0 / steps, *damping, nullptr);
+        State next = last.state;
+        system.place_supports(controls, next.x);
+        const bool possible = system.evaluate(next, controls).possible() &&
+                              system.largest_step(last.state.x, next.x - last.state.x, last.controls,
+                                                  controls.obstacles - last.controls.obstacles) == 1;
+        const std::vector<Drive> drives = system.controls(time - 1.0 / steps).drives;
+        last.converged = possible && settle_friction(system, solvers, {tolerance, 200}, 30,
+                                                     {last.state, last.controls, drives}, controls, next, silent)
+                                         .converged;
+        if (!last.converged) return last;
+        if (damping != nullptr)
+            history = {next.x, controls.inertia->velocity(next.x), history.x, history.v, 1.0 / steps};
+        last.state = std::move(next);
+        last.controls = std::move(controls);
+    }
+    return last;
+}
+
+/// Largest relative errors of what a linearisation says.
+struct Measured {
+    double product = 0;    ///< against differences
+    double transpose = 0;  ///< of <w, A v> against <A^T w, v>
+    double solution = 0;   ///< |b - A x| / |b|, of both sides
+    double input = 0;      ///< of dF/dp against differences
+};
+
+/// Of two vectors of unknowns: the forces, and each other row, beside their own size; `least` (solved) of the other
+/// rows.
+inline double relative_error(const Linearisation& at, const Eigen::VectorXd& measured, const Eigen::VectorXd& expected,
+                             const Eigen::VectorXd& least) {
+    const auto m = static_cast<Eigen::Index>(at.solved().size());
+    const Eigen::Index n = at.size() - m;
+    const auto share = [](double off, double of) { return off == 0 ? 0 : off / of; };
+    double error = share((measured - expected).head(n).norm(), expected.head(n).norm());
+    for (Eigen::Index k = n; k < at.size(); ++k)
+        error = std::max(error,
+                         share(std::fabs(measured[k] - expected[k]), std::max(std::fabs(expected[k]), least[k - n])));
+    return error;
+}
+
+/// The smallest error of central differences over steps from `largest` down: too long a step bends, too short a one
+/// drowns in rounding; a wrong derivative is wrong with all of them.
+inline double best_error(double largest, const std::function<double(double step)>& error_of) {
+    double best = 1e300;
+    for (double step = largest; step > 1e-6 * largest; step /= 8) best = std::min(best, error_of(step));
+    return best;
+}
+
+/// Four-point central difference: its error goes with the fourth power of the step.
+inline Eigen::VectorXd difference(const std::function<Eigen::VectorXd(double)>& f, double h) {
+    return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
+}
+
+/// The state moved along a change of it.
+inline State moved(const State& state, const Change& along, double step) {
+    return {state.x + step * along.positions, state.multiplier + step * along.multipliers};
+}
+
+/// A direction in the unknowns, or weights of the equations, of the order of 1 for the nodes; the rest is as large as
+/// does about as much.
+inline Eigen::VectorXd some_direction(const Linearisation& at, Side side, Noise& noise) {
+    const auto multiply = [&](const Eigen::VectorXd& v) {
+        return side == Side::direct ? at.multiply(v) : at.multiply_transposed(v);
+    };
+    const auto m = static_cast<Eigen::Index>(at.solved().size());
+    const Eigen::Index n = at.size() - m;
+    Eigen::VectorXd v = noise.vector(at.size());
+    Eigen::VectorXd motion = v;
+    motion.tail(m).setZero();
+    const Eigen::VectorXd done = multiply(motion);
+    for (Eigen::Index k = n; k < at.size(); ++k) {
+        const Eigen::VectorXd own = multiply(Eigen::VectorXd::Unit(at.size(), k));
+        const double force = own.head(n).norm();
+        v[k] *= force > 0 ? done.head(n).norm() / force : done[k] / own[k];
+    }
+    return at.unknowns_of(at.change_of(v));  // nothing along what rollers hold
+}
+
+inline Controls with_input(const Linearisation& at, const Parameter& p, double change, State& state) {
+    using Kind = Parameter::Kind;
+    const Equilibrium& system = at.system();
+    const Description& d = system.model().description();
+    Controls controls = at.controls();
+    const auto actuator = [&] { return static_cast<Eigen::Index>(p.index); };
+    switch (p.kind) {
+        case Kind::length:
+            controls.drives[p.index].value *= 1 + change / p.value;
+            break;
+        case Kind::volume:
+        case Kind::gas:
+            controls.drives[p.index].value += change;
+            break;
+        case Kind::tension:
+            state.multiplier[actuator()] = controls.drives[p.index].value += change;
+            break;
+        case Kind::pressure:
+            state.multiplier[actuator()] = controls.drives[p.index].value -= change;
+            break;
+        case Kind::support_share:
+            controls.support_share[p.index] += change;
+            system.place_supports(controls, state.x);
+            break;
+        case Kind::load_share: {
+            const Load& load = d.loads[p.index];
+            for (std::size_t k = 0; k < load.nodes.size(); ++k)
+                controls.external_N.segment<3>(3 * load.nodes[k]) +=
+                    change * load.shares[k] * linalg::vector(load.force_N);
+            break;
+        }
+        case Kind::gravity_share: {
+            const auto& mass = system.model().elements().node_mass_kg();
+            for (std::size_t n = 0; n < mass.size(); ++n)
+                controls.external_N.segment<3>(3 * static_cast<Eigen::Index>(n)) +=
+                    change * mass[n] * linalg::vector(d.gravity_m_s2);
+            break;
+        }
+        case Kind::obstacle_share: {
+            const contact::Contact& contact = *system.model().contact(true);
+            for (int n = contact.first_node(p.index); n < contact.first_node(p.index + 1); ++n)
+                controls.obstacles.segment<3>(3 * (n - contact.robot_node_count())) +=
+                    change * linalg::vector(d.contact->obstacles[p.index].move_m);
+            break;
+        }
+    }
+    return controls;
+}
+
+/// dF/dp against differences of the equations.
+inline double input_error(Linearisation& at, const Parameter& input) {
+    const Derivative by = derivative(at, input);
+    const auto m = static_cast<Eigen::Index>(at.solved().size());
+    Eigen::VectorXd least = Eigen::VectorXd::Zero(m);
+    const double motion = by.direct.positions.norm();
+    for (Eigen::Index k = 0; motion > 0 && k < m; ++k) {
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(at.size());
+        row[at.size() - m + k] = 1;
+        least[k] = 1e-3 * motion * at.motion_weights(row).norm();
+    }
+    const double largest = 0.02 * (input.value != 0 ? std::fabs(input.value) : 1);
+    return best_error(largest, [&](double h) {
+        const auto equations = [&](double change) {
+            State state = at.state();
+            const Controls controls = with_input(at, input, change, state);
+            return at.equations(state, controls);
+        };
+        return relative_error(at, difference(equations, h), by.equations, least);
+    });
+}
+
+/// Tries products, solutions and inputs of a state. `size_m`: the length over which forces change.
+inline Measured errors_of(Linearisation& at, double size_m, unsigned seed = 1) {
+    Measured worst;
+    Noise noise(seed);
+    const auto m = static_cast<Eigen::Index>(at.solved().size());
+    for (int k = 0; k < 2; ++k) {
+        const Eigen::VectorXd v = some_direction(at, Side::direct, noise),
+                              w = some_direction(at, Side::transposed, noise);
+        const Eigen::VectorXd Av = at.multiply(v);
+        const Eigen::VectorXd none = Eigen::VectorXd::Zero(m);
+        const Change along = at.change_of(v);
+        worst.product =
+            std::max(worst.product, best_error(0.01 * size_m, [&](double h) {
+                         const Eigen::VectorXd by_difference = difference(
+                             [&](double s) { return at.equations(moved(at.state(), along, s), at.controls()); }, h);
+                         return relative_error(at, by_difference, Av, none);
+                     }));
+        const Eigen::VectorXd Aw = at.multiply_transposed(w);
+        worst.transpose =
+            std::max(worst.transpose, std::fabs(w.dot(Av) - Aw.dot(v)) / (w.cwiseAbs().dot(Av.cwiseAbs())));
+        const auto x = at.solve(Av), y = at.solve_transposed(Aw);
+        REQUIRE_MESSAGE(x, x.error().message);
+        REQUIRE_MESSAGE(y, y.error().message);
+        const Eigen::Index n = at.size() - m;
+        const Eigen::VectorXd off = Av - at.multiply(*x), off_transposed = Aw - at.multiply_transposed(*y);
+        worst.solution = std::max({worst.solution, off.head(n).norm() / Av.head(n).norm(),
+                                   off_transposed.head(n).norm() / Aw.head(n).norm()});
+    }
+    for (const Parameter& input : inputs(at)) {
+        const double error = input_error(at, input);
+        INFO(input.name);
+        CHECK(error < 1e-7);
+        worst.input = std::max(worst.input, error);
+    }
+    return worst;
+}
+
+}  // namespace pliant::sim::testing
