@@ -21,4 +21,8 @@ Matrix9 first_piola_gradient(const Corotated& law, const Matrix3& F) {
     return H;
 }
 
+Slopes stress_slopes(const Corotated& /*law*/, const Matrix3& F) {
+    return {2 * (F - linalg::nearest_rotation(F)), (F.determinant() - 1) * cofactor(F)};
+}
+
 }  // namespace pliant::material

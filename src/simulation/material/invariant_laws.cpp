@@ -125,4 +125,16 @@ Matrix9 first_piola_gradient(const Yeoh& law, const Matrix3& F) {
     return H;
 }
 
+Slopes stress_slopes(const MooneyRivlin& /*law*/, const Matrix3& F) {
+    const FirstInvariant first(F);
+    return {first.gradient(F), SecondInvariant(F, first).gradient(first), (first.J - 1) * first.C};
+}
+
+Slopes stress_slopes(const Yeoh& /*law*/, const Matrix3& F) {
+    const FirstInvariant first(F);
+    const double x = first.bar() - 3;
+    const Matrix3 g = first.gradient(F);
+    return {g, 2 * x * g, 3 * x * x * g, (first.J - 1) * first.C};
+}
+
 }  // namespace pliant::material

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/core/near.hpp"
+#include "simulation/material/law_parameters.hpp"
 #include "simulation/material/response.hpp"
 
 using namespace pliant::material;
@@ -107,6 +108,76 @@ TEST_CASE("the tangent is the derivative of the stress, symmetric where there is
             if (has_energy(law)) CHECK((H - H.transpose()).norm() < 1e-12 * H.norm());
         }
     }
+}
+
+namespace {
+
+/// A thousandth of a parameter; of Poisson's ratio, of the way to 0.5.
+double step_of(const LawParameter& parameter) {
+    return 1e-3 * (parameter.name == "poisson_ratio" ? 0.5 - parameter.value : std::fabs(parameter.value));
+}
+
+/// Four-point central difference by parameter k of a law; its error goes with the fourth power of the step.
+template <typename Function>
+auto difference_by(const Law& law, std::size_t k, const Function& f) {
+    using Value = std::decay_t<decltype(f(law))>;
+    const LawParameter parameter = parameters(law)[k];
+    const double value = parameter.value, h = step_of(parameter);
+    const auto at = [&](double step) { return f(with_parameter(law, k, value + step)); };
+    return Value((8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h));
+}
+
+}  // namespace
+
+TEST_CASE("the stress changes with every constant, and with E and nu, as it does between two laws") {
+    for (const auto& [name, law] : laws) {
+        CAPTURE(name);
+        const std::vector<LawParameter> all = parameters(law);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            CAPTURE(all[k].name);
+            for (const Matrix3& F : deformations()) {
+                const auto slopes = stress_by_constants(law, F);
+                REQUIRE(slopes.size() == all[k].direction.size());
+                Matrix3 rate = Matrix3::Zero();
+                for (std::size_t c = 0; c < slopes.size(); ++c) rate += all[k].direction[c] * slopes[c];
+                const Matrix3 expected =
+                    difference_by(law, k, [&](const Law& changed) -> Matrix3 { return stress(changed, F); });
+                const double rounding = 1e-12 * stress(law, F).norm() / step_of(all[k]);
+                CHECK((rate - expected).norm() <= 1e-8 * expected.norm() + rounding);
+            }
+        }
+    }
+}
+
+TEST_CASE("the moduli change with every constant as they do between two laws") {
+    for (const auto& [name, law] : laws) {
+        CAPTURE(name);
+        const std::vector<LawParameter> all = parameters(law);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            CAPTURE(all[k].name);
+            const Moduli rate = moduli_rate(law, all[k].direction);
+            const auto shear = difference_by(law, k, [](const Law& changed) { return moduli(changed).shear_Pa; });
+            const auto bulk = difference_by(law, k, [](const Law& changed) { return moduli(changed).bulk_Pa; });
+            const double rounding = 1e-13 * moduli(law).bulk_Pa / step_of(all[k]);
+            CHECK(rate.shear_Pa == near(shear, {.relative = 1e-8, .absolute = rounding}));
+            CHECK(rate.bulk_Pa == near(bulk, {.relative = 1e-8, .absolute = rounding}));
+        }
+    }
+}
+
+TEST_CASE("a law's parameters are its own numbers, and E and nu those that it was made with") {
+    const std::vector<LawParameter> all = parameters(Law(corotated(12e6, 0.45)));
+    REQUIRE(all.size() == 4);
+    CHECK(all[2].name == "youngs_modulus");
+    CHECK(all[2].value == near(12e6, {.relative = 1e-12}));
+    CHECK(all[3].name == "poisson_ratio");
+    CHECK(all[3].value == near(0.45, {.relative = 1e-12}));
+    const Law changed = with_parameter(corotated(12e6, 0.45), 3, 0.4);
+    CHECK(std::get<Corotated>(changed).lame_Pa == near(corotated(12e6, 0.4).lame_Pa, {.relative = 1e-12}));
+    const Law ogden = Ogden{2, {1e6, 2e6}, {3, 4}, 1e8};
+    REQUIRE(parameters(ogden).size() == 5);
+    CHECK(parameters(ogden)[3].name == "alpha_2");
+    CHECK(std::get<Ogden>(with_parameter(ogden, 3, 5)).alpha[1] == 5);
 }
 
 TEST_CASE("a rotation of the deformed body rotates the stress and leaves the energy") {

@@ -32,4 +32,9 @@ Matrix9 first_piola_gradient(const Linear& law, const Matrix3& /*F*/) {
     return H;
 }
 
+Slopes stress_slopes(const Linear& /*law*/, const Matrix3& F) {
+    const Matrix3 strain = small_strain(F);
+    return {2 * strain, strain.trace() * Matrix3::Identity()};
+}
+
 }  // namespace pliant::material

@@ -109,4 +109,25 @@ Matrix9 first_piola_gradient(const Ogden& law, const Matrix3& F) {
     return frame * local * frame.transpose();
 }
 
+/// Of each term: mu, then alpha; and of the bulk modulus.
+Slopes stress_slopes(const Ogden& law, const Matrix3& F) {
+    const linalg::Svd3 svd = linalg::signed_svd(F);
+    const double J = svd.sigma.prod();
+    const auto stress_of = [&](const Vector3& q) -> Matrix3 {
+        return svd.U * q.cwiseQuotient(svd.sigma).asDiagonal() * svd.V.transpose();
+    };
+    Slopes slopes;
+    for (int k = 0; k < law.terms; ++k) {
+        const double a = law.alpha[k];
+        const Vector3 power = powers(svd.sigma, J, a);
+        const Vector3 rate = power.array() * (svd.sigma.array() / std::cbrt(J)).log();  // of the powers with alpha
+        const Vector3 off = power.array() - power.mean();
+        const Vector3 change = rate.array() - rate.mean();
+        slopes.push_back(stress_of(2 / a * off));
+        slopes.push_back(stress_of(2 * law.mu_Pa[k] / a * (change - off / a)));
+    }
+    slopes.push_back(stress_of(Vector3::Constant((J - 1) * J)));
+    return slopes;
+}
+
 }  // namespace pliant::material

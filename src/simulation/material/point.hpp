@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "simulation/material/response.hpp"
 
@@ -58,5 +59,16 @@ Matrix9 first_piola_gradient(const Corotated& law, const Matrix3& F);
 std::optional<double> psi(const Linear& law, const Matrix3& F);
 Matrix3 first_piola(const Linear& law, const Matrix3& F);
 Matrix9 first_piola_gradient(const Linear& law, const Matrix3& F);
+
+/// dP/dc for each constant of a law, in the order of parameters() (law_parameters.hpp).
+using Slopes = std::vector<Matrix3>;
+[[nodiscard]] Slopes stress_slopes(const NeoHookean& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const ShapeBlend& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const StVenantKirchhoff& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const MooneyRivlin& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const Yeoh& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const Ogden& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const Corotated& law, const Matrix3& F);
+[[nodiscard]] Slopes stress_slopes(const Linear& law, const Matrix3& F);
 
 }  // namespace pliant::material

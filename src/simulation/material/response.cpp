@@ -102,4 +102,21 @@ Matrix9 tangent(const Law& law, const Matrix3& F) {
     return std::visit([&](const auto& l) { return first_piola_gradient(l, F); }, law);
 }
 
+Slopes stress_slopes(const NeoHookean& /*law*/, const Matrix3& F) {
+    const double J = F.determinant();
+    const Matrix3 C = cofactor(F);
+    return {std::pow(J, -2.0 / 3) * (F - F.squaredNorm() / (3 * J) * C), (J - 1) * C};
+}
+
+Slopes stress_slopes(const ShapeBlend& law, const Matrix3& F) {
+    const Matrix3 rigid = linalg::nearest_rotation(F);
+    const Matrix3 soft = std::cbrt(1 / F.determinant()) * F;
+    return {F - law.a * rigid - (1 - law.a) * soft, law.weight_Pa * (soft - rigid)};
+}
+
+Slopes stress_slopes(const StVenantKirchhoff& /*law*/, const Matrix3& F) {
+    const Matrix3 E = green_strain(F);
+    return {2 * F * E, E.trace() * F};
+}
+
 }  // namespace pliant::material
