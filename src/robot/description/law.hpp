@@ -4,8 +4,8 @@
 // Notation: F deformation gradient, J = det F, psi energy per rest volume (J/m^3), P = d psi / dF first
 // Piola-Kirchhoff stress (Pa), K bulk modulus, mu shear modulus (Pa).
 //
-// To add a law: a struct of its constants, its moduli and name in law.cpp, a line in Law, its three functions
-// (declared in simulation/material/point.hpp), and a line in law_test.cpp.
+// To add a law: a struct of its constants, its moduli and name in law.cpp, a line in Law, its four functions
+// (declared in simulation/material/point.hpp), its constants in law_parameters.cpp there, and a line in law_test.cpp.
 #pragma once
 
 #include <array>

@@ -25,6 +25,11 @@ public:
     [[nodiscard]] double energy(std::span<const double> x) const;
     /// forces (3n) += gradient of the energy.
     void add_gradient(std::span<const double> x, std::span<double> forces) const;
+    /// forces (3n) += factor * dL/dx.
+    void add_length_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
+        path_.add_gradient(x, factor, forces);
+    }
+    [[nodiscard]] double free_length() const { return free_length_m_; }
     /// For a pattern over free nodes (block 3) that holds the clique. With `project` without the part that makes the
     /// second gradient of a pressed spring indefinite.
     void add_hessian(std::span<const double> x, const std::vector<int>& free_index,

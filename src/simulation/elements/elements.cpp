@@ -192,8 +192,7 @@ Status Elements::integrate(const mesh::TetMesh& mesh) {
 /// Masses of tets and nodes.
 void Elements::weigh(const Description& description) {
     const mesh::TetMesh& mesh = description.mesh;
-    std::vector<std::vector<double>> shares;
-    for (const Barycentric& b : integration_points(mesh.order)) shares.push_back(mesh::shape_functions(mesh.order, b));
+    for (const Barycentric& b : integration_points(mesh.order)) shapes_.push_back(mesh::shape_functions(mesh.order, b));
     node_mass_.assign(mesh.points.size(), 0.0);
     tet_mass_.assign(mesh.tet_count(), 0.0);
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -201,7 +200,7 @@ void Elements::weigh(const Description& description) {
         for (std::size_t q = 0; q < points(); ++q) {
             const double mass = density * point_volume(t, static_cast<int>(q));
             tet_mass_[t] += mass;
-            for (std::size_t a = 0; a < width(); ++a) node_mass_[mesh.tet(t)[a]] += mass * shares[q][a];
+            for (std::size_t a = 0; a < width(); ++a) node_mass_[mesh.tet(t)[a]] += mass * shapes_[q][a];
         }
     }
 }
@@ -389,17 +388,36 @@ void Elements::add_mass(const std::vector<int>& free_index, const linalg::Symmet
 }
 
 void Elements::apply_mass(std::span<const double> u, std::span<double> result) const {
+    apply_mass(tet_mass_, u, result);
+}
+
+void Elements::apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const {
     const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
     for (std::size_t t = 0; t < tet_count(); ++t) {
         for (int a = 0; a < nodes_per_tet_; ++a) {
             double* r = result.data() + 3 * static_cast<std::size_t>(node(t, a));
             for (int b = 0; b < nodes_per_tet_; ++b) {
-                const double mass = tet_mass_[t] * shares(a, b);
+                const double mass = tet_mass[t] * shares(a, b);
                 const double* v = u.data() + 3 * static_cast<std::size_t>(node(t, b));
                 for (int i = 0; i < 3; ++i) r[i] += mass * v[i];
             }
         }
     }
+}
+
+std::vector<double> Elements::mass_products(std::span<const double> u, std::span<const double> v) const {
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    std::vector<double> products(tet_count(), 0.0);
+    for (std::size_t t = 0; t < tet_count(); ++t) {
+        for (int a = 0; a < nodes_per_tet_; ++a) {
+            const double* ua = u.data() + 3 * static_cast<std::size_t>(node(t, a));
+            for (int b = 0; b < nodes_per_tet_; ++b) {
+                const double* vb = v.data() + 3 * static_cast<std::size_t>(node(t, b));
+                products[t] += shares(a, b) * (ua[0] * vb[0] + ua[1] * vb[1] + ua[2] * vb[2]);
+            }
+        }
+    }
+    return products;
 }
 
 linalg::Lists Elements::cliques(const std::vector<int>& free_index) const {

@@ -69,6 +69,10 @@ public:
     void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
                   double factor) const;
     void apply_mass(std::span<const double> u, std::span<double> result) const;
+    /// The same matrix with other masses of the tets (m).
+    void apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
+    /// (m) u . M v of each tet for each kg of its mass.
+    [[nodiscard]] std::vector<double> mass_products(std::span<const double> u, std::span<const double> v) const;
 
     /// Integral of density times N_a: what gravity multiplies, (n) kg.
     [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
@@ -91,6 +95,11 @@ public:
     [[nodiscard]] Vec3 shape_gradient(std::size_t tet, int point, int a) const {
         const double* g = gradient(tet, point, a);
         return {g[0], g[lanes], g[2 * lanes]};
+    }
+
+    /// N_a at an integration point.
+    [[nodiscard]] double shape_value(int point, int a) const {
+        return shapes_[static_cast<std::size_t>(point)][static_cast<std::size_t>(a)];
     }
 
     /// Node lists of all tets, as free indices: the cliques of the stiffness pattern.
@@ -135,13 +144,14 @@ private:
     int nodes_per_tet_ = 4;
     int points_per_tet_ = 1;
     bool has_energy_ = true;
-    std::vector<int> law_;            ///< (m)
-    std::vector<std::size_t> place_;  ///< (m) batch * lanes + lane: each batch holds tets of one law
-    std::vector<std::size_t> tet_;    ///< (batches, lanes) the inverse; no_tet where a lane is empty
-    std::vector<int> batch_law_;      ///< (batches)
-    AlignedArray<int> nodes_;         ///< (batches, nodes_per_tet, lanes)
-    AlignedArray<double> gradient_;   ///< (batches, points, nodes_per_tet, 3, lanes): grad N_a, 1/m
-    AlignedArray<double> volume_;     ///< (batches, points, lanes): integration weights, m^3
+    std::vector<int> law_;                     ///< (m)
+    std::vector<std::size_t> place_;           ///< (m) batch * lanes + lane: each batch holds tets of one law
+    std::vector<std::size_t> tet_;             ///< (batches, lanes) the inverse; no_tet where a lane is empty
+    std::vector<int> batch_law_;               ///< (batches)
+    AlignedArray<int> nodes_;                  ///< (batches, nodes_per_tet, lanes)
+    AlignedArray<double> gradient_;            ///< (batches, points, nodes_per_tet, 3, lanes): grad N_a, 1/m
+    AlignedArray<double> volume_;              ///< (batches, points, lanes): integration weights, m^3
+    std::vector<std::vector<double>> shapes_;  ///< (points, nodes_per_tet) N_a
     std::vector<double> node_mass_;
     std::vector<double> tet_mass_;  ///< (m) kg
     std::vector<material::Law> laws_;

@@ -48,6 +48,10 @@ public:
     /// What the step leads from, and how long it is.
     [[nodiscard]] const History& start() const { return start_; }
     [[nodiscard]] double dt() const { return dt_; }
+    /// (3n) what the mass matrix multiplies in the gradient: the acceleration, and damping by mass, m/s^2.
+    [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& x) const {
+        return rate_ * rate_ * (x - coast_) + rate_ * damping_.mass_per_s * (x - from_);
+    }
     /// Velocity (3n) at the end of the step, if it ends at x.
     [[nodiscard]] Eigen::VectorXd velocity(const Eigen::VectorXd& x) const { return rate_ * (x - from_); }
 

@@ -131,8 +131,9 @@ void Linearisation::assemble() {
     }
 }
 
-Eigen::VectorXd Linearisation::equations(const State& state, const Controls& controls) const {
-    const double ambient = system_->model().description().ambient_pressure_Pa;
+Eigen::VectorXd Linearisation::equations(const Equilibrium& system, const State& state,
+                                         const Controls& controls) const {
+    const double ambient = system.model().description().ambient_pressure_Pa;
     Controls given = controls;
     Eigen::VectorXd rows(static_cast<Eigen::Index>(solved_.size()));
     for (std::size_t k = 0; k < solved_.size(); ++k) {
@@ -141,13 +142,13 @@ Eigen::VectorXd Linearisation::equations(const State& state, const Controls& con
         const double wanted = controls.drives[a].kind == Drive::Kind::gas ? controls.drives[a].value / (ambient - m)
                                                                           : controls.drives[a].value;
         rows[static_cast<Eigen::Index>(k)] =
-            slack_[a] ? m : system_->actuators()[a].measure(view(state.x), controls.shares[a]) - wanted;
+            slack_[a] ? m : system.actuators()[a].measure(view(state.x), controls.shares[a]) - wanted;
         given.drives[a] = {Drive::Kind::multiplier, m};
     }
-    const Evaluation evaluation = system_->evaluate(state, given);
+    const Evaluation evaluation = system.evaluate(state, given);
     if (!evaluation.possible()) return Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
     Eigen::VectorXd all(size());
-    all << system_->restrict_to_free(evaluation.out_of_balance), rows;
+    all << system.restrict_to_free(evaluation.out_of_balance), rows;
     return all;
 }
 

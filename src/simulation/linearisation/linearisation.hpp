@@ -88,7 +88,12 @@ public:
     [[nodiscard]] bool is_slack(std::size_t actuator) const;
 
     /// F at another state and other controls, with the same actuators slack; not a number where no body can be so.
-    [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const;
+    [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const {
+        return equations(*system_, state, controls);
+    }
+    /// The same of a robot that differs only in its numbers.
+    [[nodiscard]] Eigen::VectorXd equations(const Equilibrium& system, const State& state,
+                                            const Controls& controls) const;
     /// A v and A^T w with A = dF/dz; (unknowns) -> (unknowns). Exact.
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v) const {
         return matrix_->multiply(v, Side::direct);

@@ -1,13 +1,15 @@
 #include "simulation/linearisation/parameters.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <span>
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/element_derivatives.hpp"
+#include "simulation/material/law_parameters.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -19,38 +21,6 @@ std::span<const double> view(const Eigen::VectorXd& v) {
 }
 std::span<double> view(Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
-/// Weighted over true length of a cable; 1 without friction.
-double weighted_share(const Linearisation& at, std::size_t cable) {
-    const Actuator& actuator = at.system().actuators()[cable];
-    const std::vector<double>& shares = at.controls().shares[cable];
-    return shares.empty() ? 1 : actuator.measure(view(at.state().x), shares) / actuator.measure(view(at.state().x));
-}
-
-Parameter drive_of(const Linearisation& at, std::size_t a) {
-    const Description& d = at.system().model().description();
-    const Drive& drive = at.controls().drives[a];
-    const std::size_t chambers = d.cables.size(), pressures = chambers + d.chambers.size();
-    if (a < chambers) {
-        const std::string& name = d.cables[a].name;
-        if (drive.kind == Drive::Kind::multiplier)
-            return {Kind::tension, a, fmt::format("cable \"{}\": tension", name), "N", drive.value};
-        return {Kind::length, a, fmt::format("cable \"{}\": length", name), "m", drive.value / weighted_share(at, a)};
-    }
-    if (a >= pressures)
-        return {Kind::pressure, a, fmt::format("load \"{}\": pressure", d.pressures[a - pressures].name), "Pa",
-                -drive.value};
-    const std::string& name = d.chambers[a - chambers].name;
-    switch (drive.kind) {
-        case Drive::Kind::measure:
-            return {Kind::volume, a, fmt::format("chamber \"{}\": volume", name), "m^3", drive.value};
-        case Drive::Kind::multiplier:
-            return {Kind::pressure, a, fmt::format("chamber \"{}\": pressure", name), "Pa", -drive.value};
-        case Drive::Kind::gas:
-            break;
-    }
-    return {Kind::gas, a, fmt::format("chamber \"{}\": gas", name), "J", drive.value};
 }
 
 Derivative nothing(const Linearisation& at) {
@@ -91,12 +61,12 @@ Derivative by_multiplier(const Linearisation& at, std::size_t actuator, double s
     return by;
 }
 
-Derivative by_support_share(Linearisation& at, std::size_t support) {
-    const Description& d = at.system().model().description();
-    const double share = at.controls().support_share[support];
+/// Of a motion of the nodes that one support holds, as it wants it.
+Derivative by_support(Linearisation& at, std::size_t support, const std::function<Vec3(const Vec3& rest)>& wanted) {
+    const std::vector<Vec3>& rest = at.system().model().mesh().points;
     return by_motion(at, at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
         if (s != support) return Eigen::Vector3d::Zero();
-        return linalg::vector(d.supports[s].velocity(d.mesh.points[static_cast<std::size_t>(node)], share));
+        return linalg::vector(wanted(rest[static_cast<std::size_t>(node)]));
     }));
 }
 
@@ -105,6 +75,23 @@ Eigen::VectorXd spread(const Linearisation& at, const Load& load, const Eigen::V
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
     for (std::size_t k = 0; k < load.nodes.size(); ++k) force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
     return force;
+}
+
+/// How fast the springs of plates stiffen beside what they are, as constants of a material move along `direction`.
+double stiffness_rate(const Description& d, std::size_t material, const std::vector<double>& direction) {
+    double stiffest = 0;
+    for (const Material& one : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(one.law));
+    const material::Law& law = d.materials[material].law;
+    if (material::stiffness_bound(law) < stiffest) return 0;
+    const material::Moduli now = material::moduli(law), rate = material::moduli_rate(law, direction);
+    return (3 * now.bulk_Pa >= 2 * now.shear_Pa ? 3 * rate.bulk_Pa : 2 * rate.shear_Pa) / stiffest;
+}
+
+void add_plate_force(const Linearisation& at, double factor, Eigen::VectorXd& force) {
+    if (factor == 0) return;
+    Eigen::VectorXd plates = Eigen::VectorXd::Zero(force.size());
+    for (const Plate& plate : at.system().plates()) plate.add_gradient(view(at.state().x), view(plates));
+    force += factor * plates;
 }
 
 /// (3n) of all masses under an acceleration.
@@ -126,57 +113,184 @@ Derivative by_obstacle_share(const Linearisation& at, std::size_t obstacle) {
     return by_force(at, at.system().obstacle_stiffness_times(at.state(), at.controls(), motion));
 }
 
-}  // namespace
-
-std::vector<Parameter> inputs(const Linearisation& at) {
+Derivative by_law(const Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
-    const double time = at.controls().time;
-    std::vector<Parameter> all;
-    for (std::size_t a = 0; a < at.controls().drives.size(); ++a) all.push_back(drive_of(at, a));
-    for (std::size_t s = 0; s < d.supports.size(); ++s) {
-        if (d.supports[s].moves())
-            all.push_back({Kind::support_share, s, fmt::format("fixed \"{}\": share of its motion", d.supports[s].name),
-                           "", at.controls().support_share[s]});
-    }
-    for (std::size_t k = 0; k < d.loads.size(); ++k)
-        all.push_back(
-            {Kind::load_share, k, fmt::format("load \"{}\": share", d.loads[k].name), "", d.loads[k].share.at(time)});
-    if (!(d.gravity_m_s2 == Vec3{}))
-        all.push_back({Kind::gravity_share, 0, "gravity: share", "", d.gravity_share.at(time)});
-    for (std::size_t k = 0; d.contact && k < d.contact->obstacles.size(); ++k) {
-        const Obstacle& obstacle = d.contact->obstacles[k];
-        if (!(obstacle.move_m == Vec3{}))
-            all.push_back({Kind::obstacle_share, k,
-                           fmt::format("obstacle \"{}\": share of its motion", obstacle.body.name), "",
-                           obstacle.share.at(time)});
-    }
-    return all;
+    const material::Law& law = d.materials[by.index].law;
+    const std::vector<double> direction = material::parameters(law)[by.part].direction;
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    add_law_force(at.system().model().elements(), by.index, direction, at.state().x, force);
+    add_plate_force(at, stiffness_rate(d, by.index, direction), force);
+    return by_force(at, force);
 }
+
+Derivative by_density(const Linearisation& at, std::size_t material) {
+    const Description& d = at.system().model().description();
+    const Elements& elements = at.system().model().elements();
+    const std::vector<double> volume = tet_volumes(elements, material);
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    add_weight(elements, material, -d.gravity_share.at(at.controls().time) * linalg::vector(d.gravity_m_s2), force);
+    if (at.controls().inertia)
+        elements.apply_mass(volume, view(at.controls().inertia->acceleration(at.state().x)), view(force));
+    return by_force(at, force);
+}
+
+Derivative by_spring(const Linearisation& at, const Parameter& by) {
+    const Description& d = at.system().model().description();
+    const SpringPath& path = at.system().springs()[by.index];
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    const double pull = path.force(view(at.state().x)), stiffness = d.springs[by.index].stiffness_N_m;
+    const bool slack = d.springs[by.index].only_pulls && !(pull > 0);
+    const double rate = by.kind == Kind::spring_stiffness ? pull / stiffness : -stiffness;
+    if (!slack) path.add_length_gradient(view(at.state().x), rate, view(force));
+    return by_force(at, force);
+}
+
+/// The shares s = exp(-f a) of a cable with friction change by s log(s) / f with f. What its weighted length is wanted
+/// to be changes just as that length does, once it is as long as wanted.
+Derivative by_cable_friction(const Linearisation& at, const Parameter& by) {
+    std::vector<double> rates = at.controls().shares[by.index];
+    for (double& share : rates) share *= std::log(share) / by.value;
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    const double tension = at.state().multiplier[static_cast<Eigen::Index>(by.index)];
+    if (!rates.empty()) at.system().actuators()[by.index].add_gradient(view(at.state().x), tension, view(force), rates);
+    return by_force(at, force);
+}
+
+/// Robot and obstacle nodes, as contact knows them.
+std::vector<double> contact_positions(const Linearisation& at) {
+    std::vector<double> x(at.state().x.begin(), at.state().x.end());
+    x.insert(x.end(), at.controls().obstacles.begin(), at.controls().obstacles.end());
+    return x;
+}
+
+/// Of all contact forces, friction too: they are proportional to it.
+Derivative by_contact_stiffness(const Linearisation& at, double stiffness_Pa) {
+    const std::vector<double> x = contact_positions(at);
+    std::vector<double> forces(x.size(), 0.0);
+    if (const contact::Contact* contact = at.system().model().contact(at.controls().met)) {
+        contact->add_gradient(contact->find(x), x, forces);
+        if (at.controls().friction) at.controls().friction->add_gradient(x, forces);
+    }
+    return by_force(at, Eigen::Map<const Eigen::VectorXd>(forces.data(), at.state().x.size()) / stiffness_Pa);
+}
+
+/// Of friction against one obstacle, or against itself (-1).
+Derivative by_friction(const Linearisation& at, int obstacle, double coefficient) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    if (!at.controls().friction) return by_force(at, force);
+    const std::vector<double> x = contact_positions(at);
+    const std::span<const contact::FrozenPair> pairs = at.controls().friction->pairs();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].obstacle != obstacle) continue;
+        const Eigen::Vector3d on_first = linalg::vector(at.controls().friction->force(k, x)) / coefficient;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(pairs[k].node_count); ++i) {
+            if (pairs[k].nodes[i] < at.system().model().node_count())
+                force.segment<3>(3 * pairs[k].nodes[i]) -= pairs[k].weights[i] * on_first;
+        }
+    }
+    return by_force(at, force);
+}
+
+Derivative by_ambient_pressure(const Linearisation& at) {
+    Derivative by = nothing(at);
+    const Eigen::Index first = at.size() - static_cast<Eigen::Index>(at.solved().size());
+    for (std::size_t k = 0; k < at.solved().size(); ++k) {
+        const std::size_t a = at.solved()[k];
+        const Drive& drive = at.controls().drives[a];
+        if (drive.kind != Drive::Kind::gas) continue;
+        by.equations[first + static_cast<Eigen::Index>(k)] =
+            at.system().gas_compliance(drive, at.state().multiplier[static_cast<Eigen::Index>(a)]);
+    }
+    return by;
+}
+
+}  // namespace
 
 Derivative derivative(Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
-    const auto m = [&] { return at.state().multiplier[static_cast<Eigen::Index>(by.index)]; };
+    const double time = at.controls().time;
+    const auto axis = [&] { return Eigen::Vector3d(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(by.part))); };
+    const auto share = [&] { return at.controls().support_share[by.index]; };
     switch (by.kind) {
         case Kind::length:
             return by_wanted(at, by.index, -weighted_share(at, by.index));
         case Kind::volume:
             return by_wanted(at, by.index, -1);
         case Kind::gas:
-            return by_wanted(at, by.index, -1 / (d.ambient_pressure_Pa - m()));
+            return by_wanted(at, by.index,
+                             -1 / (d.ambient_pressure_Pa - at.state().multiplier[static_cast<Eigen::Index>(by.index)]));
         case Kind::tension:
             return by_multiplier(at, by.index, 1);
         case Kind::pressure:
             return by_multiplier(at, by.index, -1);
         case Kind::support_share:
-            return by_support_share(at, by.index);
+            return by_support(at, by.index, [&](const Vec3& p) { return d.supports[by.index].velocity(p, share()); });
         case Kind::load_share:
             return by_force(at, -spread(at, d.loads[by.index], linalg::vector(d.loads[by.index].force_N)));
         case Kind::gravity_share:
             return by_force(at, -weight(at, linalg::vector(d.gravity_m_s2)));
         case Kind::obstacle_share:
             return by_obstacle_share(at, by.index);
+        case Kind::law:
+            return by_law(at, by);
+        case Kind::density:
+            return by_density(at, by.index);
+        case Kind::spring_stiffness:
+        case Kind::spring_free_length:
+            return by_spring(at, by);
+        case Kind::cable_friction:
+            return by_cable_friction(at, by);
+        case Kind::load_force:
+            return by_force(at, -d.loads[by.index].share.at(time) * spread(at, d.loads[by.index], axis()));
+        case Kind::load_pressure: {
+            const std::size_t first = d.cables.size() + d.chambers.size();
+            return by_multiplier(at, first + by.index, -d.pressures[by.index].share.at(time));
+        }
+        case Kind::gravity:
+            return by_force(at, -d.gravity_share.at(time) * weight(at, axis()));
+        case Kind::ambient_pressure:
+            return by_ambient_pressure(at);
+        case Kind::support_move:
+            return by_support(at, by.index, [&](const Vec3&) {
+                const Eigen::Vector3d move = share() * axis();
+                return Vec3{move[0], move[1], move[2]};
+            });
+        case Kind::support_angle:
+            return by_support(at, by.index, [&](const Vec3& p) { return d.supports[by.index].arc(p, share()); });
+        case Kind::contact_stiffness:
+            return by_contact_stiffness(at, by.value);
+        case Kind::self_friction:
+            return by_friction(at, -1, by.value);
+        case Kind::obstacle_friction:
+            return by_friction(at, static_cast<int>(by.index), by.value);
     }
     return nothing(at);
+}
+
+Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by) {
+    const Description& d = at.system().model().description();
+    const bool any = std::ranges::any_of(by, [](const Parameter& p) { return p.kind == Kind::law; });
+    const Eigen::VectorXd weights = at.change_of(adjoint.weights).positions;
+    std::vector<std::vector<double>> products;
+    double plates = 0;
+    if (any) {
+        products = law_products(at.system().model().elements(), d, at.state().x, weights);
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(weights.size());
+        add_plate_force(at, 1, force);
+        plates = weights.dot(force);
+    }
+    Eigen::VectorXd all(static_cast<Eigen::Index>(by.size()));
+    for (std::size_t k = 0; k < by.size(); ++k) {
+        double& result = all[static_cast<Eigen::Index>(k)];
+        if (by[k].kind != Kind::law) {
+            result = adjoint.derivative(derivative(at, by[k]));
+            continue;
+        }
+        const std::vector<double> direction = material::parameters(d.materials[by[k].index].law)[by[k].part].direction;
+        result = -stiffness_rate(d, by[k].index, direction) * plates;
+        for (std::size_t c = 0; c < direction.size(); ++c) result -= direction[c] * products[by[k].index][c];
+    }
+    return all;
 }
 
 }  // namespace pliant::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,18 +23,49 @@ struct Parameter {
         load_share,      ///< of a load's force
         gravity_share,   ///< of gravity
         obstacle_share,  ///< of an obstacle's motion
+        // Of the robot and of what surrounds it.
+        law,                 ///< part: of material::parameters()
+        density,             ///< of a material, kg/m^3: of its weight and its inertia
+        spring_stiffness,    ///< N/m
+        spring_free_length,  ///< m
+        cable_friction,      ///< coefficient of a cable in its guides, as it is lagged
+        load_force,          ///< part: x, y or z, N, at full share
+        load_pressure,       ///< of a pressure load, Pa, at full share
+        gravity,             ///< part: x, y or z, m/s^2, at full share
+        ambient_pressure,    ///< Pa: what sealed gas is measured against
+        support_move,        ///< part: x, y or z, m, at full share
+        support_angle,       ///< rad, at full share
+        contact_stiffness,   ///< Pa
+        self_friction,       ///< coefficient of the robot against itself, as it is lagged
+        obstacle_friction,   ///< coefficient of the robot against an obstacle, as it is lagged
     };
     Kind kind = Kind::length;
-    std::size_t index = 0;  ///< of the actuator (first cables, then chambers, then pressure loads), support, load, ...
-    std::string name;       ///< cable "left": length
-    std::string unit;       ///< "" for a plain number
-    double value = 0;       ///< at this state
+    std::size_t index =
+        0;                 ///< of the actuator (first cables, then chambers, then pressure loads), support, material...
+    std::string name;      ///< cable "left": length
+    std::string unit;      ///< "" for a plain number
+    double value = 0;      ///< at this state
+    std::size_t part = 0;  ///< where a thing has several such numbers
 };
+
+/// Weighted over true length of a cable: 1 without friction.
+[[nodiscard]] double weighted_share(const Linearisation& at, std::size_t cable);
 
 /// Every number that a controller may change.
 [[nodiscard]] std::vector<Parameter> inputs(const Linearisation& at);
 
+/// Every number that the robot is made with, of laws, loads, springs, supports and contact; but not rest positions
+/// (rest_positions.hpp). Coefficients of friction that are zero are not among them: nothing says along which way they
+/// would act.
+[[nodiscard]] std::vector<Parameter> parameters(const Linearisation& at);
+
 /// How the equations change with it. The wanted length of a slack cable does nothing.
+/// What is lagged or chosen before a step stays as it is: frozen friction but for its coefficient, damping by
+/// stiffness, the history of a motion. The springs of plates follow the stiffest law, as they do where a model is built
+/// anew.
 [[nodiscard]] Derivative derivative(Linearisation& at, const Parameter& by);
+
+/// dq/dp for many parameters, with one look at every tet for all laws together.
+[[nodiscard]] Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by);
 
 }  // namespace pliant::sim

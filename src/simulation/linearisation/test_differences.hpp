@@ -175,6 +175,8 @@ inline Controls with_input(const Linearisation& at, const Parameter& p, double c
                     change * linalg::vector(d.contact->obstacles[p.index].move_m);
             break;
         }
+        default:
+            FAIL("not an input");
     }
     return controls;
 }

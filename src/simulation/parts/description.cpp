@@ -14,9 +14,12 @@ Vec3 Support::turned_arm(const Vec3& arm, double share_now) const {
     return turned(arm, unit(turn.axis), share_now * turn.angle_rad);
 }
 
+Vec3 Support::arc(const Vec3& rest, double share_now) const {
+    return share_now * cross(unit(turn.axis), turned_arm(rest - turn.center_m, share_now));
+}
+
 Vec3 Support::velocity(const Vec3& rest, double share_now) const {
-    const Vec3 arm = turned_arm(rest - turn.center_m, share_now);
-    return move_m + turn.angle_rad * cross(unit(turn.axis), arm);
+    return move_m + turn.angle_rad * cross(unit(turn.axis), turned_arm(rest - turn.center_m, share_now));
 }
 
 Vec3 position(const Attachment& point, std::span<const double> x) {

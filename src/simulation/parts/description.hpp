@@ -51,7 +51,8 @@ struct Support {
     [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
     /// An arm of that node after the turn alone: the derivative of its place by `rest`, along `arm`.
     [[nodiscard]] Vec3 turned_arm(const Vec3& arm, double share_now) const;
-    /// How fast that place moves with the share, m.
+    /// How fast that place moves with the angle of the whole turn, m per rad, and with the share, m.
+    [[nodiscard]] Vec3 arc(const Vec3& rest, double share_now) const;
     [[nodiscard]] Vec3 velocity(const Vec3& rest, double share_now) const;
 };
 

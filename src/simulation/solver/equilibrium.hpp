@@ -153,6 +153,7 @@ public:
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
     [[nodiscard]] const std::vector<SpringPath>& springs() const { return springs_; }
+    [[nodiscard]] const std::vector<Plate>& plates() const { return plates_; }
     [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
     [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
     /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.

@@ -1,0 +1,154 @@
+// What there is to differentiate by.
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include "simulation/linearisation/parameters.hpp"
+#include "simulation/material/law_parameters.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using Kind = Parameter::Kind;
+
+constexpr std::array axes = {"x", "y", "z"};
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+Parameter drive_of(const Linearisation& at, std::size_t a) {
+    const Description& d = at.system().model().description();
+    const Drive& drive = at.controls().drives[a];
+    const std::size_t chambers = d.cables.size(), pressures = chambers + d.chambers.size();
+    if (a < chambers) {
+        const std::string& name = d.cables[a].name;
+        if (drive.kind == Drive::Kind::multiplier)
+            return {Kind::tension, a, fmt::format("cable \"{}\": tension", name), "N", drive.value};
+        return {Kind::length, a, fmt::format("cable \"{}\": length", name), "m", drive.value / weighted_share(at, a)};
+    }
+    if (a >= pressures)
+        return {Kind::pressure, a, fmt::format("load \"{}\": pressure", d.pressures[a - pressures].name), "Pa",
+                -drive.value};
+    const std::string& name = d.chambers[a - chambers].name;
+    switch (drive.kind) {
+        case Drive::Kind::measure:
+            return {Kind::volume, a, fmt::format("chamber \"{}\": volume", name), "m^3", drive.value};
+        case Drive::Kind::multiplier:
+            return {Kind::pressure, a, fmt::format("chamber \"{}\": pressure", name), "Pa", -drive.value};
+        case Drive::Kind::gas:
+            break;
+    }
+    return {Kind::gas, a, fmt::format("chamber \"{}\": gas", name), "J", drive.value};
+}
+
+void add_materials(const Description& d, std::vector<Parameter>& all) {
+    for (std::size_t m = 0; m < d.materials.size(); ++m) {
+        const std::string owner = fmt::format("material \"{}\"", d.materials[m].name);
+        const auto numbers = material::parameters(d.materials[m].law);
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            all.push_back(
+                {Kind::law, m, fmt::format("{}: {}", owner, numbers[k].name), numbers[k].unit, numbers[k].value, k});
+        all.push_back({Kind::density, m, owner + ": density", "kg/m^3", d.materials[m].density_kg_m3});
+    }
+}
+
+void add_vector(Kind kind, std::size_t index, const std::string& owner, const std::string& unit, const Vec3& value,
+                std::vector<Parameter>& all) {
+    for (std::size_t c = 0; c < 3; ++c)
+        all.push_back({kind, index, fmt::format("{}, {}", owner, axes[c]), unit, value[c], c});
+}
+
+void add_actuators(const Linearisation& at, std::vector<Parameter>& all) {
+    const Description& d = at.system().model().description();
+    for (std::size_t c = 0; c < d.cables.size(); ++c) {
+        if (d.cables[c].friction > 0)
+            all.push_back({Kind::cable_friction, c, fmt::format("cable \"{}\": friction", d.cables[c].name), "",
+                           d.cables[c].friction});
+    }
+    for (std::size_t s = 0; s < d.springs.size(); ++s) {
+        const std::string owner = fmt::format("spring \"{}\"", d.springs[s].name);
+        const double stiffness = d.springs[s].stiffness_N_m;
+        all.push_back({Kind::spring_stiffness, s, owner + ": stiffness", "N/m", stiffness});
+        all.push_back(
+            {Kind::spring_free_length, s, owner + ": free length", "m", at.system().springs()[s].free_length()});
+    }
+    for (const Drive& drive : at.controls().drives) {
+        if (drive.kind != Drive::Kind::gas) continue;
+        all.push_back({Kind::ambient_pressure, 0, "ambient pressure", "Pa", d.ambient_pressure_Pa});
+        break;
+    }
+}
+
+void add_contact(const Description& d, std::vector<Parameter>& all) {
+    if (!d.contact) return;
+    all.push_back({Kind::contact_stiffness, 0, "contact: stiffness", "Pa", d.contact->settings.stiffness_Pa});
+    if (d.contact->settings.friction > 0)
+        all.push_back({Kind::self_friction, 0, "contact: friction", "", d.contact->settings.friction});
+    for (std::size_t k = 0; k < d.contact->obstacles.size(); ++k) {
+        const contact::Obstacle& body = d.contact->obstacles[k].body;
+        if (body.friction > 0)
+            all.push_back(
+                {Kind::obstacle_friction, k, fmt::format("obstacle \"{}\": friction", body.name), "", body.friction});
+    }
+}
+
+}  // namespace
+
+double weighted_share(const Linearisation& at, std::size_t cable) {
+    const Actuator& actuator = at.system().actuators()[cable];
+    const std::vector<double>& shares = at.controls().shares[cable];
+    return shares.empty() ? 1 : actuator.measure(view(at.state().x), shares) / actuator.measure(view(at.state().x));
+}
+
+std::vector<Parameter> inputs(const Linearisation& at) {
+    const Description& d = at.system().model().description();
+    const double time = at.controls().time;
+    std::vector<Parameter> all;
+    for (std::size_t a = 0; a < at.controls().drives.size(); ++a) all.push_back(drive_of(at, a));
+    for (std::size_t s = 0; s < d.supports.size(); ++s) {
+        if (d.supports[s].moves())
+            all.push_back({Kind::support_share, s, fmt::format("fixed \"{}\": share of its motion", d.supports[s].name),
+                           "", at.controls().support_share[s]});
+    }
+    for (std::size_t k = 0; k < d.loads.size(); ++k)
+        all.push_back(
+            {Kind::load_share, k, fmt::format("load \"{}\": share", d.loads[k].name), "", d.loads[k].share.at(time)});
+    if (!(d.gravity_m_s2 == Vec3{}))
+        all.push_back({Kind::gravity_share, 0, "gravity: share", "", d.gravity_share.at(time)});
+    for (std::size_t k = 0; d.contact && k < d.contact->obstacles.size(); ++k) {
+        const Obstacle& obstacle = d.contact->obstacles[k];
+        if (!(obstacle.move_m == Vec3{}))
+            all.push_back({Kind::obstacle_share, k,
+                           fmt::format("obstacle \"{}\": share of its motion", obstacle.body.name), "",
+                           obstacle.share.at(time)});
+    }
+    return all;
+}
+
+std::vector<Parameter> parameters(const Linearisation& at) {
+    const Description& d = at.system().model().description();
+    std::vector<Parameter> all;
+    add_materials(d, all);
+    add_actuators(at, all);
+    for (std::size_t k = 0; k < d.loads.size(); ++k)
+        add_vector(Kind::load_force, k, fmt::format("load \"{}\": force", d.loads[k].name), "N", d.loads[k].force_N,
+                   all);
+    for (std::size_t k = 0; k < d.pressures.size(); ++k)
+        all.push_back({Kind::load_pressure, k, fmt::format("load \"{}\": full pressure", d.pressures[k].name), "Pa",
+                       d.pressures[k].pressure_Pa});
+    add_vector(Kind::gravity, 0, "gravity", "m/s^2", d.gravity_m_s2, all);
+    for (std::size_t s = 0; s < d.supports.size(); ++s) {
+        const Support& support = d.supports[s];
+        const std::string owner = fmt::format("fixed \"{}\"", support.name);
+        add_vector(Kind::support_move, s, owner + ": move", "m", support.move_m, all);
+        if (support.turn.angle_rad != 0)
+            all.push_back({Kind::support_angle, s, owner + ": angle", "rad", support.turn.angle_rad});
+    }
+    add_contact(d, all);
+    return all;
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,236 @@
+// Derivatives by what a robot is made with, against robots that are made differently.
+#include "simulation/linearisation/parameters.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "base/core/near.hpp"
+#include "simulation/linearisation/test_robots.hpp"
+#include "simulation/material/law_parameters.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using namespace pliant::sim::testing;
+
+namespace {
+
+using Kind = Parameter::Kind;
+
+Description with_value(Description d, const Parameter& p, double value) {
+    switch (p.kind) {
+        case Kind::law:
+            d.materials[p.index].law = material::with_parameter(d.materials[p.index].law, p.part, value);
+            break;
+        case Kind::density:
+            d.materials[p.index].density_kg_m3 = value;
+            break;
+        case Kind::spring_stiffness:
+            d.springs[p.index].stiffness_N_m = value;
+            break;
+        case Kind::spring_free_length:
+            d.springs[p.index].free_length_m = value;
+            break;
+        case Kind::cable_friction:
+            d.cables[p.index].friction = value;
+            break;
+        case Kind::load_force:
+            d.loads[p.index].force_N[p.part] = value;
+            break;
+        case Kind::load_pressure:
+            d.pressures[p.index].pressure_Pa = value;
+            break;
+        case Kind::gravity:
+            d.gravity_m_s2[p.part] = value;
+            break;
+        case Kind::ambient_pressure:
+            d.ambient_pressure_Pa = value;
+            break;
+        case Kind::support_move:
+            d.supports[p.index].move_m[p.part] = value;
+            break;
+        case Kind::support_angle:
+            d.supports[p.index].turn.angle_rad = value;
+            break;
+        case Kind::contact_stiffness:
+            d.contact->settings.stiffness_Pa = value;
+            break;
+        case Kind::self_friction:
+            d.contact->settings.friction = value;
+            break;
+        case Kind::obstacle_friction:
+            d.contact->obstacles[p.index].body.friction = value;
+            break;
+        default:
+            FAIL("not a number of the robot");
+    }
+    return d;
+}
+
+/// The controls of a robot at the state that is looked at.
+using ControlsOf = std::function<Controls(Equilibrium&)>;
+
+/// Of a robot with another value of p: the equations at the same unknowns.
+Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, double value,
+                               const ControlsOf& controls_of) {
+    Case other(with_value(at.system().model().description(), p, value));
+    Controls controls = controls_of(other.system);
+    if (p.kind == Kind::ambient_pressure) controls.drives = at.controls().drives;
+    State state = at.state();
+    other.system.place_supports(controls, state.x);
+    return at.equations(other.system, state, controls);
+}
+
+/// By which a value may move: of what is zero, the size of its kind.
+double size_of(const Parameter& p) {
+    if (p.name.ends_with("poisson_ratio")) return 0.5 - p.value;
+    if (p.kind == Kind::gravity) return 10;
+    if (p.kind == Kind::support_move) return 0.1 * side;
+    return p.value != 0 ? std::fabs(p.value) : 1;
+}
+
+/// Worst relative error of all parameters of a state; and derivatives of a quantity by all of them at once.
+double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set<Kind>& seen) {
+    c.system.place_supports(controls_of(c.system), state.x);
+    Linearisation at = c.at(state, controls_of(c.system));
+    Noise noise(9);
+    const Eigen::VectorXd weights = some_direction(at, Side::transposed, noise);
+    const Quantity none{Eigen::VectorXd::Zero(state.x.size()), Eigen::VectorXd::Zero(state.multiplier.size())};
+    const std::vector<Parameter> all = parameters(at);
+    const Eigen::VectorXd products = derivatives(at, {none, weights}, all);
+    double worst = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const Parameter& p = all[k];
+        seen.insert(p.kind);
+        CAPTURE(p.name);
+        const Eigen::VectorXd by = derivative(at, p).equations;
+        CHECK(-weights.dot(by) == near(products[static_cast<Eigen::Index>(k)],
+                                       {.absolute = 1e-12 * weights.cwiseAbs().dot(by.cwiseAbs())}));
+        const Eigen::VectorXd least =
+            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(at.solved().size()), 1e-6 * by.norm() * side);
+        const double error = best_error(0.02 * size_of(p), [&](double h) {
+            return relative_error(
+                at, difference([&](double change) { return equations_with(at, p, p.value + change, controls_of); }, h),
+                by, least);
+        });
+        CHECK(error < 1e-7);
+        worst = std::max(worst, error);
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("every law's numbers and density, of either order") {
+    double worst = 0;
+    std::set<Kind> seen;
+    for (const int order : {1, 2}) {
+        for (std::size_t k = 0; k < laws.size(); ++k) {
+            CAPTURE(laws[k].first);
+            Description d = plain(order);
+            for (std::size_t t = 0; t < d.mesh.tet_count(); ++t) d.mesh.region[t] = t % 3 == 0 ? 1 : 0;
+            d.mesh.region_names = {"A", "B"};
+            d.materials = {{"A", laws[k].second, 1000}, {"B", material::neo_hookean(0.37e6, 0.35), 1200}};
+            d.material_of_region = {0, 1};
+            d.gravity_m_s2 = {0, 3, -9.81};
+            d.plates = {{"plate", end_of(d.mesh)}};
+            Case c(std::move(d));
+            worst = std::max(worst, worst_error(
+                                        c, disturbed(c.system, 0, 0),
+                                        [](Equilibrium& system) { return system.controls(0.7); }, seen));
+        }
+    }
+    MESSAGE("laws: ", worst);
+}
+
+TEST_CASE("springs, loads, supports, gas, friction of a cable") {
+    Description d = block(1, material::neo_hookean(1e6, 0.4));
+    d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.2};
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
+    d.cables[0].friction = 0.4;
+    d.springs = {{"coil", d.cables[0].points, 300, 0.8 * 3 * side},
+                 {"band", d.cables[0].points, 100, std::nullopt, true}};
+    const std::vector<int> end = end_of(d.mesh);
+    d.loads = {{"hook", end, std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())), {0.1, 0, -0.3}}};
+    d.pressures = {patch(d.mesh, -1)};
+    d.gravity_m_s2 = {0, 3, -9.81};
+    d.supports[0].turn = {0.2, {1, 2, 0}, {0, 0, side}};
+    d.supports.push_back({"roller",
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }),
+                          {0.02 * side, 0, 0.01 * side},
+                          ramp(0, 1),
+                          {0.1, {1, 1, 0}, {}},
+                          {{0, 1, 1}}});
+    Case c(std::move(d));
+    State state = disturbed(c.system, 0.5, 2e3);
+    c.system.place_supports(c.system.controls(0.3), state.x);  // friction is lagged at these positions
+    const auto controls_of = [&](Equilibrium& system) {
+        Controls controls = system.controls(0.3);
+        std::vector<Drive> wanted = controls.drives;
+        wanted[0].value = system.actuators()[0].measure({state.x.data(), static_cast<std::size_t>(state.x.size())});
+        system.freeze_cable_friction(state.x, wanted, system.controls(0).drives, controls);
+        return controls;
+    };
+    std::set<Kind> seen;
+    MESSAGE("springs and the rest: ", worst_error(c, state, controls_of, seen));
+    for (const Kind kind :
+         {Kind::spring_stiffness, Kind::spring_free_length, Kind::cable_friction, Kind::load_force, Kind::load_pressure,
+          Kind::gravity, Kind::ambient_pressure, Kind::support_move, Kind::support_angle})
+        CHECK(seen.contains(kind));
+}
+
+TEST_CASE("contact and its friction") {
+    Case c(touching_blocks());
+    const Settled at = pressed(c.system);
+    State start = at.state;
+    Noise noise(6);
+    for (double& entry : start.x) entry += 0.02 * side * noise();
+    const auto controls_of = [&](Equilibrium& system) {
+        system.set_met(true);
+        Controls controls = system.controls(0.9);
+        controls.friction = system.freeze_friction(at.state, start, controls, system.controls(0.8));
+        return controls;
+    };
+    std::set<Kind> seen;
+    MESSAGE("contact: ", worst_error(c, at.state, controls_of, seen));
+    for (const Kind kind : {Kind::contact_stiffness, Kind::self_friction, Kind::obstacle_friction})
+        CHECK(seen.contains(kind));
+}
+
+TEST_CASE("a density in motion") {
+    Description d = plain(2);
+    d.gravity_m_s2 = {0, 3, -9.81};
+    Case c(std::move(d));
+    const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
+    const History history{before.x, before.x - rest.x, rest.x, before.x, 0};
+    const auto controls_of = [&](Equilibrium& system) {
+        Controls controls = system.controls(0.7);
+        controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
+                                                           history, 1e-3, Damping{2, 0}, nullptr);
+        return controls;
+    };
+    std::set<Kind> seen;
+    MESSAGE("in motion: ", worst_error(c, disturbed(c.system, 0, 0), controls_of, seen));
+}
+
+TEST_CASE("every number has a name of its own, a unit and its value") {
+    Description d = block(1, material::corotated(1e6, 0.4));
+    d.pressures = {patch(d.mesh, -1)};
+    Case c(std::move(d));
+    const Linearisation at = c.at(c.system.rest(), c.system.controls(0.5));
+    std::set<std::string> names;
+    for (const auto& list : {inputs(at), parameters(at)}) {
+        for (const Parameter& p : list) CHECK(names.insert(p.name).second);
+    }
+    const auto find = [&](const std::string& name) {
+        for (const Parameter& p : parameters(at)) {
+            if (p.name == name) return p;
+        }
+        return Parameter{};
+    };
+    CHECK(find("material \"A\": youngs_modulus").value == near(1e6, {.relative = 1e-12}));
+    CHECK(find("material \"A\": youngs_modulus").unit == "Pa");
+    CHECK(find("load \"gust\": full pressure").value == 3e3);
+    CHECK(inputs(at).back().name == "load \"gust\": pressure");
+    CHECK(inputs(at).back().value == 1.5e3);
+}
