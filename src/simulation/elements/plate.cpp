@@ -63,6 +63,45 @@ void Plate::add_hessian(std::span<const double> x, const std::vector<int>& free_
     }
 }
 
+void Plate::add_rest_product(std::span<const double> x, std::span<const double> motion,
+                             std::span<double> forces) const {
+    const Pose p = pose(x);
+    linalg::Vector3 mean = linalg::Vector3::Zero();
+    for (const int node : nodes_) mean += linalg::view(motion, node) / static_cast<double>(nodes_.size());
+    linalg::Matrix3 dA = linalg::Matrix3::Zero();
+    for (const int node : nodes_) dA += linalg::view(x, node) * (linalg::view(motion, node) - mean).transpose();
+    const linalg::Matrix3 R = linalg::nearest_rotation(p.A);
+    const Eigen::Matrix<double, 9, 1> change = linalg::nearest_rotation_gradient(linalg::signed_svd(p.A)) *
+                                               Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dA.data());
+    const linalg::Matrix3 dR = Eigen::Map<const linalg::Matrix3>(change.data());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        Eigen::Map<linalg::Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[i]));
+        force -= stiffness_ * (R * (linalg::view(motion, nodes_[i]) - mean) + dR * rest_[i]);
+    }
+}
+
+void Plate::add_rest_weights(std::span<const double> x, std::span<const double> weights,
+                             std::span<double> result) const {
+    const Pose p = pose(x);
+    linalg::Matrix3 W = linalg::Matrix3::Zero();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) W += linalg::view(weights, nodes_[i]) * rest_[i].transpose();
+    const linalg::Matrix3 R = linalg::nearest_rotation(p.A);
+    const Eigen::Matrix<double, 9, 1> pulled = linalg::nearest_rotation_gradient(linalg::signed_svd(p.A)).transpose() *
+                                               Eigen::Map<const Eigen::Matrix<double, 9, 1>>(W.data());
+    const linalg::Matrix3 Z = Eigen::Map<const linalg::Matrix3>(pulled.data());
+    std::vector<linalg::Vector3> change;
+    linalg::Vector3 mean = linalg::Vector3::Zero();
+    for (const int node : nodes_) {
+        change.emplace_back(-stiffness_ *
+                            (R.transpose() * linalg::view(weights, node) + Z.transpose() * linalg::view(x, node)));
+        mean += change.back() / static_cast<double>(nodes_.size());
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        Eigen::Map<linalg::Vector3> sum(result.data() + 3 * static_cast<std::size_t>(nodes_[i]));
+        sum += change[i] - mean;
+    }
+}
+
 void Plate::append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const {
     std::vector<int> clique;
     for (const int node : nodes_) clique.push_back(free_index[static_cast<std::size_t>(node)]);

@@ -9,6 +9,7 @@ namespace pliant::sim {
 namespace {
 
 using linalg::Matrix3;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 std::span<const double> view(const Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
@@ -70,6 +71,52 @@ void add_weight(const Elements& elements, std::size_t material, const Eigen::Vec
             for (int a = 0; a < static_cast<int>(elements.nodes_per_tet()); ++a)
                 forces.segment<3>(3 * elements.node_of(t, a)) +=
                     elements.point_volume(t, q) * elements.shape_value(q, a) * acceleration;
+        }
+    }
+}
+
+void add_rest_product(const Elements& elements, const Masses& masses, const Eigen::VectorXd& x,
+                      const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+    std::vector<double> mass_rate(elements.tet_count(), 0.0);
+    for (std::size_t t = 0; t < elements.tet_count(); ++t) {
+        const double density = masses.density_kg_m3[static_cast<std::size_t>(elements.material(t))];
+        for (int q = 0; q < elements.points_per_tet(); ++q) {
+            const Matrix3 F = elements.deformation_gradient(t, q, view(x));
+            const Matrix3 L = elements.deformation_gradient(t, q, view(motion));
+            const Matrix3 P = material::stress(elements.law(t), F);
+            const Matrix3 dF = -F * L;
+            const Vector9 dP = material::tangent(elements.law(t), F) * Eigen::Map<const Vector9>(dF.data());
+            const double volume = elements.point_volume(t, q);
+            const Matrix3 change = L.trace() * P + Eigen::Map<const Matrix3>(dP.data()) - P * L.transpose();
+            add_stress(elements, t, q, volume * change, forces);
+            const double mass = density * volume * L.trace();
+            mass_rate[t] += mass;
+            for (int a = 0; a < static_cast<int>(elements.nodes_per_tet()); ++a)
+                forces.segment<3>(3 * elements.node_of(t, a)) += mass * elements.shape_value(q, a) * masses.weight;
+        }
+    }
+    if (masses.acceleration.size() == 0) return;
+    elements.apply_mass(mass_rate, view(masses.acceleration), {forces.data(), static_cast<std::size_t>(forces.size())});
+}
+
+void add_rest_weights(const Elements& elements, const Masses& masses, const Eigen::VectorXd& x,
+                      const Eigen::VectorXd& weights, Eigen::VectorXd& result) {
+    std::vector<double> by_mass(elements.tet_count(), 0.0);
+    if (masses.acceleration.size() > 0) by_mass = elements.mass_products(view(weights), view(masses.acceleration));
+    for (std::size_t t = 0; t < elements.tet_count(); ++t) {
+        const double density = masses.density_kg_m3[static_cast<std::size_t>(elements.material(t))];
+        for (int q = 0; q < elements.points_per_tet(); ++q) {
+            const Matrix3 F = elements.deformation_gradient(t, q, view(x));
+            const Matrix3 G = elements.deformation_gradient(t, q, view(weights));
+            const Matrix3 P = material::stress(elements.law(t), F);
+            const Vector9 M = material::tangent(elements.law(t), F).transpose() * Eigen::Map<const Vector9>(G.data());
+            double along = P.cwiseProduct(G).sum() + density * by_mass[t];
+            for (int a = 0; a < static_cast<int>(elements.nodes_per_tet()); ++a)
+                along += density * elements.shape_value(q, a) *
+                         masses.weight.dot(weights.segment<3>(3 * elements.node_of(t, a)));
+            const Matrix3 change =
+                along * Matrix3::Identity() - F.transpose() * Eigen::Map<const Matrix3>(M.data()) - G.transpose() * P;
+            add_stress(elements, t, q, elements.point_volume(t, q) * change, result);
         }
     }
 }

@@ -148,7 +148,7 @@ Eigen::VectorXd Linearisation::equations(const Equilibrium& system, const State&
     const Evaluation evaluation = system.evaluate(state, given);
     if (!evaluation.possible()) return Eigen::VectorXd::Constant(size(), std::numeric_limits<double>::quiet_NaN());
     Eigen::VectorXd all(size());
-    all << system.restrict_to_free(evaluation.out_of_balance), rows;
+    all << system_->restrict_to_free(evaluation.out_of_balance), rows;
     return all;
 }
 

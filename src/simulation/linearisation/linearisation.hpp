@@ -91,7 +91,7 @@ public:
     [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const {
         return equations(*system_, state, controls);
     }
-    /// The same of a robot that differs only in its numbers.
+    /// The same of a robot that differs only in its numbers or its shape; in the order of this one.
     [[nodiscard]] Eigen::VectorXd equations(const Equilibrium& system, const State& state,
                                             const Controls& controls) const;
     /// A v and A^T w with A = dF/dz; (unknowns) -> (unknowns). Exact.

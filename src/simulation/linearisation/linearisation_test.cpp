@@ -18,7 +18,7 @@ namespace {
 
 void check(Linearisation at, std::string_view what) {
     CAPTURE(what);
-    const Measured e = errors_of(at, side);
+    const Measured e = errors_of(at, edge);
     MESSAGE(what, ": products ", e.product, ", transposed ", e.transpose, ", solutions ", e.solution, ", inputs ",
             e.input);
     CHECK(e.product < 1e-8);
@@ -121,10 +121,10 @@ TEST_CASE("pressure on a patch with a free rim, and on one whose rim is held") {
         // Held all around, but the supports move.
         const auto rim = reference::nodes_where(d.mesh, [](Vec3 p) {
             const auto outer = [](double v, double end) { return v < 1e-9 || v > end - 1e-9; };
-            return p.z > side - 1e-9 && p.x > 1e-9 && (outer(p.x, 3 * side) || outer(p.y, side));
+            return p.z > edge - 1e-9 && p.x > 1e-9 && (outer(p.x, 3 * edge) || outer(p.y, edge));
         });
-        d.supports.push_back({"rim", rim, {0.1 * side, 0, 0.2 * side}});
-        d.supports.back().turn = {0.3, {1, 2, 3}, {side, 0, 0}};
+        d.supports.push_back({"rim", rim, {0.1 * edge, 0, 0.2 * edge}});
+        d.supports.back().turn = {0.3, {1, 2, 3}, {edge, 0, 0}};
         const Case held(d);
         REQUIRE_FALSE(held.system.has_skew());
         State state = disturbed(held.system, 0.5, 0);
@@ -137,7 +137,7 @@ TEST_CASE("pressure on a patch with a free rim, and on one whose rim is held") {
 TEST_CASE("rollers, also those that move and those that two supports share") {
     Description d = plain();
     d.supports.push_back(
-        {"roller", end_of(d.mesh), {0.02 * side, 0, 0.01 * side}, ramp(0, 1), {0.1, {1, 1, 0}, {}}, {{0, 1, 1}}});
+        {"roller", end_of(d.mesh), {0.02 * edge, 0, 0.01 * edge}, ramp(0, 1), {0.1, {1, 1, 0}, {}}, {{0, 1, 1}}});
     d.supports.push_back({"symmetry",
                           reference::nodes_where(d.mesh, [](Vec3 p) { return p.y < 1e-9 && p.x > 1e-9; }),
                           {},
@@ -157,10 +157,10 @@ TEST_CASE("rollers, also those that move and those that two supports share") {
 TEST_CASE("springs, plates, loads and gravity") {
     Description d = plain();
     const Cable path = flexor(d.mesh, {});
-    d.springs = {{"coil", path.points, 300, 0.8 * 3 * side},
-                 {"pressed", path.points, 30, 5 * side},
-                 {"band", path.points, 100, 0.5 * side, true},
-                 {"loose", path.points, 1000, 9 * side, true}};
+    d.springs = {{"coil", path.points, 300, 0.8 * 3 * edge},
+                 {"pressed", path.points, 30, 5 * edge},
+                 {"band", path.points, 100, 0.5 * edge, true},
+                 {"loose", path.points, 1000, 9 * edge, true}};
     d.plates = {{"plate", end_of(d.mesh)}};
     const std::vector<int> end = end_of(d.mesh);
     d.loads = {{"hook", end, std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())), {0.1, 0, -0.3}}};
@@ -171,16 +171,16 @@ TEST_CASE("springs, plates, loads and gravity") {
 
 TEST_CASE("the thesis' gap elements, whose force is not the gradient of the length") {
     for (const int order : {1, 2}) {
-        const auto region = [](Vec3 c) { return c.z > side / 2 && c.x > side && c.x < 2 * side ? 1 : 0; };
+        const auto region = [](Vec3 c) { return c.z > edge / 2 && c.x > edge && c.x < 2 * edge ? 1 : 0; };
         Description d;
-        d.mesh = reference::kuhn_box({3 * side, side, side}, 6, 2, 4, region);
+        d.mesh = reference::kuhn_box({3 * edge, edge, edge}, 6, 2, 4, region);
         d.mesh.region_names = {"solid", "gap"};
         if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
         d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}, {"gap", gap_law(1e6), 0}};
         d.material_of_region = {0, 1};
         d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
         d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
-        d.growths = {{1, {1, 0, 0}, 0, 1e5, side, {1.5 * side, 0.5 * side, 0.9 * side}}};
+        d.growths = {{1, {1, 0, 0}, 0, 1e5, edge, {1.5 * edge, 0.5 * edge, 0.9 * edge}}};
         const Case c(std::move(d));
         REQUIRE(c.system.actuators()[0].gaps() != nullptr);
         check(c.at(disturbed(c.system, -0.4, 0), c.system.controls(1)), fmt::format("gap elements, order {}", order));
@@ -189,7 +189,7 @@ TEST_CASE("the thesis' gap elements, whose force is not the gradient of the leng
 
 TEST_CASE("motion in time") {
     Description d = block(1, material::neo_hookean(1e6, 0.4));
-    d.supports.push_back({"grip", end_of(d.mesh), {0.1 * side, 0, 0.2 * side}});
+    d.supports.push_back({"grip", end_of(d.mesh), {0.1 * edge, 0, 0.2 * edge}});
     const Case c(std::move(d));
     State state = disturbed(c.system, 0, 2e3);
     const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();

@@ -85,7 +85,7 @@ Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, doub
 double size_of(const Parameter& p) {
     if (p.name.ends_with("poisson_ratio")) return 0.5 - p.value;
     if (p.kind == Kind::gravity) return 10;
-    if (p.kind == Kind::support_move) return 0.1 * side;
+    if (p.kind == Kind::support_move) return 0.1 * edge;
     return p.value != 0 ? std::fabs(p.value) : 1;
 }
 
@@ -107,7 +107,7 @@ double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set
         CHECK(-weights.dot(by) == near(products[static_cast<Eigen::Index>(k)],
                                        {.absolute = 1e-12 * weights.cwiseAbs().dot(by.cwiseAbs())}));
         const Eigen::VectorXd least =
-            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(at.solved().size()), 1e-6 * by.norm() * side);
+            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(at.solved().size()), 1e-6 * by.norm() * edge);
         const double error = best_error(0.02 * size_of(p), [&](double h) {
             return relative_error(
                 at, difference([&](double change) { return equations_with(at, p, p.value + change, controls_of); }, h),
@@ -148,16 +148,16 @@ TEST_CASE("springs, loads, supports, gas, friction of a cable") {
     d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.2};
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
     d.cables[0].friction = 0.4;
-    d.springs = {{"coil", d.cables[0].points, 300, 0.8 * 3 * side},
+    d.springs = {{"coil", d.cables[0].points, 300, 0.8 * 3 * edge},
                  {"band", d.cables[0].points, 100, std::nullopt, true}};
     const std::vector<int> end = end_of(d.mesh);
     d.loads = {{"hook", end, std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())), {0.1, 0, -0.3}}};
     d.pressures = {patch(d.mesh, -1)};
     d.gravity_m_s2 = {0, 3, -9.81};
-    d.supports[0].turn = {0.2, {1, 2, 0}, {0, 0, side}};
+    d.supports[0].turn = {0.2, {1, 2, 0}, {0, 0, edge}};
     d.supports.push_back({"roller",
-                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }),
-                          {0.02 * side, 0, 0.01 * side},
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * edge - 1e-9; }),
+                          {0.02 * edge, 0, 0.01 * edge},
                           ramp(0, 1),
                           {0.1, {1, 1, 0}, {}},
                           {{0, 1, 1}}});
@@ -184,7 +184,7 @@ TEST_CASE("contact and its friction") {
     const Settled at = pressed(c.system);
     State start = at.state;
     Noise noise(6);
-    for (double& entry : start.x) entry += 0.02 * side * noise();
+    for (double& entry : start.x) entry += 0.02 * edge * noise();
     const auto controls_of = [&](Equilibrium& system) {
         system.set_met(true);
         Controls controls = system.controls(0.9);

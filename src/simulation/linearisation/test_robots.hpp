@@ -15,7 +15,7 @@
 
 namespace pliant::sim::testing {
 
-inline constexpr double side = 0.01;
+inline constexpr double edge = 0.01;
 
 inline const std::vector<std::pair<const char*, material::Law>> laws = {
     {"neo-hookean", material::neo_hookean(1e6, 0.4)},
@@ -33,11 +33,11 @@ inline const std::vector<std::pair<const char*, material::Law>> laws = {
 inline Description block(int order, const material::Law& law) {
     const auto region = [](Vec3 c) {
         const auto inside = [](double v, double low, double high) { return v > low && v < high; };
-        return inside(c.x, side, 2 * side) && inside(c.y, side / 3, 2 * side / 3) && inside(c.z, side / 3, 2 * side / 3)
+        return inside(c.x, edge, 2 * edge) && inside(c.y, edge / 3, 2 * edge / 3) && inside(c.z, edge / 3, 2 * edge / 3)
                    ? 1
                    : 0;
     };
-    mesh::TetMesh whole = reference::kuhn_box({3 * side, side, side}, 3, 3, 3, region);
+    mesh::TetMesh whole = reference::kuhn_box({3 * edge, edge, edge}, 3, 3, 3, region);
     whole.region_names = {"solid", "air"};
     if (order == 2) whole = mesh::to_quadratic(whole);
     mesh::Extract solid = mesh::extract_regions(whole, {true, false});
@@ -60,9 +60,9 @@ inline Cable cable_through(const mesh::TetMesh& mesh, std::vector<Vec3> points, 
 
 inline Cable flexor(const mesh::TetMesh& mesh, const CableTarget& target) {
     return cable_through(mesh,
-                         {{0.1 * side, 0.5 * side, 0.9 * side},
-                          {1.5 * side, 0.6 * side, 0.95 * side},
-                          {2.9 * side, 0.5 * side, 0.9 * side}},
+                         {{0.1 * edge, 0.5 * edge, 0.9 * edge},
+                          {1.5 * edge, 0.6 * edge, 0.95 * edge},
+                          {2.9 * edge, 0.5 * edge, 0.9 * edge}},
                          target);
 }
 
@@ -70,7 +70,7 @@ inline Cable flexor(const mesh::TetMesh& mesh, const CableTarget& target) {
 inline State disturbed(const Equilibrium& system, double tension, double pressure, unsigned seed = 3) {
     State state = system.rest();
     Noise noise(seed);
-    for (double& entry : state.x) entry += 0.04 * side * noise();
+    for (double& entry : state.x) entry += 0.04 * edge * noise();
     for (std::size_t a = 0; a < system.actuators().size(); ++a)
         state.multiplier[static_cast<Eigen::Index>(a)] = a < system.cable_count() ? tension : -pressure;
     return state;
@@ -99,7 +99,7 @@ inline Description plain(int order = 1) {
 }
 
 inline std::vector<int> end_of(const mesh::TetMesh& mesh) {
-    return reference::nodes_where(mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; });
+    return reference::nodes_where(mesh, [](Vec3 p) { return p.x > 3 * edge - 1e-9; });
 }
 
 /// The top, as a wall whose rim nothing holds but at the clamp.
@@ -110,7 +110,7 @@ inline PressureLoad patch(const mesh::TetMesh& mesh, double from) {
         bool inside = true;
         for (int k = 0; k < 3; ++k) {
             const Vec3& p = mesh.points[static_cast<std::size_t>(face.nodes[static_cast<std::size_t>(k)])];
-            inside = inside && p.z > side - 1e-9 && p.x > from;
+            inside = inside && p.z > edge - 1e-9 && p.x > from;
         }
         if (inside) faces.push_back(face);
     }
@@ -121,11 +121,11 @@ inline PressureLoad patch(const mesh::TetMesh& mesh, double from) {
 
 /// A block over a table, and a second one that hangs over the first.
 inline Description touching_blocks() {
-    mesh::TetMesh mesh = reference::kuhn_box({2 * side, side, side}, 4, 2, 2, [](Vec3) { return 0; });
+    mesh::TetMesh mesh = reference::kuhn_box({2 * edge, edge, edge}, 4, 2, 2, [](Vec3) { return 0; });
     const std::size_t lower = mesh.points.size();
     const auto nodes = mesh.nodes;
     for (std::size_t i = 0; i < lower; ++i)
-        mesh.points.push_back(mesh.points[i] + Vec3{0.13 * side, 0.07 * side, 1.05 * side});
+        mesh.points.push_back(mesh.points[i] + Vec3{0.13 * edge, 0.07 * edge, 1.05 * edge});
     for (const int node : nodes) mesh.nodes.push_back(node + static_cast<int>(lower));
     mesh.region.resize(2 * mesh.region.size(), 0);
     Description d;
@@ -133,12 +133,12 @@ inline Description touching_blocks() {
     d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
     d.material_of_region = {0};
     d.supports = {
-        {"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 0.14 * side; }), {0, 0, 0.05 * side}}};
+        {"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 0.14 * edge; }), {0, 0, 0.05 * edge}}};
     ContactRules rules;
     rules.surface = contact::robot_surface(d.mesh);
-    rules.settings = {0.1 * side, 1e5, 0.4, 0.1 * side, true};
-    const contact::HalfSpace table{{0, 0, -0.2 * side}, {0, 0.1, 1}};
-    rules.obstacles.push_back({{"table", table, 0.3}, {0.02 * side, 0, 0.24 * side}});
+    rules.settings = {0.1 * edge, 1e5, 0.4, 0.1 * edge, true};
+    const contact::HalfSpace table{{0, 0, -0.2 * edge}, {0, 0.1, 1}};
+    rules.obstacles.push_back({{"table", table, 0.3}, {0.02 * edge, 0, 0.24 * edge}});
     d.contact = std::move(rules);
     return d;
 }
@@ -148,12 +148,12 @@ inline Settled pressed(Equilibrium& system) {
     system.set_met(true);
     State state = system.rest();
     Noise noise(5);
-    for (double& entry : state.x) entry += 0.003 * side * noise();
-    for (Eigen::Index i = state.x.size() / 6; i < state.x.size() / 3; ++i) state.x[3 * i + 2] -= 0.035 * side;
+    for (double& entry : state.x) entry += 0.003 * edge * noise();
+    for (Eigen::Index i = state.x.size() / 6; i < state.x.size() / 3; ++i) state.x[3 * i + 2] -= 0.035 * edge;
     Controls controls = system.controls(0.9);
     system.place_supports(controls, state.x);
     State start = state;
-    for (double& entry : start.x) entry += 0.02 * side * noise();
+    for (double& entry : start.x) entry += 0.02 * edge * noise();
     controls.friction = system.freeze_friction(state, start, controls, system.controls(0.8));
     const bool possible = system.evaluate(state, controls).possible();
     return {std::move(state), std::move(controls), possible};

@@ -167,6 +167,24 @@ void HeldNodes::move(const Wanted& wanted, Eigen::VectorXd& x) const {
     }
 }
 
+void HeldNodes::visit_weights(const Eigen::VectorXd& weights, const TakeWeight& take) const {
+    for (std::size_t s = 0; s < directions_.size(); ++s) {
+        const Directions& rows = directions_[s];
+        for (const int node : alone_[s]) take(s, node, rows.transpose() * (rows * weights.segment<3>(3 * node)));
+    }
+    for (const Shared& shared : shared_) {
+        const Eigen::VectorXd along = Eigen::MatrixXd(shared.directions.transpose())
+                                          .completeOrthogonalDecomposition()
+                                          .solve(Eigen::VectorXd(weights.segment<3>(3 * shared.node)));
+        Eigen::Index row = 0;
+        for (const int s : shared.supports) {
+            const Directions& rows = directions_[static_cast<std::size_t>(s)];
+            take(static_cast<std::size_t>(s), shared.node, rows.transpose() * along.segment(row, rows.rows()));
+            row += rows.rows();
+        }
+    }
+}
+
 std::vector<Vec3> HeldNodes::reactions(std::span<const Support> supports, const Eigen::VectorXd& out_of_balance) const {
     std::vector<Eigen::Vector3d> sums(supports.size(), Eigen::Vector3d::Zero());
     for (std::size_t s = 0; s < supports.size(); ++s) {

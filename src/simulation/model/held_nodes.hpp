@@ -44,6 +44,10 @@ public:
     /// so; zero elsewhere.
     [[nodiscard]] Eigen::VectorXd motion(const Wanted& wanted) const;
 
+    /// The transpose of motion(): what `weights` (3n) of the nodes' motion are of what each support wants of each node.
+    using TakeWeight = std::function<void(std::size_t support, int node, const Eigen::Vector3d& weight)>;
+    void visit_weights(const Eigen::VectorXd& weights, const TakeWeight& take) const;
+
     /// The force that each support exerts on the robot, (supports) N. `out_of_balance` (3n) are internal minus external
     /// forces. What two supports share at a node is split by the smallest forces that do it.
     [[nodiscard]] std::vector<Vec3> reactions(std::span<const Support> supports,

@@ -1,0 +1,146 @@
+#include "simulation/linearisation/rest_positions.hpp"
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include "base/linalg/vectors.hpp"
+#include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/element_derivatives.hpp"
+
+namespace pliant::sim {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+std::span<double> view(Eigen::VectorXd& v) {
+    return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+Eigen::VectorXd zeros(const Linearisation& at) {
+    return Eigen::VectorXd::Zero(at.state().x.size());
+}
+
+Status check_known(const Linearisation& at) {
+    for (const Actuator& actuator : at.system().actuators()) {
+        if (actuator.gaps() != nullptr) return failure("derivatives by rest positions do not know gap elements");
+    }
+    return {};
+}
+
+Masses masses_of(const Linearisation& at) {
+    const Description& d = at.system().model().description();
+    Masses masses;
+    for (const Material& material : d.materials) masses.density_kg_m3.push_back(material.density_kg_m3);
+    masses.weight = -d.gravity_share.at(at.controls().time) * linalg::vector(d.gravity_m_s2);
+    if (at.controls().inertia) masses.acceleration = at.controls().inertia->acceleration(at.state().x);
+    return masses;
+}
+
+/// (3n) of the volume of the straight tets, over that volume: that of their mean size, which makes plates stiff, is a
+/// third of it.
+Eigen::VectorXd volume_gradient(const mesh::TetMesh& mesh) {
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.points.size()));
+    double volume = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const std::span<const int> n = mesh.tet(t).first(4);
+        const auto edge = [&](std::size_t k) {
+            return mesh.points[static_cast<std::size_t>(n[k])] - mesh.points[static_cast<std::size_t>(n[0])];
+        };
+        const std::array<Vec3, 3> by = {cross(edge(2), edge(3)) / 6, cross(edge(3), edge(1)) / 6,
+                                        cross(edge(1), edge(2)) / 6};
+        volume += dot(edge(1), by[0]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            gradient.segment<3>(3 * n[k + 1]) += linalg::vector(by[k]);
+            gradient.segment<3>(3 * n[0]) -= linalg::vector(by[k]);
+        }
+    }
+    return gradient / volume;
+}
+
+/// (3n) forces of all plates.
+Eigen::VectorXd plate_forces(const Linearisation& at) {
+    Eigen::VectorXd forces = zeros(at);
+    for (const Plate& plate : at.system().plates()) plate.add_gradient(view(at.state().x), view(forces));
+    return forces;
+}
+
+/// Calls visit(dL/dx at this state times -k, dL0/dX) for each spring that pulls or presses and is free at rest.
+template <class Visit>
+void visit_free_springs(const Linearisation& at, const Visit& visit) {
+    const Description& d = at.system().model().description();
+    const Eigen::VectorXd rest = at.system().rest().x;
+    for (std::size_t s = 0; s < d.springs.size(); ++s) {
+        const SpringPath& path = at.system().springs()[s];
+        const bool slack = d.springs[s].only_pulls && !(path.force(view(at.state().x)) > 0);
+        if (d.springs[s].free_length_m || slack) continue;
+        Eigen::VectorXd force = zeros(at), at_rest = zeros(at);
+        path.add_length_gradient(view(at.state().x), -d.springs[s].stiffness_N_m, view(force));
+        path.add_length_gradient(view(rest), 1, view(at_rest));
+        visit(force, at_rest);
+    }
+}
+
+/// The motion (3n) of held nodes with that of their rest positions.
+Eigen::VectorXd held_motion(const Linearisation& at, const Eigen::VectorXd& motion) {
+    const Description& d = at.system().model().description();
+    return at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
+        const auto arm = linalg::view(view(motion), node);
+        return linalg::vector(d.supports[s].turned({arm[0], arm[1], arm[2]}, at.controls().support_share[s]));
+    });
+}
+
+/// Its transpose.
+Eigen::VectorXd held_weights(const Linearisation& at, const Eigen::VectorXd& weights) {
+    const Description& d = at.system().model().description();
+    Eigen::VectorXd result = zeros(at);
+    at.system().model().held().visit_weights(
+        weights, [&](std::size_t s, int node, const Eigen::Vector3d& w) {  // turned back
+            const Vec3 back = d.supports[s].turned({w[0], w[1], w[2]}, -at.controls().support_share[s]);
+            result.segment<3>(3 * node) += linalg::vector(back);
+        });
+    return result;
+}
+
+}  // namespace
+
+Result<Derivative> derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) {
+    if (Status status = check_known(at); !status) return tl::unexpected(status.error());
+    const Equilibrium& system = at.system();
+    Eigen::VectorXd force = zeros(at);
+    add_rest_product(system.model().elements(), masses_of(at), at.state().x, motion, force);
+    for (const Plate& plate : system.plates()) plate.add_rest_product(view(at.state().x), view(motion), view(force));
+    if (!system.plates().empty()) force += volume_gradient(system.model().mesh()).dot(motion) / 3 * plate_forces(at);
+    visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
+        force += at_rest.dot(motion) * by_length;
+    });
+    const Eigen::VectorXd held = held_motion(at, motion);
+    Derivative by{at.equations_of_motion(held), {held, Eigen::VectorXd::Zero(at.state().multiplier.size())}};
+    const Eigen::VectorXd free = system.restrict_to_free(force);
+    by.equations.head(free.size()) += free;
+    return by;
+}
+
+Result<Eigen::VectorXd> rest_gradient(Linearisation& at, const Adjoint& adjoint) {
+    if (Status status = check_known(at); !status) return tl::unexpected(status.error());
+    const Equilibrium& system = at.system();
+    const Eigen::VectorXd weights = at.change_of(adjoint.weights).positions;
+    Eigen::VectorXd sum = zeros(at);
+    add_rest_weights(system.model().elements(), masses_of(at), at.state().x, weights, sum);
+    for (const Plate& plate : system.plates()) plate.add_rest_weights(view(at.state().x), view(weights), view(sum));
+    if (!system.plates().empty()) sum += weights.dot(plate_forces(at)) / 3 * volume_gradient(system.model().mesh());
+    visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
+        sum += by_length.dot(weights) * at_rest;
+    });
+    return held_weights(at, adjoint.quantity.by_positions - at.motion_weights(adjoint.weights)) - sum;
+}
+
+Eigen::VectorXd rest_measure_gradient(const Equilibrium& system, std::size_t actuator) {
+    const Eigen::VectorXd rest = system.rest().x;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(rest.size());
+    system.actuators()[actuator].add_measure_gradient(view(rest), 1, view(gradient));
+    return gradient;
+}
+
+}  // namespace pliant::sim
