@@ -195,7 +195,7 @@ TEST_CASE("motion in time") {
     const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
     const TangentLayout layout = c.system.lay_out_tangent();
     auto stiffness = std::make_shared<StiffnessMatrix>();
-    stiffness->pattern = &layout.pattern;
+    stiffness->pattern = std::make_shared<const linalg::SymmetricPattern>(layout.pattern);
     stiffness->values.assign(layout.pattern.entries(), 0.0);
     c.model.elements().add_tangent({rest.x.data(), static_cast<std::size_t>(rest.x.size())}, layout.element_sums,
                                    stiffness->values, true);
@@ -209,8 +209,7 @@ TEST_CASE("motion in time") {
 
 TEST_CASE("contact with an obstacle that moves and with itself, with friction as it is lagged") {
     Case c(touching_blocks());
-    const auto [state, controls, possible] = pressed(c.system);
-    REQUIRE(possible);
+    const auto [state, controls, settled] = pressed(c.system);
     REQUIRE(controls.friction->pairs().size() > 5);
     const contact::Forces forces = c.system.contact_forces(state, controls);
     REQUIRE(forces.self_N > 0);

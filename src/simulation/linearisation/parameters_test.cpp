@@ -186,7 +186,6 @@ TEST_CASE("contact and its friction") {
     Noise noise(6);
     for (double& entry : start.x) entry += 0.02 * edge * noise();
     const auto controls_of = [&](Equilibrium& system) {
-        system.set_met(true);
         Controls controls = system.controls(0.9);
         controls.friction = system.freeze_friction(at.state, start, controls, system.controls(0.8));
         return controls;

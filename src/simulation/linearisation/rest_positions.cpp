@@ -87,7 +87,7 @@ Eigen::VectorXd held_motion(const Linearisation& at, const Eigen::VectorXd& moti
     const Description& d = at.system().model().description();
     return at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
         const auto arm = linalg::view(view(motion), node);
-        return linalg::vector(d.supports[s].turned({arm[0], arm[1], arm[2]}, at.controls().support_share[s]));
+        return linalg::vector(d.supports[s].turned_arm({arm[0], arm[1], arm[2]}, at.controls().support_share[s]));
     });
 }
 
@@ -97,7 +97,7 @@ Eigen::VectorXd held_weights(const Linearisation& at, const Eigen::VectorXd& wei
     Eigen::VectorXd result = zeros(at);
     at.system().model().held().visit_weights(
         weights, [&](std::size_t s, int node, const Eigen::Vector3d& w) {  // turned back
-            const Vec3 back = d.supports[s].turned({w[0], w[1], w[2]}, -at.controls().support_share[s]);
+            const Vec3 back = d.supports[s].turned_arm({w[0], w[1], w[2]}, -at.controls().support_share[s]);
             result.segment<3>(3 * node) += linalg::vector(back);
         });
     return result;

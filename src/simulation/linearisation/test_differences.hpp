@@ -35,37 +35,37 @@ private:
 struct Settled {
     State state;
     Controls controls;
-    bool converged = false;
+    int settled = 0;
 };
 
-/// The program in `steps` equal steps up to time 1, as far as it converges; with damping, in time.
-inline Settled settle(Equilibrium& system, int steps, double tolerance, const Damping* damping = nullptr) {
+/// The beginning of a program, in steps of `dt`, as far as they converge in a few iterations; with damping, in time.
+/// `settled` counts them.
+inline Settled settle(const Equilibrium& system, int steps, double dt, double tolerance,
+                      const Damping* damping = nullptr) {
     const FactoredLaplacian laplacian(system);
-    SolverChain solvers = make_chain(Solver::automatic, system, laplacian);
+    SolverChain solvers = make_chain(Solver::newton, system, laplacian);
     Progress silent;
-    Settled last{system.rest(), system.controls(0), true};
+    Settled last{system.rest(), system.controls(0), 0};
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(last.state.x.size());
     History history{last.state.x, still, last.state.x, still, 0};
     for (int step = 1; step <= steps; ++step) {
-        const double time = static_cast<double>(step) / steps;
-        Controls controls = system.controls(time);
+        Controls controls = system.controls(step * dt);
         if (damping != nullptr)
             controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
-                                                               history, 1.0 / steps, *damping, nullptr);
+                                                               history, dt, *damping, nullptr);
         State next = last.state;
         system.place_supports(controls, next.x);
-        const bool possible = system.evaluate(next, controls).possible() &&
-                              system.largest_step(last.state.x, next.x - last.state.x, last.controls,
-                                                  controls.obstacles - last.controls.obstacles) == 1;
-        const std::vector<Drive> drives = system.controls(time - 1.0 / steps).drives;
-        last.converged = possible && settle_friction(system, solvers, {tolerance, 200}, 30,
-                                                     {last.state, last.controls, drives}, controls, next, silent)
-                                         .converged;
-        if (!last.converged) return last;
-        if (damping != nullptr)
-            history = {next.x, controls.inertia->velocity(next.x), history.x, history.v, 1.0 / steps};
-        last.state = std::move(next);
-        last.controls = std::move(controls);
+        if (!system.evaluate(next, controls).possible() ||
+            system.largest_step(last.state.x, next.x - last.state.x, last.controls,
+                                controls.obstacles - last.controls.obstacles) < 1)
+            return last;
+        const std::vector<Drive> drives = system.controls((step - 1) * dt).drives;
+        const bool converged = settle_friction(system, solvers, {tolerance, 30}, 5, {last.state, last.controls, drives},
+                                               controls, next, silent)
+                                   .converged;
+        if (!converged) return last;
+        if (damping != nullptr) history = {next.x, controls.inertia->velocity(next.x), history.x, history.v, dt};
+        last = {std::move(next), std::move(controls), step};
     }
     return last;
 }
@@ -192,7 +192,11 @@ inline double input_error(Linearisation& at, const Parameter& input) {
         row[at.size() - m + k] = 1;
         least[k] = 1e-3 * motion * at.motion_weights(row).norm();
     }
-    const double largest = 0.02 * (input.value != 0 ? std::fabs(input.value) : 1);
+    using Kind = Parameter::Kind;
+    const bool linear = input.kind == Kind::tension || input.kind == Kind::pressure || input.kind == Kind::load_share ||
+                        input.kind == Kind::gravity_share;
+    const double value = std::fabs(input.value);
+    const double largest = linear ? 10 * std::max(value, 1.0) : 0.02 * (value > 0 ? value : 1);
     return best_error(largest, [&](double h) {
         const auto equations = [&](double change) {
             State state = at.state();
