@@ -16,7 +16,7 @@ namespace {
 constexpr double wanted_residual = 1e-13, allowed_residual = 1e-12;
 constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
 constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
-constexpr int most_rounds = 8, most_products = 400;
+constexpr int most_rounds = 8, most_products = 200;
 constexpr double singular = 1e-14;   // smallest over largest singular value, in balanced units
 constexpr double redundant = 1e-11;  // pivots of the Schur complement
 constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal

@@ -40,12 +40,11 @@ struct Parameter {
         obstacle_friction,   ///< coefficient of the robot against an obstacle, as it is lagged
     };
     Kind kind = Kind::length;
-    std::size_t index =
-        0;                 ///< of the actuator (first cables, then chambers, then pressure loads), support, material...
-    std::string name;      ///< cable "left": length
-    std::string unit;      ///< "" for a plain number
-    double value = 0;      ///< at this state
-    std::size_t part = 0;  ///< where a thing has several such numbers
+    std::size_t index = 0;  ///< of the actuator (cables, chambers, pressure loads, in this order), support, material...
+    std::string name;       ///< cable "left": length
+    std::string unit;       ///< "" for a plain number
+    double value = 0;       ///< at this state
+    std::size_t part = 0;   ///< where a thing has several such numbers
 };
 
 /// Weighted over true length of a cable: 1 without friction.
@@ -55,14 +54,13 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> inputs(const Linearisation& at);
 
 /// Every number that the robot is made with, of laws, loads, springs, supports and contact; but not rest positions
-/// (rest_positions.hpp). Coefficients of friction that are zero are not among them: nothing says along which way they
-/// would act.
+/// (rest_positions.hpp). Coefficients of friction that are zero are not among them: of what does not rub nothing
+/// is frozen.
 [[nodiscard]] std::vector<Parameter> parameters(const Linearisation& at);
 
-/// How the equations change with it. The wanted length of a slack cable does nothing.
-/// What is lagged or chosen before a step stays as it is: frozen friction but for its coefficient, damping by
-/// stiffness, the history of a motion. The springs of plates follow the stiffest law, as they do where a model is built
-/// anew.
+/// How the equations change with it. The wanted length of a slack cable does nothing. What is lagged or chosen before a
+/// step stays as it is: frozen friction but for its coefficient, damping by stiffness, the history of a motion. The
+/// springs of plates follow the stiffest law, as they do where a model is built anew.
 [[nodiscard]] Derivative derivative(Linearisation& at, const Parameter& by);
 
 /// dq/dp for many parameters, with one look at every tet for all laws together.

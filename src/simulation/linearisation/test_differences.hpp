@@ -125,7 +125,10 @@ inline Eigen::VectorXd some_direction(const Linearisation& at, Side side, Noise&
     for (Eigen::Index k = n; k < at.size(); ++k) {
         const Eigen::VectorXd own = multiply(Eigen::VectorXd::Unit(at.size(), k));
         const double force = own.head(n).norm();
-        v[k] *= force > 0 ? done.head(n).norm() / force : done[k] / own[k];
+        const double by_force = force > 0 ? done.head(n).norm() / force : 1e300;
+        // Sealed gas is far from linear where its pressure changes by more than what is there.
+        const double by_row = own[k] != 0 && done[k] != 0 ? std::fabs(done[k] / own[k]) : 1e300;
+        v[k] *= std::min(by_force, by_row);
     }
     return at.unknowns_of(at.change_of(v));  // nothing along what rollers hold
 }
