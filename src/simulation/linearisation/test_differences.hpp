@@ -125,10 +125,12 @@ inline Eigen::VectorXd some_direction(const Linearisation& at, Side side, Noise&
     for (Eigen::Index k = n; k < at.size(); ++k) {
         const Eigen::VectorXd own = multiply(Eigen::VectorXd::Unit(at.size(), k));
         const double force = own.head(n).norm();
-        const double by_force = force > 0 ? done.head(n).norm() / force : 1e300;
+        constexpr double any = 1e300;
+        const double by_force = force > 0 ? done.head(n).norm() / force : any;
         // Sealed gas is far from linear where its pressure changes by more than what is there.
-        const double by_row = own[k] != 0 && done[k] != 0 ? std::fabs(done[k] / own[k]) : 1e300;
-        v[k] *= std::min(by_force, by_row);
+        const double by_row = own[k] != 0 && done[k] != 0 ? std::fabs(done[k] / own[k]) : any;
+        const double size = std::min(by_force, by_row);
+        v[k] *= size < any ? size : 1;  // a cable between held nodes does nothing
     }
     return at.unknowns_of(at.change_of(v));  // nothing along what rollers hold
 }
