@@ -283,14 +283,17 @@ bool SystemSolver::is_singular() const {
     return !twice || !(twice->norm() * stiffness_ * singular < 1);
 }
 
-std::string SystemSolver::names_of_redundant() const {
+/// Why constraints cannot all be met.
+Error SystemSolver::redundancy() const {
     std::string names;
+    int count = 0;
     const double largest = schur_null_.cwiseAbs().maxCoeff();
     for (Eigen::Index k = 0; k < schur_null_.rows(); ++k) {
         if (!(schur_null_.row(k).cwiseAbs().maxCoeff() > 1e-6 * largest)) continue;
-        names += (names.empty() ? "" : ", ") + system_->multipliers[static_cast<std::size_t>(k)];
+        names += (count++ == 0 ? "" : ", ") + system_->multipliers[static_cast<std::size_t>(k)];
     }
-    return names;
+    if (count == 1) return {Cause::failed, names + " moves nothing and cannot be given another length or volume"};
+    return {Cause::failed, names + " do the same and are asked for different things: nothing gives both"};
 }
 
 Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side) {
@@ -301,8 +304,7 @@ Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side)
     system_->leave_out_held(balanced);
     balanced.tail(m).array() *= (direct ? row_ : column_).array();
     std::optional<Eigen::VectorXd> x = refine(balanced, side);
-    if (!x && schur_null_.cols() > 0)
-        return failure("{} do the same and are asked for different things: nothing gives both", names_of_redundant());
+    if (!x && schur_null_.cols() > 0) return tl::unexpected(redundancy());
     if (!x)
         return failure(
             "the tangent of this state is too near to a singular one to be solved with: it stands near a "

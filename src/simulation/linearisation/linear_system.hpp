@@ -70,7 +70,7 @@ private:
     [[nodiscard]] double rounding_of(const Eigen::VectorXd& x, Side side) const;
     [[nodiscard]] bool is_singular() const;
     void take_whole_factor();
-    [[nodiscard]] std::string names_of_redundant() const;
+    [[nodiscard]] Error redundancy() const;
 
     const LinearSystem* system_;
     bool prepared_ = false;

@@ -263,6 +263,19 @@ TEST_CASE("cables that do the same share what they do; asked for different thing
           "cable \"left\", cable \"right\" do the same and are asked for different things: nothing gives both");
 }
 
+TEST_CASE("a cable between held points moves nothing") {
+    Description d = plain();
+    const std::vector<int> clamp = d.supports[0].nodes;
+    d.cables = {{"idle", {{{clamp[0]}, {1.0}, {}}, {{clamp[1]}, {1.0}, {}}}, {CableTarget::Kind::length_ratio, 1}}};
+    d.gravity_m_s2 = {0, 0, -9.81};
+    const Case c(std::move(d));
+    Linearisation at = c.at(disturbed(c.system, 0.5, 0), c.system.controls(1));
+    CHECK(at.response(derivative(at, inputs(at).back())));
+    const auto length = at.response(derivative(at, inputs(at)[0]));
+    REQUIRE_FALSE(length);
+    CHECK(length.error().message == "cable \"idle\" moves nothing and cannot be given another length or volume");
+}
+
 TEST_CASE("a singular tangent is an error") {
     // Held along x alone at one end: nothing keeps the block from sliding along y and z and from rolling.
     Description d = plain();
