@@ -92,7 +92,6 @@ set_target_properties(pliant_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERS
 
 add_library(pliant_static STATIC ${objects})
 pliant_publish(pliant_static)
-target_compile_definitions(pliant_static INTERFACE PLIANT_STATIC)
 
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Pliant)
