@@ -312,6 +312,8 @@ Result<int> simulate(const Options& options) {
     const auto measured = read_measured(options.measured, *model);
     if (!measured) return tl::unexpected(measured.error());
     on_signal(OnSignal::ask);
+    if (solvers->size() > 1 && (options.checkpoint_every > 0 || options.resume))
+        return input_error("a comparison of solvers keeps no checkpoint; leave --checkpoint-every and --resume out");
     if (solvers->size() > 1) return compare_solvers(*model, robot->program, *solvers, options.folder, options.output);
     Result<std::optional<Kept>> kept = open_checkpoint(options, assignments, *model, robot->program);
     if (!kept) return tl::unexpected(kept.error());

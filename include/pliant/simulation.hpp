@@ -26,8 +26,8 @@ public:
     /// "cable.flexor.target.length_ratio=0.8".
     /// @throws Failure with a line for each problem of the file.
     [[nodiscard]] static Robot load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
-    /// The same of a text; files that it names are sought from `folder`.
-    [[nodiscard]] static Robot parse(std::string_view toml, const std::filesystem::path& folder = ".",
+    /// The same of a text; files that it names are sought from `folder`, or where the program runs.
+    [[nodiscard]] static Robot parse(std::string_view toml, const std::filesystem::path& folder = {},
                                      const std::vector<std::string>& changes = {});
 
     /// As in the file.

@@ -14,8 +14,8 @@ Robot Robot::load(const std::filesystem::path& file, const std::vector<std::stri
 
 Robot Robot::parse(std::string_view toml, const std::filesystem::path& folder,
                    const std::vector<std::string>& changes) {
-    return Robot(
-        std::make_shared<const Data>(Data{library::value_of(robot::parse_robot(toml, folder / "robot", changes))}));
+    return Robot(std::make_shared<const Data>(
+        Data{library::value_of(robot::parse_robot(toml, folder / "robot text", changes))}));
 }
 
 const std::string& Robot::name() const {

@@ -184,7 +184,7 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     const auto text = read_file(state);
     if (!text) return tl::unexpected(text.error());
     const auto wrong = [&](const std::string& why) { return input_error("{}: {}", state.string(), why); };
-    const Json json = Json::from_cbor(*text, true, false);
+    const Json json = cbor::parsed(*text);
     if (!json.is_object() || json.value("format", Json()) != format_name)
         return wrong("not a checkpoint that Pliant has written, or damaged");
     Reader in(json);

@@ -206,6 +206,11 @@ TEST_CASE("what is no checkpoint of this run is refused in one line") {
         REQUIRE(write_file(path / "state", state.substr(0, size)));
         CHECK(error_of(p.model).find("damaged") != std::string::npos);
     }
+    for (const std::string& nested :
+         {std::string(2'000'000, '\x81'), std::string("\x9b\xff\xff\xff\xff\xff\xff\xff\xf0", 9)}) {
+        REQUIRE(write_file(path / "state", nested));
+        CHECK(error_of(p.model).find("damaged") != std::string::npos);
+    }
     REQUIRE(write_file(folder / "notes", "mine"));
     CHECK_FALSE(Checkpoint::create(folder.path(), "test", 1));
 }

@@ -157,7 +157,7 @@ std::string step_bytes(const Step& step, std::span<const IterationRecord> iterat
 }
 
 Result<StepRecord> step_from_bytes(std::string_view bytes, std::size_t nodes) {
-    const Json json = Json::from_cbor(bytes, true, false);
+    const Json json = cbor::parsed(bytes);
     StepReader reader(json);
     StepRecord record = reader.read(nodes);
     if (!reader.status()) return tl::unexpected(reader.status().error());

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/core/error.hpp"
@@ -28,6 +29,10 @@ template <class T>
 [[nodiscard]] inline Json packed(const Eigen::VectorXd& v) {
     return packed(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
 }
+
+/// The map, list or value that the bytes are; discarded where they are none. Lists in lists in lists, deeper than
+/// anything of ours, and lists longer than all bytes count as none: the parser would run out of stack, or throw.
+[[nodiscard]] Json parsed(std::string_view bytes);
 
 /// Takes values out of a map; the first that is missing, or is not what it must be, is the error of all.
 class Reader {

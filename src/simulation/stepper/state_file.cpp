@@ -435,7 +435,7 @@ std::string state_bytes(const Model& model, const RobotState& robot) {
 }
 
 Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view bytes) {
-    const Json json = Json::from_cbor(bytes, true, false);
+    const Json json = cbor::parsed(bytes);
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
     };
