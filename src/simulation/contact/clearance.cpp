@@ -68,8 +68,8 @@ Clearance::Clearance(std::span<const Side> sides, std::span<const Meeting> meeti
     : x_(x.begin(), x.end()), seen_m_(seen_m), reach_m_(reach_m) {
     for (const Side& side : sides) {
         const auto& regions = side.regions->nodes();
-        Reference& reference =
-            sides_.emplace_back(side.regions, side.regions->boxes(*side.surface, x), std::vector<Ball>(regions.size()));
+        Reference& reference = sides_.emplace_back(
+            Reference{side.regions, side.regions->boxes(*side.surface, x), std::vector<Ball>(regions.size())});
         for (std::size_t n = 0; n < regions.size(); ++n) {
             if (!regions[n].is_leaf()) continue;
             const Points points = side.regions->points_of(regions[n]);
@@ -79,7 +79,7 @@ Clearance::Clearance(std::span<const Side> sides, std::span<const Meeting> meeti
         }
     }
     for (const Meeting& meeting : meetings) {
-        Cover& cover = covers_.emplace_back(meeting, std::vector<Pair>{}, std::vector<Pair>{});
+        Cover& cover = covers_.emplace_back(Cover{meeting, {}, {}});
         if (sides_[meeting.first].boxes.empty() || sides_[meeting.second].boxes.empty()) continue;
         add_pairs(cover, 0, 0);
         std::sort(cover.near.begin(), cover.near.end(), [](const Pair& a, const Pair& b) {

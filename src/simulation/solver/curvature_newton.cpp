@@ -202,7 +202,7 @@ private:
         memory_.clear();
         learnt_.reset();
         rotation_.begin(at_.state->x);
-        tangent_ = std::make_shared<const SolverMemory::Tangent>(*at_.state, *at_.controls);
+        tangent_ = std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{*at_.state, *at_.controls});
         positions_ = system_->free_positions(at_.state->x);
         assemble(false, values_);
         share_ = 0;
