@@ -208,9 +208,9 @@ class PLIANT_API Stepper {
 public:
     /// Prepares the solver: as much work as a step or two.
     explicit Stepper(const Model& model, const StepOptions& options = {});
-    /// The other one is of no use afterwards.
+    /// Moves it; the other one is of no use afterwards.
     Stepper(Stepper&&) noexcept;
-    /// The other one is of no use afterwards.
+    /// Moves it; the other one is of no use afterwards.
     Stepper& operator=(Stepper&&) noexcept;
     ~Stepper();
 
@@ -220,17 +220,17 @@ public:
     [[nodiscard]] Inputs program(double time) const;
     /// Goes from `state` to the inputs, on a straight way in as many pieces as it takes, and leaves the new state
     /// there. A motion in time takes until `inputs.time`, which must be later than that of the state.
-    /// @throws Failure of kind `input`: of another model, as many drives as there are not, numbers that are not finite;
-    /// or of kind `cancelled`, `state` is then as far as it got.
+    /// @throws Failure of kind `input` where the state belongs to another model, there are not as many drives as cables
+    /// and chambers, or a number is not possible; or of kind `cancelled`, `state` is then as far as it got.
     StepResult step(State& state, const Inputs& inputs, const Watch& watch = {});
     /// Everything that can be read off a state.
     [[nodiscard]] Observation observe(const State& state) const;
     /// Strains and stresses.
     [[nodiscard]] Fields fields(const State& state) const;
-    /// What State::bytes() was.
+    /// The state whose State::bytes() these are.
     /// @throws Failure: no state, one of another version or model, or damaged.
     [[nodiscard]] State state_from(std::string_view bytes) const;
-    /// What State::save() wrote.
+    /// The state that State::save() wrote to this file.
     [[nodiscard]] State load(const std::filesystem::path& file) const;
 
 private:
