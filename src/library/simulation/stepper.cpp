@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/core/files.hpp"
+#include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
 #include "simulation/run/describe.hpp"
@@ -25,12 +26,6 @@ sim::StepperOptions options_for(const sim::Program& program, const StepOptions& 
                       fmt::format("a tolerance of {:g} is not possible: it is between 0 and 1", options.tolerance));
     if (options.iteration_limit < 0) throw Failure(Failure::Kind::input, "the iteration limit is negative");
     return options;
-}
-
-std::vector<Vec3> vectors_of(const Eigen::VectorXd& x) {
-    std::vector<Vec3> points;
-    for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) points.push_back({x[k], x[k + 1], x[k + 2]});
-    return points;
 }
 
 }  // namespace
@@ -92,7 +87,7 @@ Observation Stepper::observe(const State& state) const {
 }
 
 Fields Stepper::fields(const State& state) const {
-    const std::vector<Vec3> positions = vectors_of(work_->robot_of(state).x());
+    const std::vector<Vec3> positions = linalg::points_of(work_->robot_of(state).x());
     sim::Fields fields = sim::compute_fields(work_->model->model, positions);
     return {std::move(fields.J), std::move(fields.von_mises_Pa), std::move(fields.max_stretch),
             std::move(fields.energy_density_Pa)};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/core/files.hpp"
+#include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
 #include "simulation/stepper/state_file.hpp"
@@ -40,13 +41,6 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
     if (drive.by == By::length || drive.by == By::volume) return {Kind::measure, drive.value};
     if (drive.by == By::gas) return {Kind::gas, drive.value};
     return {Kind::multiplier, cable ? drive.value : -drive.value};
-}
-
-std::vector<Point> points_of(const Eigen::VectorXd& x) {
-    std::vector<Point> points;
-    points.reserve(static_cast<std::size_t>(x.size()) / 3);
-    for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) points.push_back({x[k], x[k + 1], x[k + 2]});
-    return points;
 }
 
 }  // namespace
@@ -104,12 +98,13 @@ Observation observation_of(const sim::Step& step) {
 State::State(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 std::vector<Point> State::positions() const {
-    return points_of(data_->robot.x());
+    return library::points_of(linalg::points_of(data_->robot.x()));
 }
 
 std::vector<Point> State::velocities() const {
     const Eigen::VectorXd& v = data_->robot.history.v;
-    return points_of(v.size() > 0 ? v : Eigen::VectorXd(Eigen::VectorXd::Zero(data_->robot.x().size())));
+    return library::points_of(
+        linalg::points_of(v.size() > 0 ? v : Eigen::VectorXd(Eigen::VectorXd::Zero(data_->robot.x().size()))));
 }
 
 Inputs State::inputs() const {

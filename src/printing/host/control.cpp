@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdint>
 #include <deque>
 #include <fstream>
 #include <mutex>
 #include <thread>
 
+#include "base/core/digest.hpp"
 #include "printing/host/desk.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
@@ -75,9 +75,9 @@ std::string_view state_text(State state) {
 }
 
 std::string job_digest(std::string_view bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-    return fmt::format("{:016x}", hash);
+    Digest digest;
+    digest.add(bytes.data(), bytes.size());
+    return digest.text();
 }
 
 /// Everything behind the door. The members below the line belong to the working thread.

@@ -11,9 +11,7 @@ namespace {
 using linalg::Matrix3;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 /// forces += P grad N_a.
 void add_stress(const Elements& elements, std::size_t t, int q, const Matrix3& P, Eigen::VectorXd& forces) {

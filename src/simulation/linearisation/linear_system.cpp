@@ -9,6 +9,7 @@
 
 #include "base/linalg/gmres.hpp"
 #include "base/linalg/sparse.hpp"
+#include "base/linalg/vectors.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -21,12 +22,7 @@ constexpr double singular = 1e-14;   // smallest over largest singular value, in
 constexpr double redundant = 1e-11;  // pivots of the Schur complement
 constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 /// Mean size of the diagonal, N/m.
 double mean_diagonal(const LinearSystem& system) {

@@ -13,12 +13,7 @@
 namespace pliant::sim {
 namespace {
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 /// cable "left", as messages call it.
 std::string name_of(const Description& d, std::size_t actuator) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "base/linalg/vectors.hpp"
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/material/law_parameters.hpp"
 
@@ -15,9 +16,7 @@ using Kind = Parameter::Kind;
 
 constexpr std::array axes = {"x", "y", "z"};
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 Parameter drive_of(const Linearisation& at, std::size_t a) {
     const Description& d = at.system().model().description();

@@ -16,12 +16,7 @@ namespace {
 
 using Kind = Parameter::Kind;
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 Derivative nothing(const Linearisation& at) {
     return {Eigen::VectorXd::Zero(at.size()),

@@ -11,12 +11,7 @@
 namespace pliant::sim {
 namespace {
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 Eigen::VectorXd zeros(const Linearisation& at) {
     return Eigen::VectorXd::Zero(at.state().x.size());

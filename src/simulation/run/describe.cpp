@@ -1,8 +1,8 @@
 #include "simulation/run/describe.hpp"
 
 #include <span>
-#include <utility>
-#include <vector>
+
+#include "base/linalg/vectors.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -63,10 +63,7 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
     const std::vector<Vec3> reactions = model.held().reactions(d.supports, evaluation.out_of_balance);
     for (std::size_t s = 0; s < reactions.size(); ++s) step.supports.push_back({d.supports[s].name, reactions[s]});
     for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
-    std::vector<Vec3> positions;
-    positions.reserve(x.size() / 3);
-    for (std::size_t n = 0; n + 2 < x.size(); n += 3) positions.push_back({x[n], x[n + 1], x[n + 2]});
-    step.positions = std::move(positions);
+    step.positions = linalg::points_of(state.x);
 }
 
 }  // namespace pliant::sim

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/core/parallel.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
@@ -23,12 +24,7 @@ constexpr double unstable = -2e-3;  // a ratio below this is not rounding, nor w
 constexpr int halvings = 4;
 constexpr double most_of_it = 0.6;  // of a motion; of one that grows as a root a quarter is left after as many
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 /// Numbers between -1 and 1 without order, always the same: no mode of a robot is at right angles to them.
 Eigen::VectorXd scattered(Eigen::Index size) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/linalg/vectors.hpp"
 #include "simulation/stepper/cbor_numbers.hpp"
 
 namespace pliant::sim {
@@ -91,10 +92,7 @@ private:
     }
 
     std::vector<Vec3> positions(std::size_t nodes) {
-        const Eigen::VectorXd x = in_.vector("positions", static_cast<Eigen::Index>(3 * nodes));
-        std::vector<Vec3> points;
-        for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) points.push_back({x[k], x[k + 1], x[k + 2]});
-        return points;
+        return linalg::points_of(in_.vector("positions", static_cast<Eigen::Index>(3 * nodes)));
     }
 
     std::vector<IterationRecord> history() {

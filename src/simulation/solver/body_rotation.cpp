@@ -1,11 +1,11 @@
 #include "simulation/solver/body_rotation.hpp"
 
+#include "base/linalg/vectors.hpp"
+
 namespace pliant::sim {
 namespace {
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 }  // namespace
 

@@ -12,12 +12,7 @@
 namespace pliant::sim {
 namespace {
 
-std::span<const double> view(const Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Eigen::VectorXd& v) {
-    return {v.data(), static_cast<std::size_t>(v.size())};
-}
+using linalg::view;
 
 /// Springs of a plate beside the stiffness of an element: what bends a plate bends the body a hundred times as much.
 constexpr double plate_stiffness = 100;

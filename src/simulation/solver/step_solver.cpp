@@ -10,10 +10,13 @@
 #include <utility>
 
 #include "base/core/counted.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
 namespace {
+
+using linalg::view;
 
 /// The constraint violation may be no larger than this share of the tolerance: the tension follows it closely.
 constexpr double violation_share = 0.01;
@@ -114,9 +117,6 @@ public:
 private:
     [[nodiscard]] const Actuator& actuator(Eigen::Index a) const {
         return system_.actuators()[static_cast<std::size_t>(a)];
-    }
-    [[nodiscard]] static std::span<const double> view(const Eigen::VectorXd& v) {
-        return {v.data(), static_cast<std::size_t>(v.size())};
     }
 
     using AddGradient = void (Actuator::*)(std::span<const double>, double, std::span<double>,

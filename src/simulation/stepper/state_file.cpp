@@ -1,12 +1,9 @@
 #include "simulation/stepper/state_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <utility>
 
+#include "base/core/digest.hpp"
 #include "simulation/contact/friction.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/stepper/cbor_numbers.hpp"
@@ -455,15 +452,11 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
 }
 
 std::string mesh_digest(const mesh::TetMesh& mesh) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    const auto add = [&](const void* data, std::size_t size) {
-        const auto* bytes = static_cast<const unsigned char*>(data);
-        for (std::size_t k = 0; k < size; ++k) hash = (hash ^ bytes[k]) * 1099511628211ULL;
-    };
-    add(mesh.points.data(), mesh.points.size() * sizeof(mesh.points[0]));
-    add(mesh.nodes.data(), mesh.nodes.size() * sizeof(mesh.nodes[0]));
-    add(mesh.region.data(), mesh.region.size() * sizeof(mesh.region[0]));
-    return fmt::format("{:016x}", hash);
+    Digest digest;
+    digest.add(mesh.points.data(), mesh.points.size() * sizeof(mesh.points[0]));
+    digest.add(mesh.nodes.data(), mesh.nodes.size() * sizeof(mesh.nodes[0]));
+    digest.add(mesh.region.data(), mesh.region.size() * sizeof(mesh.region[0]));
+    return digest.text();
 }
 
 }  // namespace pliant::sim
