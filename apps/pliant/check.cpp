@@ -24,8 +24,7 @@
 #include "printing/machine/printer.hpp"
 #include "printing/operate/proved_job.hpp"
 #include "printing/plan/safe_stop.hpp"
-#include "robot/bodies/build.hpp"
-#include "simulation/scene/build_model.hpp"
+#include "simulation/scene/scene.hpp"
 
 namespace pliant::app {
 namespace {
@@ -45,17 +44,15 @@ std::string bodies(std::size_t count) {
 
 /// A robot is checked as far as a mesh of it: overlaps, cables outside, supports that catch nothing show only then.
 Result<std::string> check_robot(const std::string& file, Progress& progress) {
-    const Result<robot::Robot> robot = read_robot(file, {});
-    if (!robot) return tl::unexpected(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, progress);
-    if (!mesh) return tl::unexpected(mesh.error());
-    const std::vector<std::string> notes = mesh->notes;
-    const Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
-    if (!model) return tl::unexpected(model.error());
-    std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot->name, bodies(robot->bodies.size()),
-                                   counted(robot->materials.size(), "material"), counted(robot->cables.size(), "cable"),
-                                   counted(model->mesh().tet_count(), "tet"));
-    for (const std::string& note : notes) text += "\n  note: " + note;
+    Result<robot::Robot> read = read_robot(file, {});
+    if (!read) return tl::unexpected(read.error());
+    const Result<robot::Scene> scene = robot::build_scene(std::move(*read), progress);
+    if (!scene) return tl::unexpected(scene.error());
+    const robot::Robot& robot = scene->robot;
+    std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot.name, bodies(robot.bodies.size()),
+                                   counted(robot.materials.size(), "material"), counted(robot.cables.size(), "cable"),
+                                   counted(scene->model.mesh().tet_count(), "tet"));
+    for (const std::string& note : scene->mesh_notes) text += "\n  note: " + note;
     return text;
 }
 

@@ -59,6 +59,11 @@ int report(const Error& error) {
     return error.cause == Cause::input ? exit_bad_input : exit_failed;
 }
 
+int report(const Failure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return failure.kind() == Failure::Kind::input ? exit_bad_input : exit_failed;
+}
+
 std::unique_ptr<Progress> terminal_progress(const Output& output) {
     return std::make_unique<TerminalProgress>(!output.quiet && isatty(STDERR_FILENO) == 1);
 }

@@ -8,6 +8,7 @@
 
 #include "base/core/error.hpp"
 #include "base/core/progress.hpp"
+#include "pliant/base.hpp"
 
 namespace pliant::app {
 
@@ -41,18 +42,23 @@ void add_output_options(CLI::App& command, Output& output, bool with_json);
 
 /// Prints the error to stderr and gives the exit status that belongs to it.
 int report(const Error& error);
+int report(const Failure& failure);
 
 /// What `command` does when it is given: `work` gives a Status, or a Result with the exit status.
 template <class Work>
 void on_call(CLI::App& command, int& status, Work work) {
     command.callback([work, &status] {
-        const auto result = work();
-        if (!result)
-            status = report(result.error());
-        else if constexpr (std::is_same_v<decltype(result), const Result<int>>)
-            status = *result;
-        else
-            status = exit_done;
+        try {
+            const auto result = work();
+            if (!result)
+                status = report(result.error());
+            else if constexpr (std::is_same_v<decltype(result), const Result<int>>)
+                status = *result;
+            else
+                status = exit_done;
+        } catch (const Failure& failure) {
+            status = report(failure);
+        }
     });
 }
 

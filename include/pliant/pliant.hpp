@@ -2,6 +2,8 @@
 /// All of Pliant's library.
 #pragma once
 
-#include "pliant/base.hpp"        // IWYU pragma: export
-#include "pliant/printing.hpp"    // IWYU pragma: export
-#include "pliant/simulation.hpp"  // IWYU pragma: export
+#include "pliant/base.hpp"           // IWYU pragma: export
+#include "pliant/linearisation.hpp"  // IWYU pragma: export
+#include "pliant/printing.hpp"       // IWYU pragma: export
+#include "pliant/program.hpp"        // IWYU pragma: export
+#include "pliant/simulation.hpp"     // IWYU pragma: export

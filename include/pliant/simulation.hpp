@@ -8,7 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -158,15 +158,23 @@ struct StepResult {
 struct Observation {
     /// A cable.
     struct Cable {
-        std::string name;      ///< as in the robot file
-        double length_m = 0;   ///< along all its points
-        double tension_N = 0;  ///< never negative
+        std::string name;         ///< as in the robot file
+        double length_m = 0;      ///< along all its points
+        double length_ratio = 1;  ///< of that at rest
+        double tension_N = 0;     ///< never negative
     };
     /// A chamber.
     struct Chamber {
-        std::string name;        ///< as in the robot file
-        double volume_m3 = 0;    ///< inside its walls
-        double pressure_Pa = 0;  ///< above ambient
+        std::string name;         ///< as in the robot file
+        double volume_m3 = 0;     ///< inside its walls
+        double volume_ratio = 1;  ///< of that at rest
+        double pressure_Pa = 0;   ///< above ambient
+    };
+    /// A spring.
+    struct Spring {
+        std::string name;     ///< as in the robot file
+        double length_m = 0;  ///< between its ends
+        double force_N = 0;   ///< positive where it pulls
     };
     /// Something with a place.
     struct Marker {
@@ -180,13 +188,16 @@ struct Observation {
     };
     std::vector<Cable> cables;      ///< in the order of Model::cables()
     std::vector<Chamber> chambers;  ///< in the order of Model::chambers()
+    std::vector<Spring> springs;    ///< in the order of the robot file
     std::vector<Marker> markers;    ///< in the order of Model::markers()
     std::vector<Force> supports;    ///< reactions
     std::vector<Force> contacts;    ///< pressure and friction of obstacles
     double self_contact_N = 0;      ///< sum of the sizes of the robot's forces on itself
-    double energy_J = 0;            ///< elastic and contact energy, minus the work of loads and gravity
-    double kinetic_energy_J = 0;    ///< of a motion in time
-    double min_J = 1;               ///< smallest ratio of volumes, now over rest, of any point
+    /// Smallest distance between surfaces that are near enough to act; infinite where none are.
+    double smallest_distance_m = std::numeric_limits<double>::infinity();
+    double energy_J = 0;          ///< elastic and contact energy, minus the work of loads and gravity
+    double kinetic_energy_J = 0;  ///< of a motion in time
+    double min_J = 1;             ///< smallest ratio of volumes, now over rest, of any point
 };
 
 /// One value for each tetrahedron: the mean over its integration points.
@@ -227,6 +238,8 @@ public:
     [[nodiscard]] Observation observe(const State& state) const;
     /// Strains and stresses.
     [[nodiscard]] Fields fields(const State& state) const;
+    /// (nodes) N, pressure and friction of everything that touches a node; zero where nothing does.
+    [[nodiscard]] std::vector<Point> contact_forces(const State& state) const;
     /// The state whose State::bytes() these are.
     /// @throws Failure: no state, one of another version or model, or damaged.
     [[nodiscard]] State state_from(std::string_view bytes) const;
@@ -237,26 +250,5 @@ private:
     struct Work;
     std::unique_ptr<Work> work_;
 };
-
-/// A step of a program.
-struct ProgramStep {
-    int index = 0;                 ///< 0: at rest
-    double time = 0;               ///< of the program
-    StepResult result;             ///< how it was reached
-    Observation observed;          ///< what it is like
-    std::vector<Point> positions;  ///< (nodes) m
-};
-
-/// What came of a program.
-struct ProgramResult {
-    bool converged = false;             ///< it ran to its end
-    std::string message;                ///< where and why it stopped, if it did
-    std::vector<std::string> warnings;  ///< where the answer should not be trusted, a sentence each
-};
-
-/// Runs the robot's program from rest. `on_step` is called with each step as it comes, the rest state first. A program
-/// that gets stuck or is cancelled is no Failure: the result says so.
-PLIANT_API ProgramResult run(const Model& model, const std::function<void(const ProgramStep&)>& on_step,
-                             const Watch& watch = {});
 
 }  // namespace pliant

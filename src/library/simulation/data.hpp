@@ -8,17 +8,19 @@
 #include "robot/description/robot.hpp"
 #include "simulation/model/model.hpp"
 #include "simulation/run/trajectory.hpp"
+#include "simulation/scene/scene.hpp"
 #include "simulation/stepper/stepper.hpp"
 
 namespace pliant {
 
 struct Robot::Data {
     robot::Robot robot;
+    std::string origin;  ///< the text, and everything that changes it: of what a checkpoint is
 };
 
 struct Model::Data {
-    sim::Model model;
-    sim::Program program;
+    robot::Scene scene;
+    std::string origin;  ///< the robot's
 };
 
 struct State::Data {

@@ -3,9 +3,7 @@
 #include "geometry/mesh/tet_mesh.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
-#include "robot/bodies/build.hpp"
 #include "simulation/run/warnings.hpp"
-#include "simulation/scene/build_model.hpp"
 
 namespace pliant {
 namespace {
@@ -21,51 +19,49 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
 
 Model::Model(const Robot& robot, const Watch& watch) {
     library::WatchedProgress progress(watch);
-    const robot::Robot& description = robot.data().robot;
-    auto mesh = robot::build_mesh(description, progress);
+    auto scene = robot::build_scene(robot.data().robot, progress);
     progress.rethrow();
-    auto model = robot::build_model(description, library::value_of(std::move(mesh)));
-    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(model)), description.program});
+    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), robot.data().origin});
 }
 
 std::size_t Model::node_count() const {
-    return data_->model.mesh().points.size();
+    return data_->scene.model.mesh().points.size();
 }
 std::size_t Model::tet_count() const {
-    return data_->model.mesh().tet_count();
+    return data_->scene.model.mesh().tet_count();
 }
 int Model::order() const {
-    return data_->model.mesh().order;
+    return data_->scene.model.mesh().order;
 }
 std::vector<Point> Model::rest_positions() const {
-    return library::points_of(data_->model.mesh().points);
+    return library::points_of(data_->scene.model.mesh().points);
 }
 const std::vector<int>& Model::tets() const {
-    return data_->model.mesh().nodes;
+    return data_->scene.model.mesh().nodes;
 }
 const std::vector<int>& Model::regions() const {
-    return data_->model.mesh().region;
+    return data_->scene.model.mesh().region;
 }
 const std::vector<std::string>& Model::region_names() const {
-    return data_->model.mesh().region_names;
+    return data_->scene.model.mesh().region_names;
 }
 std::vector<std::array<int, 3>> Model::surface() const {
     std::vector<std::array<int, 3>> triangles;
-    for (const mesh::Face& face : mesh::boundary_faces(data_->model.mesh()))
+    for (const mesh::Face& face : mesh::boundary_faces(data_->scene.model.mesh()))
         triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
     return triangles;
 }
 std::vector<std::string> Model::cables() const {
-    return names_of(data_->model.description().cables);
+    return names_of(data_->scene.model.description().cables);
 }
 std::vector<std::string> Model::chambers() const {
-    return names_of(data_->model.description().chambers);
+    return names_of(data_->scene.model.description().chambers);
 }
 std::vector<std::string> Model::markers() const {
-    return names_of(data_->model.description().markers);
+    return names_of(data_->scene.model.description().markers);
 }
 std::vector<std::string> Model::warnings() const {
-    return sim::warnings_at_rest(data_->model);
+    return sim::warnings_at_rest(data_->scene.model);
 }
 
 }  // namespace pliant

@@ -7,24 +7,13 @@
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "library/simulation/test_bar.hpp"
+#include "pliant/program.hpp"
 
 using namespace pliant;
+using test::bar;
 
 namespace {
-
-/// A bar of 60 mm with a cable along its upper side; in time where `dynamics` says so.
-Robot bar(const std::string& more = "") {
-    return Robot::parse(R"(
-        name = "bar"
-        length_unit = "mm"
-        material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, density = "1100 kg/m^3" }
-        mesh = { order = 1, size = "5 mm" }
-        body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [60, 10, 10]] } }]
-        fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
-        marker = [{ name = "tip", point = [60, 5, 5] }]
-        cable = [{ name = "flexor", points = [[0, 5, 9], [30, 5, 9], [60, 5, 9]], target.shortening = "4 mm" }]
-    )" + more);
-}
 
 Inputs pulled(const State& state, double shortening_m) {
     Inputs inputs = state.inputs();
@@ -65,8 +54,8 @@ TEST_CASE("steps to the program's end and the program itself come to the same st
     State state = stepper.rest();
     for (int k = 1; k <= 4; ++k) CHECK(stepper.step(state, stepper.program(0.25 * k)).arrived);
     std::vector<ProgramStep> steps;
-    const ProgramResult result = run(model, [&](const ProgramStep& step) { steps.push_back(step); });
-    CHECK(result.converged);
+    const ProgramResult result = run(model, {.on_step = [&](const ProgramStep& step) { steps.push_back(step); }});
+    CHECK(result.converged());
     REQUIRE(steps.size() == 31);
     CHECK(steps.front().index == 0);
     const Observation seen = stepper.observe(state), last = steps.back().observed;

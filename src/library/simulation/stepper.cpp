@@ -32,7 +32,7 @@ sim::StepperOptions options_for(const sim::Program& program, const StepOptions& 
 
 struct Stepper::Work {
     Work(std::shared_ptr<const Model::Data> data, const StepOptions& options)
-        : model(std::move(data)), stepper(model->model, options_for(model->program, options)) {}
+        : model(std::move(data)), stepper(model->scene.model, options_for(model->scene.robot.program, options)) {}
 
     [[nodiscard]] const sim::RobotState& robot_of(const State& state) const {
         if (state.data().model == model) return state.data().robot;
@@ -58,12 +58,12 @@ State Stepper::rest() const {
 
 Inputs Stepper::program(double time) const {
     if (!std::isfinite(time)) throw Failure(Failure::Kind::input, "the time is not finite");
-    return library::inputs_of(work_->model->model, work_->stepper.program(time));
+    return library::inputs_of(work_->model->scene.model, work_->stepper.program(time));
 }
 
 StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch) {
     sim::RobotState robot = work_->robot_of(state);
-    const sim::Inputs wanted = library::inputs_for(work_->model->model, inputs);
+    const sim::Inputs wanted = library::inputs_for(work_->model->scene.model, inputs);
     if (work_->stepper.options().dynamics && !(wanted.time > robot.inputs.time))
         throw Failure(Failure::Kind::input, fmt::format("a step in time from {:g} s to {:g} s does not lead on",
                                                         robot.inputs.time, wanted.time));
@@ -80,7 +80,7 @@ StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch)
 Observation Stepper::observe(const State& state) const {
     const sim::RobotState& robot = work_->robot_of(state);
     sim::Step step;
-    sim::describe(work_->model->model, work_->stepper.system(), robot.now.state, robot.controls, robot.evaluation,
+    sim::describe(work_->model->scene.model, work_->stepper.system(), robot.now.state, robot.controls, robot.evaluation,
                   step);
     if (work_->stepper.options().dynamics) step.kinetic_energy_J = work_->stepper.kinetic_energy_J(robot);
     return library::observation_of(step);
@@ -88,9 +88,15 @@ Observation Stepper::observe(const State& state) const {
 
 Fields Stepper::fields(const State& state) const {
     const std::vector<Vec3> positions = linalg::points_of(work_->robot_of(state).x());
-    sim::Fields fields = sim::compute_fields(work_->model->model, positions);
+    sim::Fields fields = sim::compute_fields(work_->model->scene.model, positions);
     return {std::move(fields.J), std::move(fields.von_mises_Pa), std::move(fields.max_stretch),
             std::move(fields.energy_density_Pa)};
+}
+
+std::vector<Point> Stepper::contact_forces(const State& state) const {
+    const sim::RobotState& robot = work_->robot_of(state);
+    return library::points_of(
+        linalg::points_of(work_->stepper.system().contact_node_forces(robot.now.state, robot.controls)));
 }
 
 State Stepper::state_from(std::string_view bytes) const {
@@ -103,20 +109,6 @@ State Stepper::load(const std::filesystem::path& file) const {
     if (!robot)
         throw Failure(Failure::Kind::input, fmt::format("{}: {}", file.string(), robot.error().message), file.string());
     return work_->state_of(std::move(*robot));
-}
-
-ProgramResult run(const Model& model, const std::function<void(const ProgramStep&)>& on_step, const Watch& watch) {
-    library::WatchedProgress progress(watch);
-    sim::RunOptions options;
-    options.on_step = [&](const sim::Step& step) {
-        const StepResult result{true, !step.converged, step.reason, step.iterations, step.substeps, step.residual};
-        if (on_step)
-            on_step({step.index, step.time, result, library::observation_of(step), library::points_of(step.positions)});
-    };
-    const sim::Trajectory trajectory =
-        sim::run(model.data()->model, model.data()->program, progress, std::move(options));
-    progress.rethrow();
-    return {trajectory.converged, trajectory.message, trajectory.warnings};
 }
 
 }  // namespace pliant

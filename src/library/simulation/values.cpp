@@ -81,12 +81,14 @@ sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs) {
 Observation observation_of(const sim::Step& step) {
     const auto point = [](const Vec3& v) { return Point{v.x, v.y, v.z}; };
     Observation seen;
-    for (const auto& c : step.cables) seen.cables.push_back({c.name, c.length_m, c.tension_N});
-    for (const auto& c : step.chambers) seen.chambers.push_back({c.name, c.volume_m3, c.pressure_Pa});
+    for (const auto& c : step.cables) seen.cables.push_back({c.name, c.length_m, c.length_ratio, c.tension_N});
+    for (const auto& c : step.chambers) seen.chambers.push_back({c.name, c.volume_m3, c.volume_ratio, c.pressure_Pa});
+    for (const auto& s : step.springs) seen.springs.push_back({s.name, s.length_m, s.force_N});
     for (const auto& m : step.markers) seen.markers.push_back({m.name, point(m.position_m)});
     for (const auto& s : step.supports) seen.supports.push_back({s.name, point(s.force_N)});
     for (const auto& c : step.contacts) seen.contacts.push_back({c.name, point(c.force_N)});
     seen.self_contact_N = step.self_contact_N;
+    seen.smallest_distance_m = step.smallest_distance_m;
     seen.energy_J = step.energy_J;
     seen.kinetic_energy_J = step.kinetic_energy_J;
     seen.min_J = step.min_J;
@@ -108,11 +110,11 @@ std::vector<Point> State::velocities() const {
 }
 
 Inputs State::inputs() const {
-    return library::inputs_of(data_->model->model, data_->robot.inputs);
+    return library::inputs_of(data_->model->scene.model, data_->robot.inputs);
 }
 
 std::string State::bytes() const {
-    return sim::state_bytes(data_->model->model, data_->robot);
+    return sim::state_bytes(data_->model->scene.model, data_->robot);
 }
 
 void State::save(const std::filesystem::path& file) const {

@@ -1,10 +1,15 @@
 #include "presentation/report/simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/core/error.hpp"
+#include "robot/description/robot.hpp"
 #include "simulation/model/model.hpp"
+#include "simulation/run/simulate.hpp"
 
 namespace pliant::report {
 namespace {
@@ -78,7 +83,33 @@ Status check_obstacles(const Simulation& s) {
     return {};
 }
 
+/// "neo-hookean, E 12 MPa, Poisson ratio 0.45": what the file says, for people.
+std::string law_text(const robot::MaterialSpec& material) {
+    return fmt::format("{}, E {:.6g} MPa, Poisson ratio {:.4g}", material::name(material.law),
+                       material.youngs_modulus_Pa / 1e6, material.poisson_ratio);
+}
+
 }  // namespace
+
+Simulation simulation_of(const robot::Robot& robot, const sim::Model& model, const sim::Trajectory& trajectory) {
+    Simulation simulation{.robot = robot.name, .mesh = model.mesh(), .result = trajectory};
+    for (const robot::MaterialSpec& m : robot.materials) {
+        Material material{m.name, law_text(m), m.resin, m.density_kg_m3, {}};
+        if (m.colour) material.colour = Colour{(*m.colour)[0], (*m.colour)[1], (*m.colour)[2]};
+        simulation.materials.push_back(std::move(material));
+    }
+    for (const robot::BodySpec& body : robot.bodies) simulation.region_material.push_back(body.material);
+    simulation.region_material.resize(model.mesh().region_names.size(), -1);  // actuated space carries no material
+    simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
+    for (const sim::Step& step : trajectory.steps)
+        simulation.cable_points.push_back(sim::cable_points(model, step.positions));
+    simulation.region_actuates = regions_that_actuate(model);
+    simulation.obstacles = obstacles_of(model, trajectory);
+    if (has_contact(trajectory))
+        simulation.contact_pressure_Pa = [&model](const sim::Step& step) { return sim::contact_pressure(model, step); };
+    simulation.tolerance = robot.program.tolerance;
+    return simulation;
+}
 
 Status check(const Simulation& s) {
     if (Status status = check_mesh(s); !status) return status;

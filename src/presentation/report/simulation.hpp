@@ -17,6 +17,9 @@
 #include "simulation/run/fields.hpp"
 #include "simulation/run/trajectory.hpp"
 
+namespace pliant::robot {
+struct Robot;
+}
 namespace pliant::sim {
 class Model;
 }
@@ -59,6 +62,10 @@ struct Simulation {
     std::vector<bool> region_actuates{};
     std::vector<MeasuredPath> measured{};  ///< of markers of the result; may be empty
 };
+
+/// What a robot's run becomes: everything but timing, memory and measured markers. All arguments must outlive it.
+[[nodiscard]] Simulation simulation_of(const robot::Robot& robot, const sim::Model& model,
+                                       const sim::Trajectory& trajectory);
 
 /// Sizes and indices agree; otherwise an error that names the field.
 [[nodiscard]] Status check(const Simulation& simulation);

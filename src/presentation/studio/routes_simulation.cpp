@@ -40,7 +40,7 @@ Response glb(Studio& studio, const Request&) {
     const sim::Trajectory history = studio.simulation().history();
     if (!built || history.steps.empty()) return nothing_yet();
     const auto& regions = built->scene.region_material();
-    const report::Simulation simulation = as_report(built->robot, built->model, regions, history);
+    const report::Simulation simulation = report::simulation_of(built->robot, built->model, history);
     return {200, "model/gltf-binary",
             report::robot_glb(simulation, report::outer_surface(built->model.mesh(), regions)), "robot.glb"};
 }
@@ -57,8 +57,7 @@ Response vtu(Studio& studio, const Request&) {
     std::error_code error;
     std::filesystem::create_directory(folder, error);
     std::filesystem::create_directory(folder / "frames", error);
-    const report::Simulation simulation =
-        as_report(built->robot, built->model, built->scene.region_material(), history);
+    const report::Simulation simulation = report::simulation_of(built->robot, built->model, history);
     Progress silent;
     const Status written = report::write_frames(folder, simulation, silent);
     Result<std::string> bytes = written ? read_file(folder / "frames" / "frame_0000.vtu")

@@ -302,21 +302,4 @@ std::string Scene::obstacle_offsets(double time) const {
     return offsets.dump();
 }
 
-report::Simulation as_report(const robot::Robot& robot, const sim::Model& model,
-                             const std::vector<int>& region_material, const sim::Trajectory& trajectory) {
-    report::Simulation simulation{.robot = robot.name, .mesh = model.mesh(), .result = trajectory};
-    for (const robot::MaterialSpec& m : robot.materials) {
-        report::Material material{m.name, law_text(m), m.resin, m.density_kg_m3, {}};
-        if (m.colour) material.colour = report::Colour{(*m.colour)[0], (*m.colour)[1], (*m.colour)[2]};
-        simulation.materials.push_back(std::move(material));
-    }
-    simulation.region_material = region_material;
-    simulation.fields = [&model](std::span<const Vec3> positions) { return sim::compute_fields(model, positions); };
-    for (const sim::Step& step : trajectory.steps)
-        simulation.cable_points.push_back(sim::cable_points(model, step.positions));
-    simulation.obstacles = report::obstacles_of(model, trajectory);
-    simulation.tolerance = robot.program.tolerance;
-    return simulation;
-}
-
 }  // namespace pliant::studio

@@ -59,8 +59,4 @@ private:
 /// The colour a material is drawn in: its own, or the palette's.
 [[nodiscard]] std::string colour_of(const robot::Robot& robot, std::size_t material);
 
-/// A trajectory as the report takes it. All arguments must outlive it.
-[[nodiscard]] report::Simulation as_report(const robot::Robot& robot, const sim::Model& model,
-                                           const std::vector<int>& region_material, const sim::Trajectory& trajectory);
-
 }  // namespace pliant::studio

@@ -6,11 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/warnings.hpp"
-#include "simulation/scene/build_model.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -53,10 +51,10 @@ Json problem_lines(const Error& error) {
 
 }  // namespace
 
-Built::Built(RobotText source_, robot::Robot robot_, sim::Model model_, int revision_)
+Built::Built(RobotText source_, robot::Scene scene_, int revision_)
     : source(std::move(source_)),
-      robot(std::move(robot_)),
-      model(std::move(model_)),
+      robot(std::move(scene_.robot)),
+      model(std::move(scene_.model)),
       revision(revision_),
       scene(robot, model),
       attacher(model.mesh()),
@@ -250,12 +248,10 @@ void SimulationSession::build(RobotText source) {
     if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
     Result<robot::Robot> robot = robot::parse_robot(source.text, source.file, assignments);
     if (!robot) return refuse(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, watch);
-    if (!mesh) return refuse(mesh.error());
-    Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
-    if (!model) return refuse(model.error());
+    Result<robot::Scene> scene = robot::build_scene(std::move(*robot), watch);
+    if (!scene) return refuse(scene.error());
     const std::shared_ptr<const Built> before = this->built();
-    auto built = std::make_shared<const Built>(std::move(source), std::move(*robot), std::move(*model), ++revision_);
+    auto built = std::make_shared<const Built>(std::move(source), std::move(*scene), ++revision_);
     live_.reset();
     live_.emplace(built->model, built->robot.program);
     target_ = live_->target_at(0);

@@ -19,6 +19,7 @@
 #include "robot/description/robot.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/run/live.hpp"
+#include "simulation/scene/scene.hpp"
 
 namespace pliant::studio {
 
@@ -37,7 +38,7 @@ struct RobotText {
 
 /// Everything that belongs to one robot; immutable once it has been made.
 struct Built {
-    Built(RobotText source_, robot::Robot robot_, sim::Model model_, int revision_);
+    Built(RobotText source_, robot::Scene scene_, int revision_);
     RobotText source;
     robot::Robot robot;
     sim::Model model;

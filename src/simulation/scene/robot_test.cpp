@@ -9,7 +9,9 @@
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
 #include "geometry/files/tet_writer.hpp"
+#include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
+#include "simulation/scene/build_model.hpp"
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;

@@ -7,38 +7,29 @@
 #include <utility>
 #include <vector>
 
-#include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
-#include "simulation/scene/build_model.hpp"
+#include "simulation/scene/scene.hpp"
 
 namespace pliant::robot::testing {
 
-/// A robot and its model.
-struct Built {
-    Robot robot;
-    sim::Model model;
-};
+using Built = Scene;
 
 inline Built build(Result<Robot> robot) {
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
-    Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return {std::move(*robot), std::move(*model)};
+    Result<Scene> scene = build_scene(std::move(*robot), silent);
+    REQUIRE_MESSAGE(scene, (scene ? "" : scene.error().message));
+    return std::move(*scene);
 }
 
 /// What is wrong with a text, whether that shows on reading or on building; "" if nothing.
 inline std::string problem(const std::string& text, const std::vector<std::string>& assignments = {}) {
-    const Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
+    Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
     if (!robot) return robot.error().message;
     Progress silent;
-    Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
-    if (!mesh) return mesh.error().message;
-    const Result<sim::Model> model = build_model(*robot, std::move(*mesh));
-    return model ? "" : model.error().message;
+    const Result<Scene> scene = build_scene(std::move(*robot), silent);
+    return scene ? "" : scene.error().message;
 }
 
 inline void check_problem(const std::string& text, const std::string& wanted) {

@@ -434,6 +434,13 @@ contact::Forces Equilibrium::contact_forces(const State& state, const Controls& 
     return contact->forces(contact->find(x), x, controls.friction.get());
 }
 
+Eigen::VectorXd Equilibrium::contact_node_forces(const State& state, const Controls& controls) const {
+    Eigen::VectorXd out_of_balance = Eigen::VectorXd::Zero(state.x.size());
+    double energy = 0;
+    add_contact(state.x, controls, out_of_balance, energy);
+    return -out_of_balance;
+}
+
 std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, const Controls& controls,
                                                            TangentNodes of) const {
     std::vector<std::vector<int>> cliques;

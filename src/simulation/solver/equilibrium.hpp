@@ -143,6 +143,8 @@ public:
     [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
     /// Contact forces of a state, for results. Precondition: the model has contact.
     [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
+    /// (3n) N, pressure and friction of everything that touches a node; zero without contact.
+    [[nodiscard]] Eigen::VectorXd contact_node_forces(const State& state, const Controls& controls) const;
 
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.

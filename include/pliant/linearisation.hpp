@@ -1,0 +1,101 @@
+/// @file
+/// What a state answers to small changes: of what drives the robot, of what it is made of, of its rest shape.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pliant/base.hpp"
+#include "pliant/simulation.hpp"
+
+namespace pliant {
+
+/// A number that a state is a function of.
+struct Parameter {
+    std::string name;  ///< for people: cable "left": length
+    std::string unit;  ///< SI; "" for a plain number
+    double value = 0;  ///< at the state
+};
+
+/// A small change of a state, for each unit of what causes it.
+struct Change {
+    std::vector<Point> positions;      ///< (nodes) m
+    std::vector<double> tensions_N;    ///< (cables)
+    std::vector<double> pressures_Pa;  ///< (chambers)
+};
+
+/// A function of the state, to first order: its derivatives by the positions of nodes, by tensions and by pressures.
+/// What is left empty is zero.
+struct Quantity {
+    std::vector<Point> by_positions;   ///< (nodes)
+    std::vector<double> by_tensions;   ///< (cables)
+    std::vector<double> by_pressures;  ///< (chambers)
+};
+
+/// The equations of a state of equilibrium, F(z) = 0 in its unknowns z, linearised: elements, cables and chambers,
+/// pressure that follows its wall, contact, friction as it was found, inertia. The unknowns are the positions of the
+/// nodes that nothing holds, three by three, then the multipliers that are not given: tensions of cables and minus the
+/// pressures of chambers. For one thread at a time.
+class PLIANT_API Linearisation {
+public:
+    /// Of a state that a Stepper left.
+    /// @throws Failure where the state is one that no body can have.
+    explicit Linearisation(const State& state);
+    /// Moves it; the other one is of no use afterwards.
+    Linearisation(Linearisation&&) noexcept;
+    /// Moves it; the other one is of no use afterwards.
+    Linearisation& operator=(Linearisation&&) noexcept;
+    ~Linearisation();
+
+    /// Unknowns.
+    [[nodiscard]] std::size_t size() const;
+    /// (unknowns) A v with A = dF/dz. Exact.
+    /// @throws Failure where v has another size.
+    [[nodiscard]] std::vector<double> multiply(std::span<const double> v) const;
+    /// (unknowns) A^T w.
+    [[nodiscard]] std::vector<double> multiply_transposed(std::span<const double> w) const;
+    /// (unknowns) A^-1 b, to 1e-12 of b; also where the equilibrium is unstable. The first solution factorises.
+    /// @throws Failure where the matrix is singular, or cables that do the same are asked for different things.
+    [[nodiscard]] std::vector<double> solve(std::span<const double> b);
+    /// (unknowns) A^-T b.
+    [[nodiscard]] std::vector<double> solve_transposed(std::span<const double> b);
+    /// What a vector of unknowns is, as a change of the state.
+    [[nodiscard]] Change change(std::span<const double> unknowns) const;
+
+    /// What drives the robot: lengths, tensions, volumes, pressures, gas, and how far supports, loads, gravity and
+    /// obstacles are on their way.
+    [[nodiscard]] const std::vector<Parameter>& inputs() const;
+    /// What the robot is made of and stands in: constants of materials, densities, springs, friction, loads, gravity,
+    /// supports, contact. The constants of a material are Young's modulus and Poisson ratio, then those of its law.
+    [[nodiscard]] const std::vector<Parameter>& parameters() const;
+
+    /// What the whole state does for each unit of an input. One solution.
+    /// @throws Failure as of solve(), or there is no such input.
+    [[nodiscard]] Change response_to_input(std::size_t input);
+    /// What the whole state does for each unit of a parameter. One solution.
+    /// @throws Failure as of solve(), or there is no such parameter.
+    [[nodiscard]] Change response_to_parameter(std::size_t parameter);
+
+    /// What everything does to a quantity.
+    struct Gradient {
+        std::vector<double> inputs;         ///< (inputs)
+        std::vector<double> parameters;     ///< (parameters)
+        std::vector<Point> rest_positions;  ///< (nodes); empty for a robot with gap elements, which are not known to it
+    };
+    /// By one transposed solution. With the rest shape, lengths and volumes that are driven stay as they are, in m and
+    /// m^3, and everything that is tied to nodes moves along.
+    /// @throws Failure as of solve(), or the quantity has another size than the model.
+    [[nodiscard]] Gradient gradient(const Quantity& quantity);
+    /// Coordinate of a marker along a direction; m for a direction of length 1.
+    /// @throws Failure where there is no such marker.
+    [[nodiscard]] Quantity marker_coordinate(std::size_t marker, const Point& direction) const;
+
+private:
+    struct Work;
+    std::unique_ptr<Work> work_;
+};
+
+}  // namespace pliant
