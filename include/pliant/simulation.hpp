@@ -47,6 +47,15 @@ private:
     /// @endcond
 };
 
+/// A mesh of tetrahedra that a program has made itself.
+struct Mesh {
+    std::vector<Point> points;  ///< m
+    std::vector<int> tets;  ///< (tets * nodes_per_tet) indices into points; the nodes of edges 01 12 20 03 13 23 last
+    int nodes_per_tet = 4;  ///< or 10
+    std::vector<int> regions{};                       ///< (tets) index into region_names; empty: all in the first
+    std::vector<std::string> region_names = {"all"};  ///< what `region` of a body names
+};
+
 /// A robot that is meshed and ready to be simulated. Never changes.
 class PLIANT_API Model {
 public:
@@ -54,6 +63,11 @@ public:
     /// program `pliant-mesh`, which must be installed; a robot with a mesh file needs none.
     /// @throws Failure of the geometry, the mesh, or of what does not fit it.
     explicit Model(const Robot& robot, const Watch& watch = {});
+    /// The same with a mesh for a robot that says `mesh.file = "memory:"` and names its regions as in any mesh file.
+    /// Points that no tetrahedron uses are left out, tetrahedra that are inside out are turned; nodes have an order of
+    /// their own, that of rest_positions().
+    /// @throws Failure where the robot's bodies are drawn, or the mesh is none.
+    Model(const Robot& robot, const Mesh& mesh);
 
     /// Nodes of the mesh.
     [[nodiscard]] std::size_t node_count() const;

@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <map>
 #include <utility>
 
+#include "geometry/files/tet_collector.hpp"
 #include "geometry/mesh/tet_mesh.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
@@ -15,7 +20,45 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
     return names;
 }
 
+[[noreturn]] void refuse(const std::string& why) {
+    throw Failure(Failure::Kind::input, "the mesh: " + why);
+}
+
+mesh::TetMesh tet_mesh(const Mesh& given) {
+    if (given.nodes_per_tet != 4 && given.nodes_per_tet != 10)
+        refuse(fmt::format("{} nodes for each tetrahedron; it has 4 or 10", given.nodes_per_tet));
+    const auto width = static_cast<std::size_t>(given.nodes_per_tet);
+    const std::size_t tets = given.tets.size() / width;
+    if (tets * width != given.tets.size())
+        refuse(fmt::format("{} node numbers are no multiple of {}", given.tets.size(), width));
+    if (!given.regions.empty() && given.regions.size() != tets)
+        refuse(fmt::format("{} tetrahedra, but {} regions of them", tets, given.regions.size()));
+    std::vector<Vec3> points;
+    for (const Point& p : given.points) {
+        points.push_back({p[0], p[1], p[2]});
+        if (!is_finite(points.back())) refuse(fmt::format("point {} is not finite", points.size() - 1));
+    }
+    mesh::TetCollector collector(std::move(points));
+    for (std::size_t t = 0; t < tets; ++t) {
+        const int region = given.regions.empty() ? 0 : given.regions[t];
+        if (region < 0 || static_cast<std::size_t>(region) >= given.region_names.size())
+            refuse(fmt::format("a tetrahedron is in region {} of {}", region, given.region_names.size()));
+        const std::vector<std::int64_t> nodes(given.tets.begin() + static_cast<std::ptrdiff_t>(t * width),
+                                              given.tets.begin() + static_cast<std::ptrdiff_t>((t + 1) * width));
+        if (const Status status = collector.add(nodes, region); !status) refuse(status.error().message);
+    }
+    std::map<std::int64_t, std::string> names;
+    for (const std::string& name : given.region_names) names.emplace(names.size(), name);
+    auto mesh = collector.finish(names);
+    if (!mesh) refuse(mesh.error().message);
+    return std::move(*mesh);
+}
+
 }  // namespace
+
+Model::Model(const Robot& robot, const Mesh& mesh)
+    : data_(std::make_shared<const Data>(
+          Data{library::value_of(robot::build_scene(robot.data().robot, tet_mesh(mesh))), robot.data().origin})) {}
 
 Model::Model(const Robot& robot, const Watch& watch) {
     library::WatchedProgress progress(watch);

@@ -48,6 +48,54 @@ TEST_CASE("a model tells what it is made of") {
     CHECK(volume == near(6e-6, {.relative = 1e-9}));
 }
 
+TEST_CASE("a mesh that a program has made takes the place of a file") {
+    const Robot robot = Robot::parse(R"(
+        name = "block"
+        length_unit = "mm"
+        material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.3 }
+        mesh = { file = "memory:", order = 1 }
+        body = [{ name = "block", material = "soft", region = "all" }]
+        fixed = [{ name = "bottom", box = [[0, 0, 0], [10, 10, 0]] }]
+        load = [{ name = "push", box = [[0, 0, 10], [10, 10, 10]], force = ["0 N", "0 N", "-0.1 N"] }]
+        marker = [{ name = "top", point = [5, 5, 10] }]
+    )");
+    Mesh cube;  // of 10 mm, in six tets around a diagonal, and a point of no use
+    for (int k = 0; k < 8; ++k) cube.points.push_back({0.01 * (k & 1), 0.01 * (k >> 1 & 1), 0.01 * (k >> 2)});
+    cube.points.push_back({1, 1, 1});
+    cube.tets = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+    const Model model(robot, cube);
+    CHECK(model.node_count() == 8);
+    CHECK(model.tet_count() == 6);
+    Stepper stepper(model);
+    State state = stepper.rest();
+    CHECK(stepper.step(state, stepper.program(1)).arrived);
+    CHECK(stepper.observe(state).supports[0].force_N[2] == near(0.1, {.relative = 1e-3}));
+    CHECK(stepper.observe(state).markers[0].position_m[2] < 0.01);
+
+    const auto problem = [&](const Mesh& mesh) -> std::string {
+        try {
+            (void)Model(robot, mesh);
+        } catch (const Failure& failure) {
+            return failure.what();
+        }
+        return "";
+    };
+    Mesh wrong = cube;
+    wrong.tets.back() = 9;
+    CHECK(problem(wrong) == "the mesh: a tetrahedron names point 9, there are 9");
+    wrong.tets.pop_back();
+    CHECK(problem(wrong) == "the mesh: 23 node numbers are no multiple of 4");
+    wrong = cube;
+    wrong.points[0][1] = NAN;
+    CHECK(problem(wrong) == "the mesh: point 0 is not finite");
+    wrong = cube;
+    wrong.regions = {0, 0, 0, 0, 0, 1};
+    CHECK(problem(wrong) == "the mesh: a tetrahedron is in region 1 of 1");
+    CHECK(problem({}) == "the mesh: holds no tetrahedra");
+    CHECK_THROWS_WITH_AS((void)Model(robot), doctest::Contains("can only be given by a program"), Failure);
+    CHECK_THROWS_WITH_AS((void)Model(bar(), cube), doctest::Contains("the bodies are drawn"), Failure);
+}
+
 TEST_CASE("steps to the program's end and the program itself come to the same state") {
     const Model model(bar());
     Stepper stepper(model, {.tolerance = 1e-8});

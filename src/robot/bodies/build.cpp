@@ -224,28 +224,34 @@ Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vect
     return wrong(fmt::format("the mesh has no region \"{}\"; it has {}", wanted.name, join_names(mesh.region_names)));
 }
 
-/// Gives every region of the file to the body, chamber or gap that names it.
-Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
-    Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
-    if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
-    mesh = mesh::placed(std::move(*mesh), robot.mesh.placement);
+/// Gives every region of a ready mesh to the body, chamber or gap that names it.
+Result<mesh::TetMesh> give_regions(const Robot& robot, mesh::TetMesh mesh) {
     const std::vector<Region> users = regions_of(robot);
-    std::vector<int> user_of_tet(mesh->tet_count(), -1);
+    std::vector<int> user_of_tet(mesh.tet_count(), -1);
     for (std::size_t u = 0; u < users.size(); ++u) {
-        if (Status status = claim_tets(robot, *mesh, users, u, user_of_tet); !status)
+        if (Status status = claim_tets(robot, mesh, users, u, user_of_tet); !status)
             return tl::unexpected(status.error());
     }
-    for (std::size_t t = 0; t < mesh->tet_count(); ++t) {
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (user_of_tet[t] < 0) {
             return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""),
                                      {Cause::input, fmt::format("no body names region \"{}\" of the mesh",
-                                                                mesh->region_names[mesh->region[t]])}));
+                                                                mesh.region_names[mesh.region[t]])}));
         }
     }
-    mesh->region = std::move(user_of_tet);
-    mesh->region_names.clear();
-    for (const Region& user : users) mesh->region_names.emplace_back(user.name);
-    return robot.mesh.order == 2 ? mesh::to_quadratic(*mesh) : std::move(*mesh);
+    mesh.region = std::move(user_of_tet);
+    mesh.region_names.clear();
+    for (const Region& user : users) mesh.region_names.emplace_back(user.name);
+    return robot.mesh.order == 2 ? mesh::to_quadratic(mesh) : std::move(mesh);
+}
+
+Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {
+    if (*robot.mesh.file == mesh_in_memory)
+        return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""),
+                                 {Cause::input, "file: a mesh in memory can only be given by a program; name a file"}));
+    Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(*robot.mesh.file);
+    if (!mesh) return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""), mesh.error()));
+    return give_regions(robot, mesh::placed(std::move(*mesh), robot.mesh.placement));
 }
 
 }  // namespace
@@ -256,6 +262,17 @@ Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
     const std::vector<std::string> notes = notes_on_chambers(robot);
     mesh->notes.insert(mesh->notes.end(), notes.begin(), notes.end());
     return mesh::scaled(std::move(*mesh), robot.unit_m);
+}
+
+Result<mesh::TetMesh> take_mesh(const Robot& robot, mesh::TetMesh mesh_m) {
+    if (!robot.mesh.file)
+        return tl::unexpected(
+            at(place(robot, robot.mesh.line, "mesh", ""),
+               {Cause::input,
+                "the bodies are drawn; for a mesh that is given, name regions of it: mesh.file and region"}));
+    Result<mesh::TetMesh> mesh =
+        give_regions(robot, mesh::placed(mesh::scaled(std::move(mesh_m), 1 / robot.unit_m), robot.mesh.placement));
+    return mesh ? mesh::scaled(std::move(*mesh), robot.unit_m) : mesh;
 }
 
 Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {

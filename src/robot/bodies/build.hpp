@@ -13,6 +13,10 @@ namespace pliant::robot {
 /// Meshes the bodies, or reads the mesh file. Metres. Regions as in regions_of(). Errors name the body and its line.
 [[nodiscard]] Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress);
 
+/// A mesh that is at hand, in metres, in the place of the file that the robot names: its regions become those of
+/// regions_of(), tets the robot's order. Errors: the robot names no mesh file; as build_mesh() of regions.
+[[nodiscard]] Result<mesh::TetMesh> take_mesh(const Robot& robot, mesh::TetMesh mesh_m);
+
 /// The closed surface of one body as drawn.
 struct BodySurface {
     std::string body;

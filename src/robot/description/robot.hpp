@@ -72,6 +72,9 @@ struct BodySpec {
     double exposure_s = 0;              ///< of its layers when printed; 0: that of its material
 };
 
+/// In the place of a mesh file: a mesh that a program gives (robot::take_mesh).
+inline constexpr std::string_view mesh_in_memory = "memory:";
+
 struct MeshSpec {
     double size = 0;  ///< in length units; 0: 1/24 of the longest side of the bodies' bounding box
     std::optional<std::filesystem::path> file;

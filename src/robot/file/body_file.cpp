@@ -88,7 +88,8 @@ void read_mesh(Reader& root, Context& context) {
     if (mesh.order != 1 && mesh.order != 2)
         reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
     if (reader.has("file")) {
-        mesh.file = need_file(reader, "file", reader.text("file"), context);
+        const std::string file = reader.text("file");
+        mesh.file = file == mesh_in_memory ? std::filesystem::path(file) : need_file(reader, "file", file, context);
         mesh.placement = read_placement(reader, "place");
     }
     mesh.size = read_size(reader, "size", context);

@@ -24,4 +24,7 @@ struct Scene {
 /// build_model(); cancelled.
 [[nodiscard]] Result<Scene> build_scene(Robot robot, Progress& progress);
 
+/// The same with a mesh that is at hand, in metres. Errors: of take_mesh() and build_model().
+[[nodiscard]] Result<Scene> build_scene(Robot robot, mesh::TetMesh mesh_m);
+
 }  // namespace pliant::robot
