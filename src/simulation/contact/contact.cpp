@@ -87,6 +87,20 @@ double Contact::smallest_distance(const Pairs& pairs, std::span<const double> x)
     return smallest;
 }
 
+double Contact::add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const {
+    double sum = 0;
+    for (const Pair& pair : pairs) {
+        if (pair.obstacle >= 0) continue;
+        const Stencil stencil = stencil_of(pair, x);
+        sum += normal_force(pair, settings_.stiffness_Pa, stencil);
+        const Vector12 change = normal_force_gradient(pair, settings_.stiffness_Pa, stencil);
+        for (int i = 0; i < pair.node_count(); ++i) {
+            for (int c = 0; c < 3; ++c) gradient[3 * static_cast<std::size_t>(pair.nodes[i]) + c] += change[3 * i + c];
+        }
+    }
+    return sum;
+}
+
 Forces Contact::forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const {
     Forces result{std::vector<Vec3>(obstacles_.size()), 0, std::vector<double>(static_cast<std::size_t>(robot_nodes_)),
                   smallest_distance(pairs, x)};

@@ -111,6 +111,8 @@ public:
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
                                   std::span<const double> step_start) const;
 
+    /// Sum of the sizes of the robot's normal forces on itself, N; adds its gradient, N/m, to `gradient` (3 nodes).
+    double add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
     [[nodiscard]] Forces forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const;
     /// Of the pairs; infinity if there are none. From an obstacle as it is drawn: below zero where the robot is pressed
     /// on it hard.

@@ -103,6 +103,17 @@ double normal_force(const Pair& pair, double stiffness_Pa, const Stencil& x) {
     return -scale(pair, stiffness_Pa) * mollifier_of(pair, x).value * barrier_of(pair, D).slope * 2 * std::sqrt(D);
 }
 
+Vector12 normal_force_gradient(const Pair& pair, double stiffness_Pa, const Stencil& x) {
+    const Nearest n = nearest(pair, x);
+    const double D = squared(pair, n, x);
+    const Curve b = barrier_of(pair, D), m = mollifier_of(pair, x);
+    if (!(D > 0) || b.slope == 0) return Vector12::Zero();
+    const double d = std::sqrt(D);
+    Vector12 gradient = m.value * (2 * d * b.curvature + b.slope / d) * squared_gradient(pair, n, x);
+    if (m.slope != 0) gradient += m.slope * b.slope * 2 * d * squared_cross_gradient(x);
+    return -scale(pair, stiffness_Pa) * gradient;
+}
+
 Matrix12 project_to_positive(const Matrix12& H, int nodes) {
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12>;
     const int size = 3 * nodes;

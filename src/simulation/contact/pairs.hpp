@@ -46,6 +46,7 @@ using Pairs = std::vector<Pair>;
 
 /// The size of the force between the two features, N: |∂E/∂d| with the mollifier held.
 [[nodiscard]] double normal_force(const Pair& pair, double stiffness_Pa, const Stencil& x);
+[[nodiscard]] Vector12 normal_force_gradient(const Pair& pair, double stiffness_Pa, const Stencil& x);
 
 /// The nearest symmetric matrix without negative eigenvalues; only the first 3 `nodes` rows and columns count.
 [[nodiscard]] Matrix12 project_to_positive(const Matrix12& H, int nodes);

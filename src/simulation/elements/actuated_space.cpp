@@ -36,6 +36,9 @@ GapElements::GapElements(const Elements& elements, std::span<const Gap> gaps) : 
     const double area = volume / length_m_;
     for (std::size_t g = 0; g < gaps.size(); ++g) {
         const Gap& gap = gaps[g];
+        directions_.push_back(gap.direction);
+        gap_weights_Pa_.push_back(gap.weight_Pa);
+        numbers_.push_back(gap.number);
         const double stiffness_Pa = gap.weight_Pa * area * gap.length_m / volume_of_gap[g];
         for (const std::size_t tet : gap.tets) {
             for (int q = 0; q < elements.points_per_tet(); ++q) {
@@ -43,6 +46,7 @@ GapElements::GapElements(const Elements& elements, std::span<const Gap> gaps) : 
                     nodes_.push_back(elements.node_of(tet, static_cast<int>(a)));
                     weights_.push_back(dot(elements.shape_gradient(tet, q, static_cast<int>(a)), gap.direction));
                 }
+                points_.push_back({tet, q, g});
                 stiffness_J_.push_back(stiffness_Pa * elements.point_volume(tet, q));
                 stiffness_N_ += stiffness_J_.back();
             }

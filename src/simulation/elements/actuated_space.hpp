@@ -38,6 +38,7 @@ public:
         Vec3 direction;        ///< of length 1
         double length_m = 0;   ///< above 0
         double weight_Pa = 0;  ///< above 0
+        std::size_t number = 0;  ///< in the list of whoever made it
     };
     /// At least one gap with a tet.
     GapElements(const Elements& elements, std::span<const Gap> gaps);
@@ -62,6 +63,19 @@ public:
     [[nodiscard]] double scale(double m) const { return 1 - m / stiffness_N_; }
     /// What of m is left to close the gaps, N, once their elements have been shortened: c (M/L - s).
     [[nodiscard]] double tension(std::span<const double> x, double m) const;
+    /// c / L, N/m: how that changes with M.
+    [[nodiscard]] double tension_rate() const { return stiffness_N_ / length_m_; }
+
+    /// forces (3n) += the change of the gradient of E at m with a motion (3n) of the rest positions, d and the lengths
+    /// of the cable in the gaps as they are; and result (3n) += its transpose times `weights` (3n). `elements`: those
+    /// that it was made from.
+    void add_rest_product(const Elements& elements, std::span<const double> x, double m, std::span<const double> motion,
+                          std::span<double> forces) const;
+    void add_rest_weights(const Elements& elements, std::span<const double> x, double m,
+                          std::span<const double> weights, std::span<double> result) const;
+    [[nodiscard]] bool has(std::size_t gap_number) const;
+    /// forces (3n) += the change of the same gradient with weight_Pa of a gap, N/Pa.
+    void add_weight_force(std::span<const double> x, double m, std::size_t gap_number, std::span<double> forces) const;
 
 private:
     /// F d of an integration point, and its length.
@@ -79,6 +93,22 @@ private:
     std::vector<int> nodes_;           ///< (points, width)
     std::vector<double> weights_;      ///< (points, width) grad N_a . d: F d is the sum of these times the positions
     std::vector<double> stiffness_J_;  ///< (points) k
+    struct Point {
+        std::size_t tet = 0;
+        int point = 0;
+        std::size_t gap = 0;
+    };
+    std::vector<Point> points_;  ///< (points) where each one is
+    std::vector<Vec3> directions_;  ///< (gaps) d
+    std::vector<double> gap_weights_Pa_;  ///< (gaps)
+    std::vector<std::size_t> numbers_;    ///< (gaps)
+    /// How the rest volumes change, over themselves.
+    struct Growths {
+        double whole = 0;
+        std::vector<double> of_gap;
+    };
+    [[nodiscard]] Growths growths(const Elements& elements, std::span<const double> motion) const;
+    [[nodiscard]] std::vector<double> volumes(const Elements& elements) const;
     double stiffness_N_ = 0;           ///< c
     double length_m_ = 0;              ///< L
 };

@@ -5,16 +5,6 @@
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
-namespace {
-
-Eigen::VectorXd mass_times(const Elements& elements, const Eigen::VectorXd& u) {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
-    elements.apply_mass({u.data(), static_cast<std::size_t>(u.size())},
-                        {result.data(), static_cast<std::size_t>(result.size())});
-    return result;
-}
-
-}  // namespace
 
 Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, History begin, double dt,
                  const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness)
@@ -25,46 +15,67 @@ Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, H
       damping_(damping),
       stiffness_(std::move(stiffness)) {
     const History& history = start_;
-    const bool even = history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
-    rate_ = even ? 1.5 / dt : 1 / dt;
+    even_ = history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
+    rate_ = even_ ? 1.5 / dt : 1 / dt;
     from_ = history.x;
     Eigen::VectorXd velocity = history.v;
-    if (even) {
+    if (even_) {
         from_ = (4 * history.x - history.x_before) / 3;
         velocity = (4 * history.v - history.v_before) / 3;
     }
     coast_ = from_ + velocity / rate_;
 }
 
-Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
-    if (damping_.mass_per_s > 0) force += damping_.mass_per_s * mass_times(*elements_, motion);
+Eigen::VectorXd Inertia::mass_times(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(v.size());
+    elements_->apply_mass({v.data(), static_cast<std::size_t>(v.size())},
+                          {result.data(), static_cast<std::size_t>(result.size())});
+    return result;
+}
+
+Eigen::VectorXd Inertia::stiffness_times(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(v.size());
     if (!stiffness_) return force;
     const linalg::SymmetricPattern& pattern = *stiffness_->pattern;
     const auto& index = *free_index_;
     Eigen::VectorXd free = Eigen::VectorXd::Zero(pattern.size());
     for (std::size_t node = 0; node < index.size(); ++node) {
-        if (index[node] >= 0) free.segment<3>(3 * index[node]) = motion.segment<3>(3 * static_cast<Eigen::Index>(node));
+        if (index[node] >= 0) free.segment<3>(3 * index[node]) = v.segment<3>(3 * static_cast<Eigen::Index>(node));
     }
     Eigen::VectorXd product = Eigen::VectorXd::Zero(pattern.size());
     linalg::add_product(pattern, stiffness_->values, {free.data(), static_cast<std::size_t>(free.size())}, 1,
                         {product.data(), static_cast<std::size_t>(product.size())});
     for (std::size_t node = 0; node < index.size(); ++node) {
-        if (index[node] < 0) continue;
-        force.segment<3>(3 * static_cast<Eigen::Index>(node)) +=
-            damping_.stiffness_s * product.segment<3>(3 * index[node]);
+        if (index[node] >= 0)
+            force.segment<3>(3 * static_cast<Eigen::Index>(node)) = product.segment<3>(3 * index[node]);
     }
     return force;
+}
+
+Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
+    if (damping_.mass_per_s > 0) force += damping_.mass_per_s * mass_times(motion);
+    if (stiffness_) force += damping_.stiffness_s * stiffness_times(motion);
+    return force;
+}
+
+/// With p and q of the two last states or of the last: by p the gradient changes by -(c^2 M + c C), by q by -c M; the
+/// velocity by -c and 0.
+History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen::VectorXd& velocity_weights) const {
+    const Eigen::VectorXd mass = -rate_ * mass_times(force_weights);
+    const Eigen::VectorXd by_from = rate_ * (mass - damping_force(force_weights) - velocity_weights);
+    if (!even_) return {by_from, mass, Eigen::VectorXd::Zero(mass.size()), Eigen::VectorXd::Zero(mass.size()), 0};
+    return {4.0 / 3 * by_from, 4.0 / 3 * mass, -1.0 / 3 * by_from, -1.0 / 3 * mass, 0};
 }
 
 double Inertia::energy(const Eigen::VectorXd& x) const {
     const Eigen::VectorXd off = x - coast_;
     const Eigen::VectorXd motion = x - from_;
-    return 0.5 * rate_ * rate_ * off.dot(mass_times(*elements_, off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
+    return 0.5 * rate_ * rate_ * off.dot(mass_times(off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
 }
 
 void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const {
-    forces += rate_ * rate_ * mass_times(*elements_, x - coast_) + rate_ * damping_force(x - from_);
+    forces += rate_ * rate_ * mass_times(x - coast_) + rate_ * damping_force(x - from_);
 }
 
 void Inertia::add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,

@@ -54,6 +54,16 @@ public:
     }
     /// Velocity (3n) at the end of the step, if it ends at x.
     [[nodiscard]] Eigen::VectorXd velocity(const Eigen::VectorXd& x) const { return rate_ * (x - from_); }
+    [[nodiscard]] double rate() const { return rate_; }
+    [[nodiscard]] const Damping& damping() const { return damping_; }
+    /// (3n) M v, and K v with the stiffness that damping takes (zero without it).
+    [[nodiscard]] Eigen::VectorXd mass_times(const Eigen::VectorXd& v) const;
+    [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& v) const;
+
+    /// (3n) each, by what the step leads from: `force_weights` (3n) times the gradient and `velocity_weights` (3n) times
+    /// the velocity, both at a given x. dt_before is not filled in. The stiffness that damping takes stays.
+    [[nodiscard]] History start_weights(const Eigen::VectorXd& force_weights,
+                                        const Eigen::VectorXd& velocity_weights) const;
 
 private:
     [[nodiscard]] Eigen::VectorXd damping_force(const Eigen::VectorXd& motion) const;
@@ -62,6 +72,7 @@ private:
     const std::vector<int>* free_index_;
     History start_;
     double dt_;
+    bool even_ = false;      ///< BDF2
     double rate_ = 0;        ///< c
     Eigen::VectorXd from_;   ///< p
     Eigen::VectorXd coast_;  ///< x~

@@ -9,6 +9,7 @@
 
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
+#include "simulation/linearisation/contact_forces.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -187,24 +188,27 @@ const Linearisation::Whole& Linearisation::whole() {
     return *whole_;
 }
 
-Eigen::VectorXd Linearisation::equations_of_motion(const Eigen::VectorXd& motion) {
+void Linearisation::add_stiffness(const Eigen::VectorXd& v, Side side, Eigen::VectorXd& result) {
     const Whole& all = whole();
+    linalg::add_product(all.layout.pattern, all.tangent.symmetric, view(v), 1, view(result));
+    if (!all.tangent.skew.empty())
+        add_skew_product(all.layout.pattern, all.tangent.skew, v, side == Side::direct ? 1 : -1, result);
+}
+
+Eigen::VectorXd Linearisation::equations_of_motion(const Eigen::VectorXd& motion) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size());
-    linalg::add_product(all.layout.pattern, all.tangent.symmetric, view(motion), 1, view(force));
-    if (!all.tangent.skew.empty()) add_skew_product(all.layout.pattern, all.tangent.skew, motion, 1, force);
+    add_stiffness(motion, Side::direct, force);
     Eigen::VectorXd rows(size());
-    rows << system_->restrict_to_free(force), all.constraints.transpose() * motion;
+    rows << system_->restrict_to_free(force), whole().constraints.transpose() * motion;
     return rows;
 }
 
 Eigen::VectorXd Linearisation::motion_weights(const Eigen::VectorXd& weights) {
-    const Whole& all = whole();
     const Eigen::Index n = matrix_->free_size();
     Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
     system_->add_free(weights.head(n), 1, full);
-    Eigen::VectorXd result = all.constraints * weights.tail(weights.size() - n);
-    linalg::add_product(all.layout.pattern, all.tangent.symmetric, view(std::as_const(full)), 1, view(result));
-    if (!all.tangent.skew.empty()) add_skew_product(all.layout.pattern, all.tangent.skew, full, -1, result);
+    Eigen::VectorXd result = whole().constraints * weights.tail(weights.size() - n);
+    add_stiffness(full, Side::transposed, result);
     return result;
 }
 
@@ -217,7 +221,33 @@ Result<Change> Linearisation::response(const Derivative& by) {
     return change;
 }
 
-Result<Adjoint> Linearisation::adjoint(const Quantity& quantity) {
+Quantity Linearisation::with_forces(const Quantity& quantity) {
+    if (quantity.by_forces.size() == 0) return quantity;
+    Quantity whole_one = quantity;
+    const Eigen::VectorXd robot = quantity.by_forces.head(state_.x.size());
+    add_stiffness(robot, Side::transposed, whole_one.by_positions);
+    for (std::size_t a = 0; a < system_->actuators().size(); ++a) {
+        Eigen::VectorXd unit = Eigen::VectorXd::Zero(state_.x.size());
+        system_->actuators()[a].add_gradient(view(state_.x), 1, view(unit), controls_.shares[a]);
+        whole_one.by_multipliers[static_cast<Eigen::Index>(a)] += unit.dot(robot);
+    }
+    if (quantity.by_forces.size() == robot.size()) return whole_one;
+    Eigen::VectorXd obstacles = quantity.by_forces;
+    obstacles.head(robot.size()).setZero();  // they are in the stiffness
+    whole_one.by_positions +=
+        contact_stiffness_times(*system_, state_, controls_, obstacles).head(whole_one.by_positions.size());
+    return whole_one;
+}
+
+Eigen::VectorXd Linearisation::force_weights(const Adjoint& adjoint) const {
+    Eigen::VectorXd weights = adjoint.quantity.by_forces;
+    if (weights.size() == 0) weights = Eigen::VectorXd::Zero(state_.x.size());
+    weights.head(state_.x.size()) -= change_of(adjoint.weights).positions;
+    return weights;
+}
+
+Result<Adjoint> Linearisation::adjoint(const Quantity& asked) {
+    const Quantity quantity = with_forces(asked);
     Result<Eigen::VectorXd> weights = solve_transposed(unknowns_of({quantity.by_positions, quantity.by_multipliers}));
     if (!weights) return tl::unexpected(weights.error());
     return Adjoint{quantity, std::move(*weights)};

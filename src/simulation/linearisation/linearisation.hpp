@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -35,12 +36,19 @@ struct Change {
 struct Derivative {
     Eigen::VectorXd equations;  ///< (unknowns) dF/dp
     Change direct;              ///< of held nodes, and of multipliers that are given
+    /// (3n), or with the nodes of obstacles after those of the robot: d/dp of the forces that balance at each node, of
+    /// which `equations` has those at free ones; `direct` is not in it. Empty: none.
+    Eigen::VectorXd forces{};
 };
 
-/// A function q of the state, to first order: dq = by_positions . dx + by_multipliers . dm.
+/// A function q of the state, to first order: dq = by_positions . dx + by_multipliers . dm + by_forces . df.
 struct Quantity {
     Eigen::VectorXd by_positions;    ///< (3n)
     Eigen::VectorXd by_multipliers;  ///< (actuators)
+    /// (3n), or with the nodes of obstacles after those of the robot: by the forces f that balance at each node, which
+    /// are the reaction where it is held, and what the robot feels of each node of an obstacle. Empty: by none.
+    Eigen::VectorXd by_forces{};
+    /// Without what the forces do: Linearisation::with_forces() puts that into the other two.
     [[nodiscard]] double derivative(const Change& change) const {
         return by_positions.dot(change.positions) + by_multipliers.dot(change.multipliers);
     }
@@ -54,10 +62,12 @@ struct Quantity {
 /// What a quantity asks of the equations: weights w with A^T w = dq/dz, so that dq/dp = dq of the direct part - w .
 /// dF/dp.
 struct Adjoint {
-    Quantity quantity;
+    Quantity quantity;        ///< with its forces put into the rest: Linearisation::with_forces()
     Eigen::VectorXd weights;  ///< (unknowns)
     [[nodiscard]] double derivative(const Derivative& by) const {
-        return quantity.derivative(by.direct) - weights.dot(by.equations);
+        const Eigen::Index both = std::min(quantity.by_forces.size(), by.forces.size());
+        return quantity.derivative(by.direct) - weights.dot(by.equations) +
+               quantity.by_forces.head(both).dot(by.forces.head(both));
     }
 };
 
@@ -120,6 +130,12 @@ public:
     /// What the whole state does for each unit of p: the direct part, and -A^-1 dF/dp.
     [[nodiscard]] Result<Change> response(const Derivative& by);
     [[nodiscard]] Result<Adjoint> adjoint(const Quantity& quantity);
+    /// The same quantity, with what the change of the forces with positions and multipliers does to it added to
+    /// by_positions and by_multipliers; by_forces is left with what else changes them.
+    [[nodiscard]] Quantity with_forces(const Quantity& quantity);
+    /// (3n), or with the nodes of obstacles: how the quantity changes with a force that is added to those that balance
+    /// at each node.
+    [[nodiscard]] Eigen::VectorXd force_weights(const Adjoint& adjoint) const;
 
 private:
     struct Whole;
@@ -127,6 +143,8 @@ private:
     void find_unknowns();
     void assemble();
     [[nodiscard]] const Whole& whole();
+    /// result (3n) += K v of all nodes, or K^T v.
+    void add_stiffness(const Eigen::VectorXd& v, Side side, Eigen::VectorXd& result);
     [[nodiscard]] SystemSolver& solver();
 
     const Equilibrium* system_ = nullptr;

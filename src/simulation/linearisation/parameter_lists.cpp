@@ -74,6 +74,13 @@ void add_actuators(const Linearisation& at, std::vector<Parameter>& all) {
         all.push_back(
             {Kind::spring_free_length, s, owner + ": free length", "m", at.system().springs()[s].free_length()});
     }
+    for (std::size_t k = 0; k < d.growths.size(); ++k) {
+        const auto a = static_cast<std::size_t>(d.growths[k].actuator);
+        const GapElements* gaps = at.system().actuators()[a].gaps();
+        if (gaps != nullptr && gaps->has(k))
+            all.push_back({Kind::gap_weight, k, fmt::format("gap {} of cable \"{}\": weight", k, d.cables[a].name), "Pa",
+                           d.growths[k].weight_Pa});
+    }
     for (const Drive& drive : at.controls().drives) {
         if (drive.kind != Drive::Kind::gas) continue;
         all.push_back({Kind::ambient_pressure, 0, "ambient pressure", "Pa", d.ambient_pressure_Pa});
@@ -147,6 +154,11 @@ std::vector<Parameter> parameters(const Linearisation& at) {
             all.push_back({Kind::support_angle, s, owner + ": angle", "rad", support.turn.angle_rad});
     }
     add_contact(d, all);
+    if (const auto& inertia = at.controls().inertia) {
+        all.push_back({Kind::mass_damping, 0, "damping by mass", "1/s", inertia->damping().mass_per_s});
+        if (inertia->damping().stiffness_s > 0)
+            all.push_back({Kind::stiffness_damping, 0, "damping by stiffness", "s", inertia->damping().stiffness_s});
+    }
     return all;
 }
 

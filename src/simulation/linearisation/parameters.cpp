@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/contact_forces.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/material/law_parameters.hpp"
 
@@ -23,11 +24,12 @@ Derivative nothing(const Linearisation& at) {
             {Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())}};
 }
 
-/// Of a force (3n) that is added to the out-of-balance one.
+/// Of a force (3n), or with the nodes of obstacles, that is added to the out-of-balance one.
 Derivative by_force(const Linearisation& at, const Eigen::VectorXd& force) {
     Derivative by = nothing(at);
-    const Eigen::VectorXd free = at.system().restrict_to_free(force);
+    const Eigen::VectorXd free = at.system().restrict_to_free(force.head(at.state().x.size()));
     by.equations.head(free.size()) = free;
+    by.forces = force;
     return by;
 }
 
@@ -53,16 +55,8 @@ Derivative by_multiplier(const Linearisation& at, std::size_t actuator, double s
                                                    at.controls().shares[actuator]);
     Derivative by = by_force(at, force);
     by.direct.multipliers[static_cast<Eigen::Index>(actuator)] = sign;
+    by.forces.resize(0);  // it is the multiplier's
     return by;
-}
-
-/// Of a motion of the nodes that one support holds, as it wants it.
-Derivative by_support(Linearisation& at, std::size_t support, const std::function<Vec3(const Vec3& rest)>& wanted) {
-    const std::vector<Vec3>& rest = at.system().model().mesh().points;
-    return by_motion(at, at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
-        if (s != support) return Eigen::Vector3d::Zero();
-        return linalg::vector(wanted(rest[static_cast<std::size_t>(node)]));
-    }));
 }
 
 /// (3n) of a load at its full share, in the direction of `total`.
@@ -100,12 +94,11 @@ Eigen::VectorXd weight(const Linearisation& at, const Eigen::Vector3d& accelerat
 
 Derivative by_obstacle_share(const Linearisation& at, std::size_t obstacle) {
     const contact::Contact& contact = *at.system().model().contact(true);
-    const int first = contact.robot_node_count();
-    Eigen::VectorXd motion = Eigen::VectorXd::Zero(at.controls().obstacles.size());
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * contact.node_count());
     const Vec3& move = at.system().model().description().contact->obstacles[obstacle].move_m;
     for (int node = contact.first_node(obstacle); node < contact.first_node(obstacle + 1); ++node)
-        motion.segment<3>(3 * (node - first)) = linalg::vector(move);
-    return by_force(at, at.system().obstacle_stiffness_times(at.state(), at.controls(), motion));
+        motion.segment<3>(3 * static_cast<Eigen::Index>(node)) = linalg::vector(move);
+    return by_force(at, contact_stiffness_times(at.system(), at.state(), at.controls(), motion));
 }
 
 Derivative by_law(const Linearisation& at, const Parameter& by) {
@@ -121,11 +114,11 @@ Derivative by_law(const Linearisation& at, const Parameter& by) {
 Derivative by_density(const Linearisation& at, std::size_t material) {
     const Description& d = at.system().model().description();
     const Elements& elements = at.system().model().elements();
-    const std::vector<double> volume = tet_volumes(elements, material);
+    Eigen::VectorXd density = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(elements.tet_count()));
+    for (std::size_t t = 0; t < elements.tet_count(); ++t)
+        density[static_cast<Eigen::Index>(t)] = elements.material(t) == static_cast<int>(material) ? 1 : 0;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    add_weight(elements, material, -d.gravity_share.at(at.controls().time) * linalg::vector(d.gravity_m_s2), force);
-    if (at.controls().inertia)
-        elements.apply_mass(volume, view(at.controls().inertia->acceleration(at.state().x)), view(force));
+    add_density_force(elements, masses_at(d, at.controls(), at.state().x), density, force);
     return by_force(at, force);
 }
 
@@ -151,37 +144,25 @@ Derivative by_cable_friction(const Linearisation& at, const Parameter& by) {
     return by_force(at, force);
 }
 
-/// Robot and obstacle nodes, as contact knows them.
-std::vector<double> contact_positions(const Linearisation& at) {
-    std::vector<double> x(at.state().x.begin(), at.state().x.end());
-    x.insert(x.end(), at.controls().obstacles.begin(), at.controls().obstacles.end());
-    return x;
-}
-
 /// Of all contact forces, friction too: they are proportional to it.
 Derivative by_contact_stiffness(const Linearisation& at, double stiffness_Pa) {
-    const std::vector<double> x = contact_positions(at);
-    std::vector<double> forces(x.size(), 0.0);
-    if (const contact::Contact* contact = at.system().model().contact(at.controls().met)) {
-        contact->add_gradient(contact->find(x), x, forces);
-        if (at.controls().friction) at.controls().friction->add_gradient(x, forces);
-    }
-    return by_force(at, Eigen::Map<const Eigen::VectorXd>(forces.data(), at.state().x.size()) / stiffness_Pa);
+    const ContactForces forces = contact_forces(at.system(), at.state(), at.controls());
+    return by_force(at, (forces.pressure + forces.friction) / stiffness_Pa);
 }
 
 /// Of friction against one obstacle, or against itself (-1).
 Derivative by_friction(const Linearisation& at, int obstacle, double coefficient) {
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    if (!at.controls().friction) return by_force(at, force);
-    const std::vector<double> x = contact_positions(at);
-    const std::span<const contact::FrozenPair> pairs = at.controls().friction->pairs();
+    const Controls& controls = at.controls();
+    std::vector<double> x(at.state().x.begin(), at.state().x.end());
+    x.insert(x.end(), controls.obstacles.begin(), controls.obstacles.end());
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(x.size()));
+    if (!controls.friction) return by_force(at, force);
+    const std::span<const contact::FrozenPair> pairs = controls.friction->pairs();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         if (pairs[k].obstacle != obstacle) continue;
-        const Eigen::Vector3d on_first = linalg::vector(at.controls().friction->force(k, x)) / coefficient;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(pairs[k].node_count); ++i) {
-            if (pairs[k].nodes[i] < at.system().model().node_count())
-                force.segment<3>(3 * pairs[k].nodes[i]) -= pairs[k].weights[i] * on_first;
-        }
+        const Eigen::Vector3d on_first = linalg::vector(controls.friction->force(k, x)) / coefficient;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(pairs[k].node_count); ++i)
+            force.segment<3>(3 * static_cast<Eigen::Index>(pairs[k].nodes[i])) -= pairs[k].weights[i] * on_first;
     }
     return by_force(at, force);
 }
@@ -199,13 +180,71 @@ Derivative by_ambient_pressure(const Linearisation& at) {
     return by;
 }
 
+Derivative by_gap_weight(const Linearisation& at, std::size_t growth) {
+    const auto& growths = at.system().model().description().growths;
+    const auto cable = static_cast<std::size_t>(growths[growth].actuator);
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    at.system().actuators()[cable].gaps()->add_weight_force(view(at.state().x),
+                                                            at.state().multiplier[static_cast<Eigen::Index>(cable)],
+                                                            growth, view(force));
+    return by_force(at, force);
+}
+
+/// What damps is in proportion to it.
+Derivative by_damping(const Linearisation& at, bool by_mass) {
+    const Inertia& inertia = *at.controls().inertia;
+    const Eigen::VectorXd velocity = inertia.velocity(at.state().x);
+    return by_force(at, by_mass ? inertia.mass_times(velocity) : inertia.stiffness_times(velocity));
+}
+
+bool is_of_support(Kind kind) {
+    return kind == Kind::support_share || kind == Kind::support_move || kind == Kind::support_angle;
+}
+
+/// The motion (3n) of held nodes for each unit of a number of a support.
+Eigen::VectorXd support_motion(const Linearisation& at, const Parameter& by) {
+    const Description& d = at.system().model().description();
+    const Support& support = d.supports[by.index];
+    const double share = at.controls().support_share[by.index];
+    const std::vector<Vec3>& rest = at.system().model().mesh().points;
+    return at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
+        if (s != by.index) return Eigen::Vector3d::Zero();
+        const Vec3& p = rest[static_cast<std::size_t>(node)];
+        if (by.kind == Kind::support_share) return linalg::vector(support.velocity(p, share));
+        if (by.kind == Kind::support_angle) return linalg::vector(support.arc(p, share));
+        return share * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(by.part));
+    });
+}
+
+/// Of all plates, with weights of the forces.
+double plate_product(const Linearisation& at, const Adjoint& adjoint) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    add_plate_force(at, 1, force);
+    return at.force_weights(adjoint).head(force.size()).dot(force);
+}
+
+/// Of all tets of each material.
+struct Sums {
+    Eigen::MatrixXd constants;  ///< (constants, materials)
+    Eigen::VectorXd density;    ///< (materials)
+};
+Sums sums_of(const Elements& elements, std::size_t materials, const TetDerivatives& tets) {
+    Sums sums{Eigen::MatrixXd::Zero(tets.constants.rows(), static_cast<Eigen::Index>(materials)),
+              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(materials))};
+    for (Eigen::Index t = 0; t < tets.density.size(); ++t) {
+        const int material = elements.material(static_cast<std::size_t>(t));
+        sums.constants.col(material) += tets.constants.col(t);
+        sums.density[material] += tets.density[t];
+    }
+    return sums;
+}
+
 }  // namespace
 
 Derivative derivative(Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
     const double time = at.controls().time;
     const auto axis = [&] { return Eigen::Vector3d(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(by.part))); };
-    const auto share = [&] { return at.controls().support_share[by.index]; };
     switch (by.kind) {
         case Kind::length:
             return by_wanted(at, by.index, -weighted_share(at, by.index));
@@ -219,7 +258,9 @@ Derivative derivative(Linearisation& at, const Parameter& by) {
         case Kind::pressure:
             return by_multiplier(at, by.index, -1);
         case Kind::support_share:
-            return by_support(at, by.index, [&](const Vec3& p) { return d.supports[by.index].velocity(p, share()); });
+        case Kind::support_move:
+        case Kind::support_angle:
+            return by_motion(at, support_motion(at, by));
         case Kind::load_share:
             return by_force(at, -spread(at, d.loads[by.index], linalg::vector(d.loads[by.index].force_N)));
         case Kind::gravity_share:
@@ -245,45 +286,65 @@ Derivative derivative(Linearisation& at, const Parameter& by) {
             return by_force(at, -d.gravity_share.at(time) * weight(at, axis()));
         case Kind::ambient_pressure:
             return by_ambient_pressure(at);
-        case Kind::support_move:
-            return by_support(at, by.index, [&](const Vec3&) {
-                const Eigen::Vector3d move = share() * axis();
-                return Vec3{move[0], move[1], move[2]};
-            });
-        case Kind::support_angle:
-            return by_support(at, by.index, [&](const Vec3& p) { return d.supports[by.index].arc(p, share()); });
         case Kind::contact_stiffness:
             return by_contact_stiffness(at, by.value);
         case Kind::self_friction:
             return by_friction(at, -1, by.value);
         case Kind::obstacle_friction:
             return by_friction(at, static_cast<int>(by.index), by.value);
+        case Kind::gap_weight:
+            return by_gap_weight(at, by.index);
+        case Kind::mass_damping:
+        case Kind::stiffness_damping:
+            return by_damping(at, by.kind == Kind::mass_damping);
     }
     return nothing(at);
 }
 
-Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by) {
+TetDerivatives tet_derivatives(const Linearisation& at, const Adjoint& adjoint) {
     const Description& d = at.system().model().description();
-    const bool any = std::ranges::any_of(by, [](const Parameter& p) { return p.kind == Kind::law; });
-    const Eigen::VectorXd weights = at.change_of(adjoint.weights).positions;
-    std::vector<std::vector<double>> products;
-    double plates = 0;
-    if (any) {
-        products = law_products(at.system().model().elements(), d, at.state().x, weights);
-        Eigen::VectorXd force = Eigen::VectorXd::Zero(weights.size());
-        add_plate_force(at, 1, force);
-        plates = weights.dot(force);
-    }
+    const Elements& elements = at.system().model().elements();
+    const Eigen::VectorXd weights = at.force_weights(adjoint).head(at.state().x.size());
+    return {law_products(elements, d, at.state().x, weights),
+            density_products(elements, masses_at(d, at.controls(), at.state().x), weights)};
+}
+
+Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by) {
+    const auto of_material = [](const Parameter& p) { return p.kind == Kind::law || p.kind == Kind::density; };
+    if (std::ranges::none_of(by, of_material)) return derivatives(at, adjoint, by, {});
+    return derivatives(at, adjoint, by, tet_derivatives(at, adjoint));
+}
+
+Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by,
+                            const TetDerivatives& tets) {
+    const Description& d = at.system().model().description();
+    const Sums of = sums_of(at.system().model().elements(), d.materials.size(), tets);
+    const auto moves = [](const Parameter& p) { return is_of_support(p.kind); };
+    const Eigen::VectorXd held = std::ranges::any_of(by, moves)
+                                     ? Eigen::VectorXd(adjoint.quantity.by_positions - at.motion_weights(adjoint.weights))
+                                     : Eigen::VectorXd();
+    std::optional<double> plates;
     Eigen::VectorXd all(static_cast<Eigen::Index>(by.size()));
     for (std::size_t k = 0; k < by.size(); ++k) {
         double& result = all[static_cast<Eigen::Index>(k)];
-        if (by[k].kind != Kind::law) {
+        const auto owner = static_cast<Eigen::Index>(by[k].index);
+        if (by[k].kind == Kind::density) {
+            result = of.density[owner];
+        } else if (is_of_support(by[k].kind)) {
+            result = held.dot(support_motion(at, by[k]));
+        } else if (by[k].kind != Kind::law) {
             result = adjoint.derivative(derivative(at, by[k]));
-            continue;
+        } else {
+            const std::vector<double> direction =
+                material::parameters(d.materials[by[k].index].law)[by[k].part].direction;
+            result = 0;
+            for (std::size_t c = 0; c < direction.size(); ++c)
+                result += direction[c] * of.constants(static_cast<Eigen::Index>(c), owner);
+            const double stiffer = stiffness_rate(d, by[k].index, direction);
+            if (stiffer == 0 || at.system().plates().empty()) continue;
+            if (!plates) plates = plate_product(at, adjoint);
+            result += stiffer * *plates;
         }
-        const std::vector<double> direction = material::parameters(d.materials[by[k].index].law)[by[k].part].direction;
-        result = -stiffness_rate(d, by[k].index, direction) * plates;
-        for (std::size_t c = 0; c < direction.size(); ++c) result -= direction[c] * products[by[k].index][c];
     }
     return all;
 }

@@ -38,6 +38,9 @@ struct Parameter {
         contact_stiffness,   ///< Pa
         self_friction,       ///< coefficient of the robot against itself, as it is lagged
         obstacle_friction,   ///< coefficient of the robot against an obstacle, as it is lagged
+        gap_weight,          ///< of the elements of a gap that a cable passes, Pa; index: of the growth
+        mass_damping,        ///< of a motion in time, 1/s
+        stiffness_damping,   ///< of a motion in time, s
     };
     Kind kind = Kind::length;
     std::size_t index = 0;  ///< of the actuator (cables, chambers, pressure loads, in this order), support, material...
@@ -63,7 +66,20 @@ struct Parameter {
 /// springs of plates follow the stiffest law, as they do where a model is built anew.
 [[nodiscard]] Derivative derivative(Linearisation& at, const Parameter& by);
 
-/// dq/dp for many parameters, with one look at every tet for all laws together.
+/// dq/dp for many parameters, with one look at every tet for all laws and densities together.
 [[nodiscard]] Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by);
+
+/// dq/dp of what each tet is made of, as if each had a material of its own. What a rigid plate takes from the stiffest
+/// material is not in it.
+struct TetDerivatives {
+    /// (most constants, tets) by each constant of the tet's own law, in the order of material::stress_by_constants();
+    /// 0 where a law has fewer. By Young's modulus: times the direction of that number, material::parameters().
+    Eigen::MatrixXd constants;
+    Eigen::VectorXd density;  ///< (tets)
+};
+[[nodiscard]] TetDerivatives tet_derivatives(const Linearisation& at, const Adjoint& adjoint);
+/// As above, where those are at hand.
+[[nodiscard]] Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by,
+                                          const TetDerivatives& tets);
 
 }  // namespace pliant::sim

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/core/near.hpp"
+#include "simulation/linearisation/test_parameters.hpp"
 #include "simulation/linearisation/test_robots.hpp"
-#include "simulation/material/law_parameters.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -17,82 +17,27 @@ namespace {
 
 using Kind = Parameter::Kind;
 
-Description with_value(Description d, const Parameter& p, double value) {
-    switch (p.kind) {
-        case Kind::law:
-            d.materials[p.index].law = material::with_parameter(d.materials[p.index].law, p.part, value);
-            break;
-        case Kind::density:
-            d.materials[p.index].density_kg_m3 = value;
-            break;
-        case Kind::spring_stiffness:
-            d.springs[p.index].stiffness_N_m = value;
-            break;
-        case Kind::spring_free_length:
-            d.springs[p.index].free_length_m = value;
-            break;
-        case Kind::cable_friction:
-            d.cables[p.index].friction = value;
-            break;
-        case Kind::load_force:
-            d.loads[p.index].force_N[p.part] = value;
-            break;
-        case Kind::load_pressure:
-            d.pressures[p.index].pressure_Pa = value;
-            break;
-        case Kind::gravity:
-            d.gravity_m_s2[p.part] = value;
-            break;
-        case Kind::ambient_pressure:
-            d.ambient_pressure_Pa = value;
-            break;
-        case Kind::support_move:
-            d.supports[p.index].move_m[p.part] = value;
-            break;
-        case Kind::support_angle:
-            d.supports[p.index].turn.angle_rad = value;
-            break;
-        case Kind::contact_stiffness:
-            d.contact->settings.stiffness_Pa = value;
-            break;
-        case Kind::self_friction:
-            d.contact->settings.friction = value;
-            break;
-        case Kind::obstacle_friction:
-            d.contact->obstacles[p.index].body.friction = value;
-            break;
-        default:
-            FAIL("not a number of the robot");
-    }
-    return d;
-}
-
-/// The controls of a robot at the state that is looked at.
-using ControlsOf = std::function<Controls(Equilibrium&)>;
+/// The controls of a robot at the state that is looked at, in motion with so much more damping.
+using ControlsOf = std::function<Controls(Equilibrium&, const Damping& more)>;
 
 /// Of a robot with another value of p: the equations at the same unknowns.
 Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, double value,
                                const ControlsOf& controls_of) {
     Case other(with_value(at.system().model().description(), p, value));
-    Controls controls = controls_of(other.system);
+    Damping more;
+    if (p.kind == Kind::mass_damping) more.mass_per_s = value - p.value;
+    if (p.kind == Kind::stiffness_damping) more.stiffness_s = value - p.value;
+    Controls controls = controls_of(other.system, more);
     if (p.kind == Kind::ambient_pressure) controls.drives = at.controls().drives;
     State state = at.state();
     other.system.place_supports(controls, state.x);
     return at.equations(other.system, state, controls);
 }
 
-/// By which a value may move: of what is zero, the size of its kind.
-double size_of(const Parameter& p) {
-    if (p.name.ends_with("poisson_ratio")) return 0.5 - p.value;
-    if (p.kind == Kind::gravity) return 10;
-    if (p.kind == Kind::support_move) return 0.1 * edge;
-    return p.value != 0 ? std::fabs(p.value) : 1;
-}
-
 /// Worst relative error of all parameters of a state; and derivatives of a quantity by all of them at once.
 double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set<Kind>& seen) {
-    c.system.place_supports(controls_of(c.system), state.x);
-    Linearisation at = c.at(state, controls_of(c.system));
+    c.system.place_supports(controls_of(c.system, {}), state.x);
+    Linearisation at = c.at(state, controls_of(c.system, {}));
     Noise noise(9);
     const Eigen::VectorXd weights = some_direction(at, Side::transposed, noise);
     const Quantity none{Eigen::VectorXd::Zero(state.x.size()), Eigen::VectorXd::Zero(state.multiplier.size())};
@@ -137,7 +82,7 @@ TEST_CASE("every law's numbers and density, of either order") {
             Case c(std::move(d));
             worst = std::max(worst, worst_error(
                                         c, disturbed(c.system, 0, 0),
-                                        [](Equilibrium& system) { return system.controls(0.7); }, seen));
+                                        [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
         }
     }
     MESSAGE("laws: ", worst);
@@ -164,7 +109,7 @@ TEST_CASE("springs, loads, supports, gas, friction of a cable") {
     Case c(std::move(d));
     State state = disturbed(c.system, 0.5, 2e3);
     c.system.place_supports(c.system.controls(0.3), state.x);  // friction is lagged at these positions
-    const auto controls_of = [&](Equilibrium& system) {
+    const auto controls_of = [&](Equilibrium& system, const Damping&) {
         Controls controls = system.controls(0.3);
         std::vector<Drive> wanted = controls.drives;
         wanted[0].value = system.actuators()[0].measure({state.x.data(), static_cast<std::size_t>(state.x.size())});
@@ -185,7 +130,7 @@ TEST_CASE("contact and its friction") {
     State start = at.state;
     Noise noise(6);
     for (double& entry : start.x) entry += 0.02 * edge * noise();
-    const auto controls_of = [&](Equilibrium& system) {
+    const auto controls_of = [&](Equilibrium& system, const Damping&) {
         Controls controls = system.controls(0.9);
         controls.friction = system.freeze_friction(at.state, start, controls, system.controls(0.8));
         return controls;
@@ -196,20 +141,46 @@ TEST_CASE("contact and its friction") {
         CHECK(seen.contains(kind));
 }
 
-TEST_CASE("a density in motion") {
+TEST_CASE("the weights of gaps that a cable closes") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    d.mesh.region_names = {"solid", "gap", "wide gap"};
+    d.materials.push_back({"gap", gap_law(1e6), 0});
+    d.materials.push_back({"wide gap", gap_law(1e6), 0});
+    d.material_of_region = {0, 1, 2};
+    for (std::size_t t = 0; t < 7; ++t) d.mesh.region[t] = t < 4 ? 1 : 2;
+    d.growths = {{1, {1, 0, 0}, 0, 1e5, edge, {1.5 * edge, 0.5 * edge, 0.9 * edge}},
+                 {2, {0.8, 0.6, 0}, 0, 3e5, 0.5 * edge, {1.5 * edge, 0.5 * edge, 0.9 * edge}}};
+    Case c(std::move(d));
+    std::set<Kind> seen;
+    MESSAGE("gaps: ", worst_error(
+                          c, disturbed(c.system, 0.5, 0),
+                          [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
+    CHECK(seen.contains(Kind::gap_weight));
+}
+
+TEST_CASE("a density and damping in motion") {
     Description d = plain(2);
     d.gravity_m_s2 = {0, 3, -9.81};
     Case c(std::move(d));
     const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
     const History history{before.x, before.x - rest.x, rest.x, before.x, 0};
-    const auto controls_of = [&](Equilibrium& system) {
+    const auto layout = std::make_shared<const TangentLayout>(c.system.lay_out_tangent());
+    const auto stiffness = std::make_shared<StiffnessMatrix>();
+    stiffness->pattern = {layout, &layout->pattern};
+    stiffness->values.assign(layout->pattern.entries(), 0.0);
+    c.model.elements().add_tangent(linalg::view(before.x), layout->element_sums, stiffness->values, true);
+    const auto controls_of = [&](Equilibrium& system, const Damping& more) {
         Controls controls = system.controls(0.7);
+        const Damping damping{2 + more.mass_per_s, 3e-4 + more.stiffness_s};
         controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
-                                                           history, 1e-3, Damping{2, 0}, nullptr);
+                                                           history, 1e-3, damping, stiffness);
         return controls;
     };
     std::set<Kind> seen;
     MESSAGE("in motion: ", worst_error(c, disturbed(c.system, 0, 0), controls_of, seen));
+    CHECK(seen.contains(Kind::mass_damping));
+    CHECK(seen.contains(Kind::stiffness_damping));
 }
 
 TEST_CASE("every number has a name of its own, a unit and its value") {

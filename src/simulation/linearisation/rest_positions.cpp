@@ -17,22 +17,6 @@ Eigen::VectorXd zeros(const Linearisation& at) {
     return Eigen::VectorXd::Zero(at.state().x.size());
 }
 
-Status check_known(const Linearisation& at) {
-    for (const Actuator& actuator : at.system().actuators()) {
-        if (actuator.gaps() != nullptr) return failure("derivatives by rest positions do not know gap elements");
-    }
-    return {};
-}
-
-Masses masses_of(const Linearisation& at) {
-    const Description& d = at.system().model().description();
-    Masses masses;
-    for (const Material& material : d.materials) masses.density_kg_m3.push_back(material.density_kg_m3);
-    masses.weight = -d.gravity_share.at(at.controls().time) * linalg::vector(d.gravity_m_s2);
-    if (at.controls().inertia) masses.acceleration = at.controls().inertia->acceleration(at.state().x);
-    return masses;
-}
-
 /// (3n) of the volume of the straight tets, over that volume: that of their mean size, which makes plates stiff, is a
 /// third of it.
 Eigen::VectorXd volume_gradient(const mesh::TetMesh& mesh) {
@@ -77,6 +61,15 @@ void visit_free_springs(const Linearisation& at, const Visit& visit) {
     }
 }
 
+template <class Visit>
+void visit_gaps(const Linearisation& at, const Visit& visit) {
+    const auto& actuators = at.system().actuators();
+    for (std::size_t a = 0; a < actuators.size(); ++a) {
+        if (actuators[a].gaps() != nullptr)
+            visit(*actuators[a].gaps(), at.state().multiplier[static_cast<Eigen::Index>(a)]);
+    }
+}
+
 /// The motion (3n) of held nodes with that of their rest positions.
 Eigen::VectorXd held_motion(const Linearisation& at, const Eigen::VectorXd& motion) {
     const Description& d = at.system().model().description();
@@ -100,35 +93,40 @@ Eigen::VectorXd held_weights(const Linearisation& at, const Eigen::VectorXd& wei
 
 }  // namespace
 
-Result<Derivative> derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) {
-    if (Status status = check_known(at); !status) return tl::unexpected(status.error());
+Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) {
     const Equilibrium& system = at.system();
     Eigen::VectorXd force = zeros(at);
-    add_rest_product(system.model().elements(), masses_of(at), at.state().x, motion, force);
+    add_rest_product(system.model().elements(), masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, motion, force);
     for (const Plate& plate : system.plates()) plate.add_rest_product(view(at.state().x), view(motion), view(force));
     if (!system.plates().empty()) force += volume_gradient(system.model().mesh()).dot(motion) / 3 * plate_forces(at);
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         force += at_rest.dot(motion) * by_length;
     });
+    visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
+        gaps.add_rest_product(system.model().elements(), view(at.state().x), multiplier, view(motion), view(force));
+    });
     const Eigen::VectorXd held = held_motion(at, motion);
     Derivative by{at.equations_of_motion(held), {held, Eigen::VectorXd::Zero(at.state().multiplier.size())}};
     const Eigen::VectorXd free = system.restrict_to_free(force);
     by.equations.head(free.size()) += free;
+    by.forces = std::move(force);
     return by;
 }
 
-Result<Eigen::VectorXd> rest_gradient(Linearisation& at, const Adjoint& adjoint) {
-    if (Status status = check_known(at); !status) return tl::unexpected(status.error());
+Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
     const Equilibrium& system = at.system();
-    const Eigen::VectorXd weights = at.change_of(adjoint.weights).positions;
+    const Eigen::VectorXd weights = at.force_weights(adjoint).head(at.state().x.size());
     Eigen::VectorXd sum = zeros(at);
-    add_rest_weights(system.model().elements(), masses_of(at), at.state().x, weights, sum);
+    add_rest_weights(system.model().elements(), masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, weights, sum);
     for (const Plate& plate : system.plates()) plate.add_rest_weights(view(at.state().x), view(weights), view(sum));
     if (!system.plates().empty()) sum += weights.dot(plate_forces(at)) / 3 * volume_gradient(system.model().mesh());
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         sum += by_length.dot(weights) * at_rest;
     });
-    return held_weights(at, adjoint.quantity.by_positions - at.motion_weights(adjoint.weights)) - sum;
+    visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
+        gaps.add_rest_weights(system.model().elements(), view(at.state().x), multiplier, view(weights), view(sum));
+    });
+    return held_weights(at, adjoint.quantity.by_positions - at.motion_weights(adjoint.weights)) + sum;
 }
 
 Eigen::VectorXd rest_measure_gradient(const Equilibrium& system, std::size_t actuator) {

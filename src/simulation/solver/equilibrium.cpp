@@ -111,9 +111,10 @@ void Equilibrium::add_actuators() {
 std::optional<GapElements> Equilibrium::gap_elements_of(std::size_t cable) const {
     const Description& d = model_->description();
     std::vector<GapElements::Gap> gaps;
-    for (const Growth& growth : d.growths) {
+    for (std::size_t k = 0; k < d.growths.size(); ++k) {
+        const Growth& growth = d.growths[k];
         if (growth.actuator != static_cast<int>(cable)) continue;
-        GapElements::Gap gap{{}, growth.direction, growth.length_m, growth.weight_Pa};
+        GapElements::Gap gap{{}, growth.direction, growth.length_m, growth.weight_Pa, k};
         for (std::size_t t = 0; t < model_->elements().tet_count(); ++t) {
             if (model_->elements().material(t) == growth.material && is_nearest(d, t, growth)) gap.tets.push_back(t);
         }
@@ -519,21 +520,6 @@ void Equilibrium::add_skew(const State& state, const TangentLayout& layout, std:
     for (const std::size_t a : patches)
         actuators_[a].add_skew(view(state.x), state.multiplier[static_cast<Eigen::Index>(a)], index, layout.pattern,
                                values);
-}
-
-Eigen::VectorXd Equilibrium::obstacle_stiffness_times(const State& state, const Controls& controls,
-                                                      const Eigen::VectorXd& motion) const {
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(state.x.size());
-    const contact::Contact* contact = this->contact(controls);
-    if (contact == nullptr) return change;
-    const int robot = model_->node_count();
-    const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
-        if (a < robot && b >= robot) change.segment<3>(3 * a) += block * motion.segment<3>(3 * (b - robot));
-    };
-    const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
-    contact->visit_hessian(contact->find(x), x, false, add);
-    if (controls.friction) controls.friction->visit_hessian(x, add);
-    return change;
 }
 
 void Equilibrium::decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const {

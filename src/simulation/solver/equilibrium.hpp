@@ -119,11 +119,6 @@ public:
     /// all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below the
     /// diagonal.
     void add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const;
-    /// (3n) the change of the out-of-balance force with a motion of the obstacles (3 obstacle nodes). Zero without
-    /// contact.
-    [[nodiscard]] Eigen::VectorXd obstacle_stiffness_times(const State& state, const Controls& controls,
-                                                           const Eigen::VectorXd& motion) const;
-
     /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
     /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
     [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
