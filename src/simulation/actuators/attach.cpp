@@ -11,6 +11,7 @@ namespace pliant::sim {
 namespace {
 
 constexpr std::size_t largest_patch = 64;
+constexpr double reach_beyond = 1.05;  // of the farthest node of the tet that holds the point
 
 /// Keeps the nearest nodes and an even sample of the others.
 void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& center) {
@@ -52,6 +53,52 @@ std::vector<double> weights_beyond(int order, const std::array<double, 4>& b, co
     }
     return weights;
 }
+
+/// w_i = k_i m_i . a with M a = (1, 0, 0, 0), M = sum k_i m_i m_i^T, m_i = (1, o_i), k_i = (1 - o_i . o_i)^2 and
+/// o_i = (X_i - point) / reach.
+class MovingLeastSquares {
+public:
+    MovingLeastSquares(const std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& point, double reach)
+        : reach_(reach), moments_(static_cast<Eigen::Index>(nodes.size()), 4), kernel_(moments_.rows()) {
+        for (Eigen::Index i = 0; i < kernel_.size(); ++i) {
+            const Vec3 offset =
+                (points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])] - point) / reach;
+            moments_.row(i) << 1, offset.x, offset.y, offset.z;
+            const double fall = 1 - dot(offset, offset);
+            kernel_[i] = fall * fall;
+        }
+        matrix_ = moments_.transpose() * kernel_.asDiagonal() * moments_;
+        a_ = matrix_.ldlt().solve(Eigen::Vector4d::Unit(0));
+        weights_ = kernel_.asDiagonal() * (moments_ * a_);
+    }
+    /// They reproduce affine functions.
+    [[nodiscard]] bool good() const {
+        return weights_.allFinite() && !((moments_.transpose() * weights_ - Eigen::Vector4d::Unit(0)).norm() > 1e-9);
+    }
+    [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
+    /// How fast the weights change as the point moves along `direction` and the reach grows by `of_reach`.
+    [[nodiscard]] Eigen::VectorXd change(const Eigen::Vector3d& direction, double of_reach) const {
+        const Eigen::MatrixXd offsets = moments_.rightCols<3>();
+        Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(moments_.rows(), 4);
+        moments.rightCols<3>() = -of_reach / reach_ * offsets;
+        moments.rightCols<3>().rowwise() -= direction.transpose() / reach_;
+        const Eigen::VectorXd fall = 1 - offsets.rowwise().squaredNorm().array();
+        const Eigen::VectorXd kernel =
+            -4 * fall.array() * offsets.cwiseProduct(moments.rightCols<3>()).rowwise().sum().array();
+        const Eigen::Matrix4d half = moments.transpose() * kernel_.asDiagonal() * moments_;
+        const Eigen::Matrix4d matrix = moments_.transpose() * kernel.asDiagonal() * moments_ + half + half.transpose();
+        const Eigen::Vector4d a = matrix_.ldlt().solve(-matrix * a_);
+        return kernel.cwiseProduct(moments_ * a_) + kernel_.cwiseProduct(moments * a_ + moments_ * a);
+    }
+
+private:
+    double reach_;
+    Eigen::MatrixXd moments_;  ///< (nodes, 4)
+    Eigen::VectorXd kernel_;
+    Eigen::Matrix4d matrix_;
+    Eigen::Vector4d a_;
+    Eigen::VectorXd weights_;
+};
 
 }  // namespace
 
@@ -106,32 +153,66 @@ std::vector<int> Attacher::connected_nodes_within(int tet, const Vec3& point, do
     return found;
 }
 
+Attacher::Patch Attacher::patch_at(int tet, const Vec3& point, double radius) const {
+    Patch patch;
+    patch.reach = radius;
+    for (const int node : mesh_->tet(static_cast<std::size_t>(tet))) {
+        const double wanted = reach_beyond * norm(mesh_->points[static_cast<std::size_t>(node)] - point);
+        if (wanted > patch.reach) patch.farthest = node;
+        patch.reach = std::max(patch.reach, wanted);
+    }
+    patch.nodes = connected_nodes_within(tet, point, patch.reach);
+    thin_out(patch.nodes, mesh_->points, point);
+    return patch;
+}
+
 Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tolerance) const {
     if (radius <= 0) return carried_by_tet(point, tolerance);
     const auto location = locate(point, tolerance);
     if (!location) return tl::unexpected(location.error());
-    double reach = radius;
-    for (const int node : mesh_->tet(static_cast<std::size_t>(location->tet))) {
-        reach = std::max(reach, 1.05 * norm(mesh_->points[node] - point));
-    }
-    std::vector<int> nodes = connected_nodes_within(location->tet, point, reach);
-    thin_out(nodes, mesh_->points, point);
+    Patch patch = patch_at(location->tet, point, radius);
+    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    if (!fit.good()) return carried_by_tet(point, tolerance);
+    return Attachment{
+        std::move(patch.nodes), {fit.weights().data(), fit.weights().data() + fit.weights().size()}, {}};
+}
 
-    Eigen::MatrixXd moments(nodes.size(), 4);
-    Eigen::VectorXd kernel(static_cast<Eigen::Index>(nodes.size()));
-    for (Eigen::Index i = 0; i < kernel.size(); ++i) {
-        const Vec3 offset = (mesh_->points[nodes[static_cast<std::size_t>(i)]] - point) / reach;
-        moments.row(i) << 1, offset.x, offset.y, offset.z;
-        const double fall = 1 - dot(offset, offset);
-        kernel[i] = fall * fall;
+Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double tolerance) const {
+    const auto location = locate(point, tolerance);
+    if (!location) return tl::unexpected(location.error());
+    if (radius <= 0) return slope_in_tet(*location);
+    Patch patch = patch_at(location->tet, point, radius);
+    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    if (!fit.good()) return slope_in_tet(*location);
+    Vec3 of_reach;
+    if (patch.farthest >= 0)
+        of_reach = reach_beyond * unit(point - mesh_->points[static_cast<std::size_t>(patch.farthest)]);
+    AttachmentSlope slope{std::move(patch.nodes), {}};
+    const std::array<Eigen::VectorXd, 3> by = {fit.change({1, 0, 0}, of_reach.x), fit.change({0, 1, 0}, of_reach.y),
+                                               fit.change({0, 0, 1}, of_reach.z)};
+    for (Eigen::Index i = 0; i < by[0].size(); ++i) slope.weights.push_back({by[0][i], by[1][i], by[2][i]});
+    return slope;
+}
+
+/// Outside a tet its shape functions go on along their slope at the nearest point, so that there the slope is that one.
+AttachmentSlope Attacher::slope_in_tet(const mesh::TetLocator::Location& at) const {
+    const auto corners = mesh::nodes_of(*mesh_, static_cast<std::size_t>(at.tet));
+    const auto column = mesh::curved_derivative(corners, at.barycentric);
+    Eigen::Matrix3d jacobian;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 edge = column[k + 1] - column[0];
+        jacobian.col(static_cast<Eigen::Index>(k)) << edge.x, edge.y, edge.z;
     }
-    const Eigen::Matrix4d M = moments.transpose() * kernel.asDiagonal() * moments;
-    const Eigen::Vector4d a = M.ldlt().solve(Eigen::Vector4d::Unit(0));
-    const Eigen::VectorXd weights = kernel.asDiagonal() * (moments * a);
-    if (!weights.allFinite() || (moments.transpose() * weights - Eigen::Vector4d::Unit(0)).norm() > 1e-9) {
-        return carried_by_tet(point, tolerance);
+    const Eigen::Matrix3d inverse = jacobian.fullPivLu().inverse();
+    const auto nodes = mesh_->tet(static_cast<std::size_t>(at.tet));
+    AttachmentSlope slope{{nodes.begin(), nodes.end()}, std::vector<Vec3>(nodes.size())};
+    const std::vector<double> here = mesh::shape_functions(mesh_->order, at.barycentric);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Eigen::Vector3d d = inverse.col(static_cast<Eigen::Index>(c));
+        const std::vector<double> on = weights_beyond(mesh_->order, at.barycentric, {-d.sum(), d[0], d[1], d[2]});
+        for (std::size_t a = 0; a < nodes.size(); ++a) slope.weights[a][c] = on[a] - here[a];
     }
-    return Attachment{std::move(nodes), {weights.data(), weights.data() + weights.size()}, {}};
+    return slope;
 }
 
 Wall wall_of_faces(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces, std::span<const int> index) {

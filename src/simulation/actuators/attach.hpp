@@ -11,6 +11,13 @@
 
 namespace pliant::sim {
 
+/// How an attachment changes with the rest position of its point: of each node the change of its weight, 1/m. Without
+/// nodes the point is fixed in space and moves itself.
+struct AttachmentSlope {
+    std::vector<int> nodes;
+    std::vector<Vec3> weights;
+};
+
 /// Built once per mesh; the mesh must outlive it. Lengths are in the mesh's unit.
 class Attacher {
 public:
@@ -31,7 +38,18 @@ public:
     /// uses at most 64 nodes.
     [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
 
+    /// How the attachment that spread() gives changes with the point, for as long as the nodes of its patch, or the tet
+    /// that holds the point, stay the same. Its errors.
+    [[nodiscard]] Result<AttachmentSlope> slope(const Vec3& point, double radius, double tolerance) const;
+
 private:
+    struct Patch {
+        std::vector<int> nodes;
+        double reach = 0;
+        int farthest = -1;  ///< node of the tet that the reach is about; -1: it is the radius
+    };
+    [[nodiscard]] Patch patch_at(int tet, const Vec3& point, double radius) const;
+    [[nodiscard]] AttachmentSlope slope_in_tet(const mesh::TetLocator::Location& at) const;
     [[nodiscard]] Result<mesh::TetLocator::Location> locate(const Vec3& point, double tolerance) const;
     [[nodiscard]] std::vector<int> connected_nodes_within(int tet, const Vec3& point, double radius) const;
 

@@ -42,6 +42,15 @@ public:
     /// since). A negative friction is that of a cable that is let go. Source: Euler 1769, Eytelwein 1808.
     [[nodiscard]] std::vector<double> tension_shares(std::span<const double> x, double friction,
                                                      bool pulled_at_first) const;
+    [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
+    /// d_k, m; and how it moves as the nodes move (3n).
+    [[nodiscard]] Vec3 segment_vector(std::size_t k, std::span<const double> x) const {
+        return vector_of(segments_[k], x);
+    }
+    [[nodiscard]] Vec3 segment_motion(std::size_t k, std::span<const double> motion) const {
+        return vector_of(segments_[k], motion) - segments_[k].offset;
+    }
+    [[nodiscard]] double met_length_m() const { return met_length_m_; }
     /// The first segment whose ends have met (its index from 0), or -1.
     [[nodiscard]] int closed_segment(std::span<const double> x) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/core/vec3.hpp"
+#include "base/linalg/small.hpp"
 #include "base/linalg/sparse.hpp"
 #include "robot/description/law.hpp"
 #include "simulation/parts/robot_names.hpp"
@@ -63,8 +64,12 @@ public:
     [[nodiscard]] double scale(double m) const { return 1 - m / stiffness_N_; }
     /// What of m is left to close the gaps, N, once their elements have been shortened: c (M/L - s).
     [[nodiscard]] double tension(std::span<const double> x, double m) const;
-    /// c / L, N/m: how that changes with M.
+    /// c / L, N/m: how that changes with M; with weight_Pa of a gap, m^2; and result (3n) += factor * how it changes with
+    /// the rest positions. What stays is as in add_rest_product().
     [[nodiscard]] double tension_rate() const { return stiffness_N_ / length_m_; }
+    [[nodiscard]] double tension_by_weight(std::span<const double> x, std::size_t gap_number) const;
+    void add_tension_rest_gradient(const Elements& elements, std::span<const double> x, double factor,
+                                   std::span<double> result) const;
 
     /// forces (3n) += the change of the gradient of E at m with a motion (3n) of the rest positions, d and the lengths
     /// of the cable in the gaps as they are; and result (3n) += its transpose times `weights` (3n). `elements`: those
@@ -109,6 +114,11 @@ private:
     };
     [[nodiscard]] Growths growths(const Elements& elements, std::span<const double> motion) const;
     [[nodiscard]] std::vector<double> volumes(const Elements& elements) const;
+    [[nodiscard]] std::size_t place_of(std::size_t gap_number) const;
+    /// result (3n) += the transpose of what a motion's gradients L do: `by_gradient` (points) by L, beside what the
+    /// growth of all gaps together and of each (gaps) do.
+    void spread(const Elements& elements, const std::vector<linalg::Matrix3>& by_gradient, double by_whole,
+                const std::vector<double>& by_gap, std::span<double> result) const;
     double stiffness_N_ = 0;           ///< c
     double length_m_ = 0;              ///< L
 };

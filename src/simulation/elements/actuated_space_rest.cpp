@@ -76,11 +76,9 @@ void GapElements::add_rest_product(const Elements& elements, std::span<const dou
 void GapElements::add_rest_weights(const Elements& elements, std::span<const double> x, double m,
                                    std::span<const double> weights, std::span<double> result) const {
     const double s = scale(m);
-    const std::vector<double> volume = volumes(elements);
-    std::vector<double> of_gap(volume.size(), 0.0);  // by the growth of each gap, and of all together
-    double of_all = 0, whole = 0;
-    for (const double v : volume) whole += v;
-    std::vector<Matrix3> by_motion;  // of each point, by the gradient of the motion
+    std::vector<double> of_gap(directions_.size(), 0.0);
+    double of_all = 0;
+    std::vector<Matrix3> by_motion;
     for (std::size_t k = 0; k < count(); ++k) {
         const Point& p = points_[k];
         const AtPoint at = at_point(elements, p.tet, p.point, directions_[p.gap], x);
@@ -93,14 +91,53 @@ void GapElements::add_rest_weights(const Elements& elements, std::span<const dou
         of_gap[p.gap] -= pull * ut;
         of_all += pull * ut - stiffness_J_[k] * (1 - s) * ut;
     }
+    spread(elements, by_motion, of_all, of_gap, result);
+}
+
+void GapElements::spread(const Elements& elements, const std::vector<Matrix3>& by_gradient, double by_whole,
+                         const std::vector<double>& by_gap, std::span<double> result) const {
+    const std::vector<double> volume = volumes(elements);
+    double whole = 0;
+    for (const double v : volume) whole += v;
     for (std::size_t k = 0; k < count(); ++k) {
         const Point& p = points_[k];
         const double share = elements.point_volume(p.tet, p.point);
-        const Matrix3 Y = by_motion[k] + share * (of_gap[p.gap] / volume[p.gap] + of_all / whole) * Matrix3::Identity();
+        const Matrix3 Y =
+            by_gradient[k] + share * (by_gap[p.gap] / volume[p.gap] + by_whole / whole) * Matrix3::Identity();
         for (std::size_t a = 0; a < width_; ++a)
             Eigen::Map<Vector3>(result.data() + 3 * static_cast<std::size_t>(nodes_[k * width_ + a])) +=
                 Y * linalg::vector(elements.shape_gradient(p.tet, p.point, static_cast<int>(a)));
     }
+}
+
+double GapElements::tension_by_weight(std::span<const double> x, std::size_t gap_number) const {
+    const std::size_t gap = place_of(gap_number);
+    double sum = 0;
+    for (std::size_t k = 0; k < count(); ++k)
+        sum += points_[k].gap == gap ? stiffness_J_[k] * (along(k, x).length - 1) : 0;
+    return sum / gap_weights_Pa_[gap] / length_m_;
+}
+
+/// Of sum k l / L - c + m.
+void GapElements::add_tension_rest_gradient(const Elements& elements, std::span<const double> x, double factor,
+                                            std::span<double> result) const {
+    std::vector<double> of_gap(directions_.size(), 0.0);
+    double of_all = -factor * stiffness_N_;
+    std::vector<Matrix3> by_motion;
+    for (std::size_t k = 0; k < count(); ++k) {
+        const Point& p = points_[k];
+        const AtPoint at = at_point(elements, p.tet, p.point, directions_[p.gap], x);
+        const double stiffness = factor * stiffness_J_[k] / length_m_;
+        by_motion.push_back(stiffness * (at.length * Matrix3::Identity() -
+                                         at.F.transpose() * at.along * at.direction.transpose()));
+        of_gap[p.gap] -= stiffness * at.length;
+        of_all += stiffness * at.length;
+    }
+    spread(elements, by_motion, of_all, of_gap, result);
+}
+
+std::size_t GapElements::place_of(std::size_t gap_number) const {
+    return static_cast<std::size_t>(std::ranges::find(numbers_, gap_number) - numbers_.begin());
 }
 
 bool GapElements::has(std::size_t gap_number) const {
@@ -109,7 +146,7 @@ bool GapElements::has(std::size_t gap_number) const {
 
 void GapElements::add_weight_force(std::span<const double> x, double m, std::size_t gap_number,
                                    std::span<double> forces) const {
-    const auto gap = static_cast<std::size_t>(std::ranges::find(numbers_, gap_number) - numbers_.begin());
+    const std::size_t gap = place_of(gap_number);
     double share = 0;  // of c that is this gap's
     for (std::size_t k = 0; k < count(); ++k) share += points_[k].gap == gap ? stiffness_J_[k] : 0;
     share /= stiffness_N_ * length_m_;

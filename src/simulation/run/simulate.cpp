@@ -69,9 +69,8 @@ private:
         Stopwatch watch;
         Step step;
         step.index = k;
-        step.time = program_.duration * static_cast<double>(k) / program_.steps;
-        const Way way{step.time, [&](double time) { return stepper_.controls(now_.robot, time); },
-                      smallest_share * program_.duration / program_.steps};
+        const Way way = program_way(stepper_, program_, now_.robot, k);
+        step.time = way.end;
         StepReport report;
         if (!progress.cancelled()) report = stepper_.step(now_.robot, way, progress);
         Trajectory& result = now_.so_far;
@@ -153,6 +152,12 @@ private:
 StepperOptions stepper_options(const Program& program) {
     return {program.solver,   program.tolerance,       program.iteration_limit,
             program.dynamics, RotatingStep::most_past, program.duration / program.steps};
+}
+
+Way program_way(const Stepper& stepper, const Program& program, const RobotState& robot, int k) {
+    return {program.duration * static_cast<double>(k) / program.steps,
+            [&](double time) { return stepper.controls(robot, time); },
+            smallest_share * program.duration / program.steps};
 }
 
 Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options) {

@@ -41,8 +41,10 @@ struct RunOptions {
 /// that goes on from a state gives the same bits, but for the times that it took, as one that was never stopped.
 [[nodiscard]] Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options = {});
 
-/// What a program asks of the stepper.
+/// What a program asks of the stepper; and the way of its step k, from 1, of a robot at the end of the one before. The
+/// way refers to stepper and robot.
 [[nodiscard]] StepperOptions stepper_options(const Program& program);
+[[nodiscard]] Way program_way(const Stepper& stepper, const Program& program, const RobotState& robot, int k);
 
 /// Positions of the points of every cable for node positions (n, 3): [cable][point].
 [[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);

@@ -138,6 +138,7 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
         const StepOutcome outcome = go(robot, {end, way.at(end), way.onward}, report, progress);
         if (outcome.converged) {
             in_vain = 0;
+            if (way.after_piece) way.after_piece(robot);
             continue;
         }
         report.reason = outcome.reason;

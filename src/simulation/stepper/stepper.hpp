@@ -31,6 +31,8 @@ struct Way {
     std::function<Controls(double along)> at;
     double shortest_piece = 0;  ///< shorter ones are not tried
     bool onward = true;         ///< it goes on as the last steps did, so that they tell where it leads
+    /// Called with every state that a step passes, its end too. May be empty.
+    std::function<void(const RobotState&)> after_piece{};
 };
 
 /// What a step did.

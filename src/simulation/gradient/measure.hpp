@@ -1,0 +1,69 @@
+// What can be measured on a robot at one state, and how it changes with everything that it depends on.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "base/core/error.hpp"
+#include "simulation/linearisation/linearisation.hpp"
+#include "simulation/linearisation/parameters.hpp"
+#include "simulation/parts/description.hpp"
+
+namespace pliant::sim {
+
+/// One number. Forces and positions are those along `direction`, which may be of any length.
+struct Measure {
+    enum class Kind {
+        marker,         ///< coordinate, m
+        point,          ///< coordinate of a point that rides on the mesh, m
+        tension,        ///< of a cable, N, as results report it
+        pressure,       ///< of a chamber or of a pressure load, Pa, as results report it
+        length,         ///< of a cable, m
+        length_ratio,   ///< over that at rest
+        volume,         ///< of a chamber, m^3
+        volume_ratio,   ///< over that at rest
+        spring_length,  ///< m
+        spring_force,   ///< N, positive where it pulls
+        reaction,       ///< that a support exerts on the robot, N
+        contact_force,  ///< that an obstacle exerts on the robot, N, with friction
+        self_contact,   ///< sum of the sizes of the robot's normal forces on itself, N
+    };
+    Kind kind = Kind::marker;
+    std::size_t index = 0;  ///< of the marker, cable, chamber, pressure load, spring, support or obstacle, in its list
+    Vec3 direction{};
+    Attachment point{};        ///< of Kind::point
+    bool pressure_load = false;  ///< of Kind::pressure: of a load, not of a chamber
+};
+
+/// A measured value and its first derivatives, with the state and with what it depends on by itself.
+struct Slope {
+    double value = 0;
+    Quantity state;
+    /// Of the robot's own numbers, by kind, index and part; names and values are not filled in.
+    std::vector<std::pair<Parameter, double>> direct{};
+    /// How it depends on the measure of an actuator as such, now and at rest: what it is in `state`, too, and beyond
+    /// that by guide points and rest positions.
+    struct ByMeasure {
+        std::size_t actuator = 0;
+        double now = 0, at_rest = 0;
+    };
+    std::vector<ByMeasure> by_measures{};
+    Eigen::VectorXd by_rest{};  ///< (3n) by rest positions that no actuator's measure is about; empty: none
+};
+
+/// An error: there is no such thing, in the words of Measure.
+[[nodiscard]] Status check(const Equilibrium& system, const Measure& measure);
+
+/// Precondition: check() finds nothing wrong.
+[[nodiscard]] Slope slope(const Equilibrium& system, const State& state, const Controls& controls,
+                          const Measure& measure);
+[[nodiscard]] Slope slope(const Linearisation& at, const Measure& measure);
+
+/// Of what is 0 whatever happens.
+[[nodiscard]] Slope no_slope(const Equilibrium& system);
+/// sum += factor * slope.
+void add(const Slope& slope, double factor, Slope& sum);
+
+}  // namespace pliant::sim

@@ -1,0 +1,156 @@
+#include "simulation/gradient/program_gradient.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "simulation/gradient/backwards.hpp"
+#include "simulation/gradient/step_adjoint.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/stepper/stepper.hpp"
+
+namespace pliant::sim {
+namespace {
+
+/// An equilibrium on the way, and where it stands.
+struct Piece {
+    double time = 0;
+    State state;
+    Controls controls;
+};
+
+class Backwards {
+public:
+    Backwards(const Model& model, const Program& program, const Objective& objective, const GradientOptions& options,
+              Progress& progress)
+        : program_(program),
+          objective_(objective),
+          options_(options),
+          progress_(progress),
+          stepper_(model, stepper_options(program)),
+          carried_(Carried::nothing(stepper_.system())) {
+        result_.values.resize(static_cast<std::size_t>(program.steps));
+    }
+
+    [[nodiscard]] Result<ProgramGradient> run() {
+        for (const Measure& measure : objective_.measures) {
+            if (Status status = check(stepper_.system(), measure); !status) return tl::unexpected(status.error());
+        }
+        const Status status = has_history() ? all_back() : all_forward();
+        if (!status) return tl::unexpected(status.error());
+        std::ranges::reverse(result_.instants);
+        for (const std::vector<double>& values : result_.values)
+            result_.value += objective_.judge(1 + static_cast<int>(&values - result_.values.data()), values).value;
+        progress_.advance(stage, 1);
+        return std::move(result_);
+    }
+
+private:
+    static constexpr const char* stage = "gradient";
+
+    /// Whether a step depends on the one before.
+    [[nodiscard]] bool has_history() const {
+        return program_.dynamics.has_value() || stepper_.system().has_friction();
+    }
+
+    /// Takes the robot from the end of step k - 1 to that of step k.
+    [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {
+        if (progress_.cancelled()) return cancelled();
+        progress_.advance(stage, std::min(1.0, result_.steps_taken / expected_steps()));
+        Way way = program_way(stepper_, program_, robot, k);
+        if (pieces != nullptr)
+            way.after_piece = [&](const RobotState& at) {
+                pieces->push_back({at.controls.time, at.now.state, at.controls});
+            };
+        const StepReport report = stepper_.step(robot, way, progress_);
+        if (progress_.cancelled()) return cancelled();
+        ++result_.steps_taken;
+        if (!report.arrived) return failure("stopped at step {} of {}: {}", k, program_.steps, report.reason);
+        return {};
+    }
+
+    [[nodiscard]] double expected_steps() const {
+        const int steps = program_.steps;
+        return has_history() ? steps * (1.0 + times_forward(steps, options_.kept)) : steps;
+    }
+
+    /// Where steps do not depend on each other, each is gone back over as soon as it is there.
+    [[nodiscard]] Status all_forward() {
+        RobotState robot = stepper_.rest();
+        for (int k = 1; k <= program_.steps; ++k) {
+            if (Status status = forward(robot, k, nullptr); !status) return status;
+            if (Status status = back_over({robot.controls.time, robot.now.state, robot.controls}, k, true); !status)
+                return status;
+        }
+        std::ranges::reverse(result_.instants);  // as if gone backwards
+        return {};
+    }
+
+    [[nodiscard]] Status all_back() {
+        const Status status = go_back<RobotState>(
+            stepper_.rest(), 0, program_.steps, options_.kept,
+            [&](RobotState& robot, int k) { return forward(robot, k, nullptr); },
+            [&](const RobotState& before, int k) -> Status {
+                RobotState robot = before;
+                std::vector<Piece> pieces;
+                if (Status arrived = forward(robot, k, &pieces); !arrived) return arrived;
+                for (std::size_t p = pieces.size(); p-- > 0;) {
+                    if (Status gone = back_over(pieces[p], k, p + 1 == pieces.size()); !gone) return gone;
+                }
+                return {};
+            });
+        if (status && result_.by.rest.size() > 0) result_.by.rest += carried_.x;  // it began at rest
+        return status;
+    }
+
+    /// `last`: of its step, so that it is judged. Where nothing is worth anything there is nothing to solve.
+    [[nodiscard]] Status back_over(const Piece& piece, int k, bool last) {
+        const std::optional<Slope> own = last ? judged(piece, k) : std::nullopt;
+        if (!own && carried_.is_nothing()) {
+            result_.instants.push_back({k, piece.time, {}});
+            return {};
+        }
+        auto at = Linearisation::create(stepper_.system(), piece.state, piece.controls);
+        if (!at) return tl::unexpected(at.error());
+        auto by = go_back_over(*at, own ? *own : no_slope(stepper_.system()), options_.by, carried_);
+        if (!by) return failure("step {} of {} has no derivative: {}", k, program_.steps, by.error().message);
+        result_.instants.push_back({k, piece.time, std::exchange(by->inputs, {})});
+        add(*by, result_.by);
+        return {};
+    }
+
+    /// Of the objective at the end of a step; none where it does not depend on it.
+    [[nodiscard]] std::optional<Slope> judged(const Piece& piece, int k) {
+        std::vector<Slope> slopes;
+        std::vector<double>& values = result_.values[static_cast<std::size_t>(k - 1)];
+        values.clear();
+        for (const Measure& measure : objective_.measures) {
+            slopes.push_back(slope(stepper_.system(), piece.state, piece.controls, measure));
+            values.push_back(slopes.back().value);
+        }
+        const Judgement judgement = objective_.judge(k, values);
+        const auto is_zero = [](double rate) { return rate == 0; };
+        if (std::ranges::all_of(judgement.slopes, is_zero)) return std::nullopt;
+        Slope sum = no_slope(stepper_.system());
+        for (std::size_t m = 0; m < judgement.slopes.size(); ++m) add(slopes[m], judgement.slopes[m], sum);
+        return sum;
+    }
+
+    const Program& program_;
+    const Objective& objective_;
+    const GradientOptions& options_;
+    Progress& progress_;
+    Stepper stepper_;
+    Carried carried_;
+    ProgramGradient result_;
+};
+
+}  // namespace
+
+Result<ProgramGradient> program_gradient(const Model& model, const Program& program, const Objective& objective,
+                                         const GradientOptions& options, Progress& progress) {
+    return Backwards(model, program, objective, options, progress).run();
+}
+
+}  // namespace pliant::sim
