@@ -152,3 +152,184 @@ TEST_CASE("a program in motion through time") {
                           .checks = false};
     MESSAGE("in time: ", worst_error(bender(1, program.duration), program));
 }
+
+namespace {
+
+/// The bender over a table that rises, with friction.
+Description rubbing() {
+    Description d = touching_blocks();
+    d.markers = {{"tip", {{static_cast<int>(d.mesh.points.size()) - 1}, {1.0}, {}}}};
+    d.gravity_m_s2 = {1, 2, -9.81};
+    d.contact->obstacles[0].move_m = {0.05 * edge, 0, 0.32 * edge};
+    return d;
+}
+
+/// How friction was frozen in each step of a program, solved for the given robot with its own starts of steps.
+struct Lagged {
+    std::vector<Controls> controls;
+    std::vector<State> states;
+};
+
+/// Takes the steps of a program; with `as` with the friction that was frozen there, lagged.
+Lagged steps_of(const Description& d, int steps, const Lagged* as, const Parameter* p, double value) {
+    Case c(d);
+    Stepper stepper(c.model, {.solver = Solver::newton, .tolerance = 1e-10});
+    Lagged all;
+    RobotState robot = stepper.rest();
+    Progress silent;
+    State now = robot.now.state;
+    Controls before = robot.controls;
+    for (int k = 1; k <= steps; ++k) {
+        const double time = static_cast<double>(k) / steps;
+        if (as == nullptr) {
+            const Way way{time, [&](double t) { return stepper.controls(robot, t); }, 1.0 / 64 / steps};
+            REQUIRE(stepper.step(robot, way, silent).arrived);
+            REQUIRE(robot.past.size() == static_cast<std::size_t>(std::min(k, 3)));  // in one piece each
+            now = robot.now.state;
+            before = robot.controls;
+        } else {
+            const auto u = static_cast<std::size_t>(k - 1);
+            Controls controls = c.system.controls(time);
+            const contact::Friction& frozen = *as->controls[u].friction;
+            std::vector<contact::FrozenPair> pairs(frozen.pairs().begin(), frozen.pairs().end());
+            for (contact::FrozenPair& pair : pairs) {
+                if (p->kind == Parameter::Kind::contact_stiffness || p->kind == Parameter::Kind::obstacle_friction)
+                    pair.limit_N *= p->kind == Parameter::Kind::contact_stiffness || pair.obstacle >= 0
+                                        ? value / p->value
+                                        : 1;
+                if (p->kind == Parameter::Kind::self_friction && pair.obstacle < 0) pair.limit_N *= value / p->value;
+            }
+            std::vector<double> start(now.x.begin(), now.x.end());
+            start.insert(start.end(), before.obstacles.begin(), before.obstacles.end());
+            controls.friction = std::make_shared<const contact::Friction>(pairs, start, frozen.slip_m());
+            now = as->states[u];
+            REQUIRE(converge(c.system, controls, now));
+            before = controls;
+        }
+        all.states.push_back(now);
+        all.controls.push_back(before);
+    }
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("friction that slips from where the step before has ended, by all numbers and by each share of an obstacle") {
+    const int steps = 3;
+    const Description d = rubbing();
+    Objective objective = at_end({Measure::Kind::marker, 0, {0.3, -0.5, 0.8}}, steps);
+    const Program program{.steps = steps, .tolerance = 1e-10, .solver = Solver::newton, .checks = false};
+    const ProgramGradient found = gradient_of(d, program, objective);
+    const Lagged lagged = steps_of(d, steps, nullptr, nullptr, 0);
+    Case c(d);
+    Controls met = lagged.controls.back();
+    const std::vector<Parameter> all = parameters(c.at(lagged.states.back(), met));
+    double worst = 0;
+    bool history = false;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const Parameter& p = all[k];
+        const double told = found.by.parameters[static_cast<Eigen::Index>(k)];
+        INFO(p.name);
+        const double error = best_error(0.02 * size_of(p), [&](double h) {
+            const auto value = [&](double change) {
+                const Description other = with_value(d, p, p.value + change);
+                const Lagged taken = steps_of(other, steps, &lagged, &p, p.value + change);
+                Case now(other);
+                return slope(now.system, taken.states.back(), taken.controls.back(), objective.measures[0]).value;
+            };
+            const double by_difference = (8 * (value(h) - value(-h)) - (value(2 * h) - value(-2 * h))) / (12 * h);
+            return std::fabs(told - by_difference) /
+                   std::max(std::fabs(by_difference), 1e-8 * found.value / size_of(p));
+        });
+        CHECK(error < 1e-6);
+        worst = std::max(worst, error);
+        history = history || p.kind == Parameter::Kind::self_friction;
+    }
+    CHECK(history);
+    MESSAGE("friction over ", steps, " steps: ", worst);
+    REQUIRE(found.instants.size() == 3);
+    CHECK(found.instants[1].by_inputs.norm() > 0);  // through friction alone: only the end is judged
+}
+
+TEST_CASE("as many states are kept as one likes, on any number of threads: the same bits") {
+    const Description d = bender(1, 0.02);
+    const Program program{.steps = 7,
+                          .duration = 0.02,
+                          .tolerance = 1e-6,
+                          .dynamics = Dynamics{{20, 0.001}},
+                          .checks = false};
+    const auto bits = [&](int kept, std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const ProgramGradient found =
+            gradient_of(d, program, wanted_motion(7), {.by = {.tets = true, .rest = true}, .kept = kept});
+        CHECK(found.instants.size() == 7);
+        std::vector<double> all = {found.value};
+        const auto keep = [&](const auto& part) { all.insert(all.end(), part.data(), part.data() + part.size()); };
+        keep(found.by.parameters);
+        keep(found.by.tets.constants);
+        keep(found.by.tets.density);
+        keep(found.by.rest);
+        for (const ProgramGradient::Instant& instant : found.instants) keep(instant.by_inputs);
+        return all;
+    };
+    const std::vector<double> first = bits(8, 1);
+    for (const auto& [kept, threads] : {std::pair<int, std::size_t>{0, 2}, {1, 1}, {2, 4}, {8, 4}}) {
+        CAPTURE(kept);
+        CAPTURE(threads);
+        const std::vector<double> again = bits(kept, threads);
+        REQUIRE(again.size() == first.size());
+        CHECK(std::memcmp(first.data(), again.data(), sizeof(double) * first.size()) == 0);
+    }
+}
+
+TEST_CASE("steps that had to be halved, in time, count with all their pieces") {
+    Program program{.steps = 2,
+                    .duration = 0.02,
+                    .tolerance = 1e-11,
+                    .solver = Solver::newton,
+                    .dynamics = Dynamics{{20, 0}},
+                    .iteration_limit = 3,
+                    .checks = false};
+    const Description d = bender(1, 0.02);
+    const Objective objective = at_end({Measure::Kind::marker, 0, {0, 0, 1}}, program.steps);
+    const ProgramGradient found = gradient_of(d, program, objective);
+    REQUIRE(found.instants.size() > 2);
+    const double density = d.materials[0].density_kg_m3;
+    const Parameter p{Parameter::Kind::density, 0, "", "", density};
+    const auto value = [&](double change) {
+        const auto model = Model::create(with_value(d, p, density + change));
+        Progress silent;
+        const Trajectory t = run(*model, program, silent);
+        REQUIRE_MESSAGE(t.converged, t.message);
+        REQUIRE(t.steps[1].substeps + t.steps[2].substeps == static_cast<int>(found.instants.size()));
+        return t.steps.back().markers[0].position_m.z;
+    };
+    Case c(d);
+    const std::vector<Parameter> all = parameters(c.at(c.system.rest(), c.system.controls(1)));
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].kind == Parameter::Kind::density)
+            CHECK(error_of(found.by.parameters[static_cast<Eigen::Index>(k)], density, value) < 1e-6);
+    }
+}
+
+TEST_CASE("what is not there, what does not converge, and who does not want to wait") {
+    const auto model = Model::create(bender());
+    Progress silent;
+    const auto told = [&](const Measure& measure, const Program& program, Progress& progress) {
+        const auto found = program_gradient(*model, program, at_end(measure, program.steps), {}, progress);
+        REQUIRE_FALSE(found);
+        return found.error();
+    };
+    CHECK(told({Measure::Kind::pressure, 0}, {.steps = 1}, silent).message ==
+          "there is no chamber 0: the robot has 0, counted from 0");
+    CHECK(told({Measure::Kind::marker, 3, {1, 0, 0}}, {.steps = 1}, silent).message ==
+          "there is no marker 3: the robot has 1, counted from 0");
+    const Error stopped = told({Measure::Kind::marker, 0, {1, 0, 0}},
+                               {.steps = 1, .tolerance = 1e-11, .solver = Solver::newton, .iteration_limit = 1}, silent);
+    CHECK(stopped.cause == Cause::failed);
+    CHECK(stopped.message.starts_with("stopped at step 1 of 1: "));
+    class Impatient : public Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } impatient;
+    CHECK(told({Measure::Kind::marker, 0, {1, 0, 0}}, {.steps = 1}, impatient).cause == Cause::cancelled);
+}

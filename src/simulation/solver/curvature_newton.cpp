@@ -96,7 +96,10 @@ public:
         tangent_ = known.tangent;
         memory_.set_pairs(known.pairs);
         learnt_ = known.learnt;
-        if (!tangent_) return;
+        if (!tangent_) {
+            if (same_pattern) inverse_ = make_inverse();  // without what the last one has learnt of its precision
+            return;
+        }
         rotation_.begin(tangent_->state.x);
         if (known.followed) rotation_.follow(*known.followed);
         if (!usable_) return;
