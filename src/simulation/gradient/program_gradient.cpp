@@ -66,6 +66,7 @@ private:
         const StepReport report = stepper_.step(robot, way, progress_);
         if (progress_.cancelled()) return cancelled();
         ++result_.steps_taken;
+        pattern_ = known_pattern(stepper_.system(), stepper_.laplacian(), robot.memory.get());
         if (!report.arrived) return failure("stopped at step {} of {}: {}", k, program_.steps, report.reason);
         return {};
     }
@@ -111,7 +112,7 @@ private:
             result_.instants.push_back({k, piece.time, {}});
             return {};
         }
-        auto at = Linearisation::create(stepper_.system(), piece.state, piece.controls);
+        auto at = Linearisation::create(stepper_.system(), piece.state, piece.controls, pattern_);
         if (!at) return tl::unexpected(at.error());
         auto by = go_back_over(*at, own ? *own : no_slope(stepper_.system()), options_.by, carried_);
         if (!by) return failure("step {} of {} has no derivative: {}", k, program_.steps, by.error().message);
@@ -142,6 +143,7 @@ private:
     const GradientOptions& options_;
     Progress& progress_;
     Stepper stepper_;
+    KnownPattern pattern_;  ///< of the last step
     Carried carried_;
     ProgramGradient result_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "base/linalg/gmres.hpp"
 #include "base/linalg/sparse.hpp"
@@ -18,6 +19,11 @@ constexpr double wanted_residual = 1e-13, allowed_residual = 1e-12;
 constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
 constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
 constexpr int most_rounds = 8, most_products = 200;
+// On two levels: of x in the norm of K, each round again; a residual that is beyond the other has not been solved for.
+constexpr double level_tolerance = 1e-4, level_residual = 1e-3;
+constexpr int level_rounds = 2, level_limit = 200;
+constexpr double column_residual = 1e-11;   // of the columns of the Schur complement
+constexpr double off_at_most = 0.1;  // of a quick way's answer to what it makes largest
 constexpr double singular = 1e-14;   // smallest over largest singular value, in balanced units
 constexpr double redundant = 1e-11;  // pivots of the Schur complement
 constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
@@ -91,7 +97,9 @@ Eigen::VectorXd LinearSystem::multiply(const Eigen::VectorXd& v, Side side) cons
     return result;
 }
 
-SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system), factor_(system.layout->pattern) {
+SystemSolver::~SystemSolver() = default;
+
+SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
     stiffness_ = mean_diagonal(system);
     const Eigen::Index count = system.forces.cols();
     column_ = balance(system.forces, stiffness_);
@@ -107,7 +115,9 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system), facto
 
 /// K as it is if it is positive definite; else with as much more on the diagonal as it takes. False: not even then.
 bool SystemSolver::factorise() {
-    if (factor_.factorise(system_->symmetric)) return true;
+    linalg::Cholesky& made = factor(linalg::Precision::double_);
+    exact_ = made.factorise(system_->symmetric);
+    if (exact_) return true;
     const linalg::SymmetricPattern& p = system_->layout->pattern;
     for (double shift = first_shift; shift < largest_shift; shift *= shift_growth) {
         std::vector<double> values = system_->symmetric;
@@ -116,23 +126,67 @@ bool SystemSolver::factorise() {
             const double size = (std::fabs(block[0]) + std::fabs(block[4]) + std::fabs(block[8])) / 3;
             for (int c = 0; c < 3; ++c) block[4 * c] += shift * std::max(size, 1e-9 * stiffness_);
         }
-        if (factor_.factorise(values)) return true;
+        if (made.factorise(values)) return true;
     }
     return false;
 }
 
-void SystemSolver::take_schur_complement() {
-    const auto solve = [&](Eigen::MatrixXd columns) {
-        if (columns.cols() > 0)
-            factor_.solve({columns.data(), static_cast<std::size_t>(columns.size())}, static_cast<int>(columns.cols()));
-        return columns;
-    };
-    from_forces_ = solve(forces_);
-    from_constraints_ = system_->forces == system_->constraints ? from_forces_ : solve(constraints_);
+linalg::Cholesky& SystemSolver::factor(linalg::Precision precision) {
+    if (!factor_ && system_->analysis)
+        factor_ = std::make_unique<linalg::Cholesky>(system_->analysis, 3, precision);
+    else if (!factor_)
+        factor_ = std::make_unique<linalg::Cholesky>(system_->layout->pattern, precision);
+    factor_->use(precision);
+    return *factor_;
+}
+
+/// v (3 free) <- K^-1 v, as well as the preconditioner can; on two levels within level_tolerance of it, in the norm of
+/// K. False: not as well as that.
+bool SystemSolver::apply_body(Eigen::VectorXd& v) const {
+    if (levels_) return levels_->solve(view(v), 1, level_tolerance, level_limit) == linalg::TwoLevel::Outcome::solved;
+    factor_->solve(view(v), 1);
+    return true;
+}
+
+/// K^-1 of columns, to nearly all digits. False: that is more than the quick ways can do.
+bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
+    if (columns.cols() == 0) return true;
+    const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
+    if (way_ == Way::double_) {
+        factor_->solve(all, static_cast<int>(columns.cols()));
+        return true;
+    }
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        const Eigen::VectorXd b = columns.col(k);
+        const int rounds = levels_ ? level_rounds : most_rounds;
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
+        for (int round = 0; round < rounds && residual.norm() > column_residual * b.norm(); ++round) {
+            Eigen::VectorXd step = residual;
+            if (!apply_body(step)) return false;
+            x += step;
+            residual = b;
+            linalg::add_product(system_->layout->pattern, system_->symmetric, view(std::as_const(x)), -1,
+                                view(residual));
+        }
+        if (!levels_ && !(residual.norm() <= column_residual * b.norm())) return false;
+        columns.col(k) = x;
+    }
+    return true;
+}
+
+/// False: only double precision can tell.
+bool SystemSolver::take_schur_complement() {
+    from_forces_ = forces_;
+    if (!solve_body(from_forces_)) return false;
+    from_constraints_ = from_forces_;
+    if (system_->forces != system_->constraints) {
+        from_constraints_ = constraints_;
+        if (!solve_body(from_constraints_)) return false;
+    }
     Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
     S.diagonal() += compliance_;
     schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
-    if (S.size() == 0) return;
+    if (S.size() == 0) return true;
     // Stiff and soft actuators side by side: balanced once more, so that what is small is small beside its own kind.
     Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt();
     for (double& s : scale) s = s > 0 ? 1 / s : 1;
@@ -140,23 +194,61 @@ void SystemSolver::take_schur_complement() {
     decomposition.setThreshold(redundant);
     decomposition.compute(scale.asDiagonal() * S * scale.asDiagonal());
     schur_inverse_ = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
-    if (decomposition.rank() == S.cols()) return;
+    if (decomposition.rank() == S.cols()) return true;
+    if (way_ != Way::double_) return false;
     const Eigen::MatrixXd kept = decomposition.pseudoInverse() * (scale.asDiagonal() * S * scale.asDiagonal());
     schur_null_ = Eigen::MatrixXd::Identity(S.cols(), S.cols()) - kept;
+    return true;
+}
+
+/// The quickest way that is good enough for this matrix.
+void SystemSolver::begin() {
+    const bool on_levels = system_->two_levels && system_->skew.empty();
+    if (on_levels && begin_quickly(Way::two_levels)) return;
+    levels_.reset();
+    // What rounding to single precision leaves is not told from a skew part.
+    if (system_->skew.empty() && begin_quickly(Way::single_)) return;
+    begin_surely();
+}
+
+bool SystemSolver::begin_quickly(Way way) {
+    way_ = way;
+    if (way == Way::two_levels) {
+        levels_ = std::make_unique<linalg::TwoLevel>(system_->layout->pattern);
+        if (!levels_->set(system_->symmetric, view(system_->positions))) return false;
+    } else {
+        const bool definite = factor(linalg::Precision::single_).factorise(system_->symmetric);
+        factor_->release_work_space();
+        if (!definite) return false;
+    }
+    exact_ = true;
+    // Conjugate gradients see by themselves that they do not solve.
+    return take_schur_complement() && (levels_ || is_far_from_singular());
+}
+
+void SystemSolver::begin_surely() {
+    way_ = Way::double_;
+    const bool begun = factorise();
+    factor_->release_work_space();
+    if (begun) (void)take_schur_complement();
+    singular_ = !begun || is_singular();
+    if (singular_ && schur_null_.cols() == 0) {
+        take_whole_factor();
+        singular_ = whole_ == nullptr || is_singular();
+    }
+}
+
+/// Tries the preconditioner on what it makes largest: of a matrix that is nearly singular it would be no inverse.
+bool SystemSolver::is_far_from_singular() const {
+    Eigen::VectorXd v = some_vector(system_->size());
+    system_->leave_out_held(v);
+    const Eigen::VectorXd once = precondition(v, Side::direct);
+    const Eigen::VectorXd back = multiply(precondition(once, Side::direct), Side::direct) - once;
+    return back.norm() < off_at_most * once.norm();
 }
 
 Status SystemSolver::prepare() {
-    if (!prepared_) {
-        prepared_ = true;
-        const bool begun = factorise();
-        factor_.release_work_space();
-        if (begun) take_schur_complement();
-        singular_ = !begun || is_singular();
-        if (singular_ && schur_null_.cols() == 0) {
-            take_whole_factor();
-            singular_ = whole_ == nullptr || is_singular();
-        }
-    }
+    if (way_ == Way::none) begin();
     if (!singular_) return {};
     return failure(
         "the tangent of this state is singular: it stands at a limit point or at a bifurcation, or a part of the robot "
@@ -217,7 +309,7 @@ Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) 
     const bool direct = side == Side::direct;
     if (whole_) return direct ? Eigen::VectorXd(whole_->solve(v)) : Eigen::VectorXd(whole_->transpose().solve(v));
     Eigen::VectorXd motion = v.head(n);
-    factor_.solve(view(motion), 1);
+    (void)apply_body(motion);  // a residual tells
     const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;
     const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion;
     const Eigen::VectorXd multiplier =
@@ -245,16 +337,24 @@ double SystemSolver::rounding_of(const Eigen::VectorXd& x, Side side) const {
     return rounding * std::hypot(force.norm(), rest.norm());
 }
 
+/// What to add to x for a residual: the preconditioner's answer or, where that is not the inverse, GMRES' with it.
+Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double wanted, Side side) const {
+    if (exact_ && system_->skew.empty()) return precondition(residual, side);
+    const double left = residual.norm();
+    const auto product = [&](const Eigen::VectorXd& v) { return multiply(precondition(v, side), side); };
+    const Eigen::VectorXd step =
+        linalg::gmres(product, residual / left, std::max(inner_tolerance, 0.3 * wanted / left), most_products);
+    return left * precondition(step, side);
+}
+
 /// x in balanced units, or nothing.
 std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
-    const auto product = [&](const Eigen::VectorXd& v) { return multiply(precondition(v, side), side); };
     double left = b.norm();
     const double wanted = wanted_residual * left;
-    for (int round = 0; round < most_rounds && left > wanted; ++round) {
-        const Eigen::VectorXd step =
-            linalg::gmres(product, residual / left, std::max(inner_tolerance, 0.3 * wanted / left), most_products);
-        const Eigen::VectorXd next = x + left * precondition(step, side);
+    const int rounds = levels_ ? level_rounds : most_rounds;
+    for (int round = 0; round < rounds && left > wanted; ++round) {
+        const Eigen::VectorXd next = x + correction(residual, wanted, side);
         const Eigen::VectorXd rest = b - multiply(next, side);
         if (!(rest.norm() < left)) break;
         const bool slow = rest.norm() > 0.5 * left;
@@ -263,7 +363,8 @@ std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Si
         left = rest.norm();
         if (slow) break;
     }
-    if (!(left <= allowed_residual * b.norm()) && !(left <= rounding_of(x, side))) return std::nullopt;
+    const double allowed = levels_ ? level_residual : allowed_residual;
+    if (!(left <= allowed * b.norm()) && !(left <= rounding_of(x, side))) return std::nullopt;
     return x;
 }
 
@@ -300,6 +401,11 @@ Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side)
     system_->leave_out_held(balanced);
     balanced.tail(m).array() *= (direct ? row_ : column_).array();
     std::optional<Eigen::VectorXd> x = refine(balanced, side);
+    if (!x && way_ != Way::double_) {
+        levels_.reset();
+        begin_surely();
+        return solve(b, side);
+    }
     if (!x && schur_null_.cols() > 0) return tl::unexpected(redundancy());
     if (!x)
         return failure(

@@ -11,6 +11,7 @@
 
 #include "base/core/error.hpp"
 #include "base/linalg/cholesky.hpp"
+#include "base/linalg/two_level.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
 namespace pliant::sim {
@@ -24,6 +25,9 @@ enum class Side { direct, transposed };
 /// and zero in what goes out.
 struct LinearSystem {
     std::shared_ptr<const TangentLayout> layout;
+    std::shared_ptr<const linalg::Analysis> analysis;  ///< of the layout's pattern, where it is known; else null
+    bool two_levels = false;                           ///< a factor of K would take longer
+    Eigen::VectorXd positions;                         ///< (3 free nodes) m, for those
     std::vector<FreeRoller> rollers;
     std::vector<double> symmetric;         ///< (entries of the layout's pattern)
     std::vector<double> skew;              ///< likewise, or empty where there is none
@@ -44,27 +48,41 @@ struct LinearSystem {
 void add_skew_product(const linalg::SymmetricPattern& pattern, const std::vector<double>& values,
                       const Eigen::VectorXd& v, double factor, Eigen::VectorXd& result);
 
-/// Solves with a LinearSystem. Its preconditioner is the exact inverse of the system without the skew part: a Cholesky
-/// factor of K and the small Schur complement D - C^T K^-1 B. Where K is not positive definite, as at an unstable
-/// equilibrium, a multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and Schultz
-/// 1986) makes good for that and for the skew part. Solutions are refined with residuals of the very system. Forces and
-/// constraints are balanced first: each multiplier is scaled so that its column is as large as one of K.
+/// Solves with a LinearSystem. Its preconditioner is the exact inverse of the system without the skew part, but for
+/// rounding: a Cholesky factor of K in single precision, or conjugate gradients on two levels, and the small Schur
+/// complement D - C^T K^-1 B. Solutions are refined with residuals of the very system. What that does not solve, or is
+/// nearly singular, is solved again with a factor in double precision. Where K is not positive definite, as at an unstable
+/// equilibrium, a multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and Schultz 1986)
+/// makes good for that and for the skew part. Forces and constraints are balanced first: each multiplier is scaled so
+/// that its column is as large as one of K.
 class SystemSolver {
 public:
     /// `system` must outlive it.
     explicit SystemSolver(const LinearSystem& system);
+    ~SystemSolver();
 
-    /// x with A x = b, or A^T x = b, to |b - A x| <= 1e-12 |b| in balanced units; or, where x is so much larger than b
-    /// that rounding it makes more than that, to what rounding it makes. Of several solutions, where cables do the
-    /// same, the one with the smallest multipliers. Errors: nothing solves it, since cables that do the same are asked
-    /// for different things; the matrix is singular (a limit point, a bifurcation, a part that can move freely).
+    /// x with A x = b, or A^T x = b, to |b - A x| <= 1e-12 |b| in balanced units; or, where x is so much larger than b that
+    /// rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8 of x in the norm of K. Of
+    /// several solutions, where cables do the same, the one with the smallest multipliers. Errors: nothing solves it, since cables that do
+    /// the same are asked for different things; the matrix is singular (a limit point, a bifurcation, a part that can
+    /// move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
 
 private:
+    /// How K is solved with: as quick as it goes, or surely.
+    enum class Way { none, two_levels, single_, double_ };
     [[nodiscard]] Status prepare();
+    void begin();
+    [[nodiscard]] bool begin_quickly(Way way);
+    void begin_surely();
+    [[nodiscard]] linalg::Cholesky& factor(linalg::Precision precision);
     [[nodiscard]] bool factorise();
-    void take_schur_complement();
+    [[nodiscard]] bool solve_body(Eigen::MatrixXd& columns) const;
+    [[nodiscard]] bool apply_body(Eigen::VectorXd& v) const;
+    [[nodiscard]] bool take_schur_complement();
+    [[nodiscard]] bool is_far_from_singular() const;
     [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side) const;
+    [[nodiscard]] Eigen::VectorXd correction(const Eigen::VectorXd& residual, double wanted, Side side) const;
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v, Side side) const;
     [[nodiscard]] Eigen::VectorXd precondition(const Eigen::VectorXd& v, Side side) const;
     [[nodiscard]] double rounding_of(const Eigen::VectorXd& x, Side side) const;
@@ -73,14 +91,16 @@ private:
     [[nodiscard]] Error redundancy() const;
 
     const LinearSystem* system_;
-    bool prepared_ = false;
+    Way way_ = Way::none;
     bool singular_ = false;
+    bool exact_ = false;                ///< the preconditioner is the inverse but for rounding
     double stiffness_ = 1;              ///< mean of the diagonal of K, N/m
     Eigen::VectorXd column_, row_;      ///< (solved) scales of the multipliers and of the constraints
     Eigen::MatrixXd forces_;            ///< B, scaled
     Eigen::MatrixXd constraints_;       ///< C, scaled
     Eigen::VectorXd compliance_;        ///< D, scaled
-    linalg::Cholesky factor_;           ///< of K, or K with more on its diagonal
+    std::unique_ptr<linalg::Cholesky> factor_;    ///< of K, or K with more on its diagonal
+    std::unique_ptr<linalg::TwoLevel> levels_;    ///< of K
     Eigen::MatrixXd from_forces_;       ///< K^-1 B
     Eigen::MatrixXd from_constraints_;  ///< K^-1 C
     Eigen::MatrixXd schur_inverse_;     ///< of D - C^T K^-1 B, or the pseudo-inverse

@@ -10,6 +10,7 @@
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/solver/tangent_inverse.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -27,6 +28,18 @@ std::string name_of(const Description& d, std::size_t actuator) {
 /// As the state's contact couples them.
 TangentLayout layout_at(const Equilibrium& system, const State& state, const Controls& controls, TangentNodes nodes) {
     return system.lay_out_tangent(system.contact_cliques(state, controls, nodes), nodes);
+}
+
+/// True if the pattern couples all nodes of each clique.
+bool holds(const linalg::SymmetricPattern& pattern, const std::vector<std::vector<int>>& cliques) {
+    for (const std::vector<int>& clique : cliques) {
+        for (const int i : clique) {
+            for (const int j : clique) {
+                if (j >= 0 && i >= j && !pattern.holds(i, j)) return false;
+            }
+        }
+    }
+    return true;
 }
 
 struct Parts {
@@ -70,7 +83,15 @@ struct Linearisation::Whole {
     Eigen::MatrixXd constraints;  ///< (3n, solved)
 };
 
-Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls) {
+KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& laplacian, const SolverMemory* memory) {
+    const auto& alone = laplacian.tangent_layout();
+    const bool two_levels = !system.has_skew() && two_levels_are_quicker(alone->pattern, laplacian.work());
+    if (memory != nullptr && memory->touching && memory->layout) return {memory->layout, memory->analysis, two_levels};
+    return {alone, laplacian.analysis(), two_levels};
+}
+
+Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,
+                                            const KnownPattern& known) {
     const Evaluation evaluation = system.evaluate(state, controls);
     if (!evaluation.possible()) return failure("a state that {} has no linearisation", name(evaluation.flaw));
     Linearisation made;
@@ -78,7 +99,7 @@ Result<Linearisation> Linearisation::create(const Equilibrium& system, const Sta
     made.state_ = {state.x, evaluation.multiplier};
     made.controls_ = controls;
     made.find_unknowns();
-    made.assemble();
+    made.assemble(known);
     return made;
 }
 
@@ -96,10 +117,17 @@ bool Linearisation::is_slack(std::size_t actuator) const {
     return slack_[actuator];
 }
 
-void Linearisation::assemble() {
+void Linearisation::assemble(const KnownPattern& known) {
     matrix_ = std::make_shared<LinearSystem>();
     LinearSystem& A = *matrix_;
-    A.layout = std::make_shared<const TangentLayout>(layout_at(*system_, state_, controls_, TangentNodes::free));
+    if (known.layout && holds(known.layout->pattern, system_->contact_cliques(state_, controls_))) {
+        A.layout = known.layout;
+        A.analysis = known.analysis;
+    } else {
+        A.layout = std::make_shared<const TangentLayout>(layout_at(*system_, state_, controls_, TangentNodes::free));
+    }
+    A.two_levels = known.two_levels;
+    A.positions = system_->free_positions(state_.x);
     A.rollers = system_->rollers();
     Parts parts = assembled(*system_, state_, controls_, *A.layout);
     A.symmetric = std::move(parts.symmetric);

@@ -22,6 +22,7 @@
 
 #include "base/core/error.hpp"
 #include "simulation/linearisation/linear_system.hpp"
+#include "simulation/solver/curvature.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
 namespace pliant::sim {
@@ -71,6 +72,16 @@ struct Adjoint {
     }
 };
 
+/// What a solver found out about the pattern of K, for states whose contact couples no nodes that it does not.
+struct KnownPattern {
+    std::shared_ptr<const TangentLayout> layout;  ///< null: nothing is known
+    std::shared_ptr<const linalg::Analysis> analysis;
+    bool two_levels = false;  ///< a factor would take longer
+};
+/// `memory` may be null.
+[[nodiscard]] KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& laplacian,
+                                         const SolverMemory* memory);
+
 /// Of the equations F(z) = 0 in the unknowns z: the positions of the free nodes (3 free, in the order of
 /// Model::free_index), then the multipliers of the actuators that are not given, in ascending order. F has as many
 /// rows:
@@ -84,9 +95,9 @@ struct Adjoint {
 class Linearisation {
 public:
     /// Copies state and controls; `system` must outlive it. The state need not be converged, but F is not zero then.
-    /// An error: the state is one that no body can have.
+    /// `known` saves the time to find the order of elimination. An error: the state is one that no body can have.
     [[nodiscard]] static Result<Linearisation> create(const Equilibrium& system, const State& state,
-                                                      const Controls& controls);
+                                                      const Controls& controls, const KnownPattern& known = {});
 
     [[nodiscard]] const Equilibrium& system() const { return *system_; }
     [[nodiscard]] const State& state() const { return state_; }
@@ -141,7 +152,7 @@ private:
     struct Whole;
     Linearisation() = default;
     void find_unknowns();
-    void assemble();
+    void assemble(const KnownPattern& known);
     [[nodiscard]] const Whole& whole();
     /// result (3n) += K v of all nodes, or K^T v.
     void add_stiffness(const Eigen::VectorXd& v, Side side, Eigen::VectorXd& result);

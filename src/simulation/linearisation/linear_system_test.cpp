@@ -1,0 +1,75 @@
+// Ways to solve with a linearised state: by a factor, with an order of elimination that is known, on two levels.
+#include "simulation/linearisation/linear_system.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+#include "simulation/linearisation/test_robots.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using namespace pliant::sim::testing;
+
+namespace {
+
+Description driven() {
+    Description d = block(1, material::neo_hookean(1e6, 0.45));
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
+    d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.2};
+    d.markers = {{"tip", d.cables[0].points.back()}};
+    return d;
+}
+
+}  // namespace
+
+TEST_CASE("what a solver knows of the pattern changes nothing but the time") {
+    const Case c(driven());
+    const FactoredLaplacian laplacian(c.system);
+    const State state = disturbed(c.system, 0.5, 2e3);
+    const Controls controls = c.system.controls(0.7);
+    Linearisation at = c.at(state, controls);
+    auto known = Linearisation::create(c.system, state, controls, known_pattern(c.system, laplacian, nullptr));
+    REQUIRE(known);
+    Noise noise(3);
+    const Eigen::VectorXd w = some_direction(at, Side::transposed, noise), b = at.multiply_transposed(w);
+    const auto x = at.solve_transposed(b), y = known->solve_transposed(b);
+    REQUIRE(x);
+    REQUIRE(y);
+    CHECK((*x - w).norm() < 1e-9 * w.norm());
+    CHECK((*y - w).norm() < 1e-9 * w.norm());
+}
+
+TEST_CASE("a pattern that does not couple what touches is not used") {
+    Case c(touching_blocks());
+    const Settled at = pressed(c.system);
+    const FactoredLaplacian laplacian(c.system);
+    auto known = Linearisation::create(c.system, at.state, at.controls, known_pattern(c.system, laplacian, nullptr));
+    REQUIRE(known);
+    Linearisation alone = c.at(at.state, at.controls);
+    Noise noise(3);
+    const Eigen::VectorXd v = noise.vector(alone.size());
+    CHECK((known->multiply(v) - alone.multiply(v)).norm() <= 1e-13 * alone.multiply(v).norm());
+}
+
+TEST_CASE("on two levels products with a solution are those of the exact one to six digits and more") {
+    const Case c(driven());
+    const FactoredLaplacian laplacian(c.system);
+    const State state = settle(c.system, 3, 0.1, 1e-8).state;
+    const Controls controls = c.system.controls(0.3);
+    Linearisation exact = c.at(state, controls);
+    KnownPattern pattern = known_pattern(c.system, laplacian, nullptr);
+    CHECK_FALSE(pattern.two_levels);
+    pattern.two_levels = true;
+    auto levels = Linearisation::create(c.system, state, controls, pattern);
+    REQUIRE(levels);
+    const Quantity tip = marker_coordinate(c.system, 0, {0, 0, 1});
+    const auto w = exact.adjoint(tip), v = levels->adjoint(tip);
+    REQUIRE(w);
+    REQUIRE(v);
+    for (const Parameter& p : parameters(exact)) {
+        CAPTURE(p.name);
+        const double told = w->derivative(derivative(exact, p)), found = v->derivative(derivative(*levels, p));
+        const bool all_moves = p.kind == Parameter::Kind::support_move;  // by 1, sideways by nothing
+        CHECK(found == near(told, {.relative = 1e-6, .absolute = all_moves ? 1e-8 : 0}));
+    }
+}
