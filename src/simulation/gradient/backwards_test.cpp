@@ -11,8 +11,8 @@ using namespace pliant::sim;
 namespace {
 
 struct Walk {
-    std::vector<int> back;  ///< steps, as they were gone back over
-    std::vector<int> times; ///< (steps) that each was taken forwards
+    std::vector<int> back;   ///< steps, as they were gone back over
+    std::vector<int> times;  ///< (steps) that each was taken forwards
     int most_states = 0;
 };
 

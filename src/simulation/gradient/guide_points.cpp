@@ -9,8 +9,8 @@ namespace {
 
 using linalg::view;
 
-/// By the weight w of a node in an attachment: w moves the guide point by w x, takes w of the weight that a force on the
-/// node has, and moves the point at rest by w X.
+/// By the weight w of a node in an attachment: w moves the guide point by w x, takes w of the weight that a force on
+/// the node has, and moves the point at rest by w X.
 struct ByWeight {
     Eigen::Vector3d place = Eigen::Vector3d::Zero();    ///< times x, m
     Eigen::Vector3d weights = Eigen::Vector3d::Zero();  ///< times the weight of the node's force

@@ -10,6 +10,7 @@ namespace pliant::sim {
 /// (3 guides). `by_rest_measure` (actuators): by what each measure is at rest, of which the length of the path there is
 /// one. Shares of a cable with friction stay as they are.
 [[nodiscard]] Eigen::VectorXd guide_gradient(const Linearisation& at, const Adjoint& adjoint, const Slope& of,
-                                             const Eigen::VectorXd& by_rest_measure, std::span<const GuidePoint> guides);
+                                             const Eigen::VectorXd& by_rest_measure,
+                                             std::span<const GuidePoint> guides);
 
 }  // namespace pliant::sim

@@ -33,7 +33,7 @@ struct Measure {
     Kind kind = Kind::marker;
     std::size_t index = 0;  ///< of the marker, cable, chamber, pressure load, spring, support or obstacle, in its list
     Vec3 direction{};
-    Attachment point{};        ///< of Kind::point
+    Attachment point{};          ///< of Kind::point
     bool pressure_load = false;  ///< of Kind::pressure: of a load, not of a chamber
 };
 

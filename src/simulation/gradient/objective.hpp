@@ -19,8 +19,8 @@ struct Judgement {
     std::vector<double> slopes{};
 };
 
-/// The sum over the steps of a program, from 1, of what `judge` says. It is called once or more for a step, in any order,
-/// and must say the same each time. A weighted sum over steps has its weights in here.
+/// The sum over the steps of a program, from 1, of what `judge` says. It is called once or more for a step, in any
+/// order, and must say the same each time. A weighted sum over steps has its weights in here.
 struct Objective {
     std::vector<Measure> measures;
     std::function<Judgement(int step, std::span<const double> values)> judge;

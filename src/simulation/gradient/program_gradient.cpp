@@ -50,9 +50,7 @@ private:
     static constexpr const char* stage = "gradient";
 
     /// Whether a step depends on the one before.
-    [[nodiscard]] bool has_history() const {
-        return program_.dynamics.has_value() || stepper_.system().has_friction();
-    }
+    [[nodiscard]] bool has_history() const { return program_.dynamics.has_value() || stepper_.system().has_friction(); }
 
     /// Takes the robot from the end of step k - 1 to that of step k.
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {

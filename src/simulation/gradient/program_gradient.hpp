@@ -1,5 +1,5 @@
-// How the outcome of a program of steps changes with everything that it depends on, at rest at each instant or in motion
-// through time.
+// How the outcome of a program of steps changes with everything that it depends on, at rest at each instant or in
+// motion through time.
 #pragma once
 
 #include <vector>
@@ -35,11 +35,11 @@ struct GradientOptions {
     int kept = 8;
 };
 
-/// Runs a program as run() does, but for its checks, and goes back over it with the adjoint of each step. A step at rest
-/// depends on its own inputs alone, but for friction of contact, which slips from where the step before has ended; a step
-/// in time depends on positions and velocities of the one or two before. What is lagged stays: the normal forces and
-/// tangents of friction, the tension shares of cables with friction, the stiffness that damping takes.
-/// Errors: a measure of something that is not there; a step that does not converge, or that has no derivative (see
+/// Runs a program as run() does, but for its checks, and goes back over it with the adjoint of each step. A step at
+/// rest depends on its own inputs alone, but for friction of contact, which slips from where the step before has ended;
+/// a step in time depends on positions and velocities of the one or two before. What is lagged stays: the normal forces
+/// and tangents of friction, the tension shares of cables with friction, the stiffness that damping takes. Errors: a
+/// measure of something that is not there; a step that does not converge, or that has no derivative (see
 /// Linearisation::adjoint); cancelled.
 [[nodiscard]] Result<ProgramGradient> program_gradient(const Model& model, const Program& program,
                                                        const Objective& objective, const GradientOptions& options,

@@ -64,8 +64,7 @@ double value_of_run(const Description& d, const Program& program, const Objectiv
         if (step.index == 0) continue;
         const Vec3 tip = step.markers[0].position_m;
         const double force = dot(step.supports[0].force_N, {0.3, -0.5, 0.8});
-        sum += objective
-                   .judge(step.index, std::vector<double>{tip.x, tip.y, tip.z, step.cables[0].tension_N, force})
+        sum += objective.judge(step.index, std::vector<double>{tip.x, tip.y, tip.z, step.cables[0].tension_N, force})
                    .value;
     }
     return sum;
@@ -89,10 +88,9 @@ double worst_error(const Description& d, const Program& program) {
     if (program.dynamics) {
         const State rest = c.system.rest();
         const Eigen::VectorXd still = Eigen::VectorXd::Zero(rest.x.size());
-        controls.inertia =
-            std::make_shared<const Inertia>(c.model.elements(), c.model.free_index(),
-                                            History{rest.x, still, rest.x, still, 0}, 1, program.dynamics->damping,
-                                            nullptr);
+        controls.inertia = std::make_shared<const Inertia>(c.model.elements(), c.model.free_index(),
+                                                           History{rest.x, still, rest.x, still, 0}, 1,
+                                                           program.dynamics->damping, nullptr);
     }
     const std::vector<Parameter> all = parameters(c.at(c.system.rest(), controls));
     double worst = 0;
@@ -113,7 +111,8 @@ double worst_error(const Description& d, const Program& program) {
     double by_target = 0;  // what is wanted goes from 1 to it in a straight line
     for (const ProgramGradient::Instant& instant : found.instants) {
         if (instant.by_inputs.size() > 0)
-            by_target += instant.by_inputs[0] * instant.time / program.duration * c.system.actuators()[0].rest_measure();
+            by_target +=
+                instant.by_inputs[0] * instant.time / program.duration * c.system.actuators()[0].rest_measure();
     }
     note("target", by_target, 0.1, [&](double change) {
         Description other = d;
@@ -194,9 +193,8 @@ Lagged steps_of(const Description& d, int steps, const Lagged* as, const Paramet
             std::vector<contact::FrozenPair> pairs(frozen.pairs().begin(), frozen.pairs().end());
             for (contact::FrozenPair& pair : pairs) {
                 if (p->kind == Parameter::Kind::contact_stiffness || p->kind == Parameter::Kind::obstacle_friction)
-                    pair.limit_N *= p->kind == Parameter::Kind::contact_stiffness || pair.obstacle >= 0
-                                        ? value / p->value
-                                        : 1;
+                    pair.limit_N *=
+                        p->kind == Parameter::Kind::contact_stiffness || pair.obstacle >= 0 ? value / p->value : 1;
                 if (p->kind == Parameter::Kind::self_friction && pair.obstacle < 0) pair.limit_N *= value / p->value;
             }
             std::vector<double> start(now.x.begin(), now.x.end());
@@ -253,11 +251,8 @@ TEST_CASE("friction that slips from where the step before has ended, by all numb
 
 TEST_CASE("as many states are kept as one likes, on any number of threads: the same bits") {
     const Description d = bender(1, 0.02);
-    const Program program{.steps = 7,
-                          .duration = 0.02,
-                          .tolerance = 1e-6,
-                          .dynamics = Dynamics{{20, 0.001}},
-                          .checks = false};
+    const Program program{
+        .steps = 7, .duration = 0.02, .tolerance = 1e-6, .dynamics = Dynamics{{20, 0.001}}, .checks = false};
     const auto bits = [&](int kept, std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const ProgramGradient found =
@@ -324,8 +319,9 @@ TEST_CASE("what is not there, what does not converge, and who does not want to w
           "there is no chamber 0: the robot has 0, counted from 0");
     CHECK(told({Measure::Kind::marker, 3, {1, 0, 0}}, {.steps = 1}, silent).message ==
           "there is no marker 3: the robot has 1, counted from 0");
-    const Error stopped = told({Measure::Kind::marker, 0, {1, 0, 0}},
-                               {.steps = 1, .tolerance = 1e-11, .solver = Solver::newton, .iteration_limit = 1}, silent);
+    const Error stopped =
+        told({Measure::Kind::marker, 0, {1, 0, 0}},
+             {.steps = 1, .tolerance = 1e-11, .solver = Solver::newton, .iteration_limit = 1}, silent);
     CHECK(stopped.cause == Cause::failed);
     CHECK(stopped.message.starts_with("stopped at step 1 of 1: "));
     class Impatient : public Progress {

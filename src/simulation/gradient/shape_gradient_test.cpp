@@ -111,9 +111,8 @@ TEST_CASE("rest positions of a robot with gap elements") {
     const Eigen::VectorXd motion = noise.vector(robot.at.state().x.size());
     CHECK(gradient_error(robot.told({.inputs = false, .parameters = false, .rest = true},
                                     [&](const Variation& v) { return v.rest.dot(motion); }),
-                         robot.sizes(), 0.1 * edge, [&](double change) {
-                             return robot.values_of_robot(moved_rest(d, motion, change));
-                         }) < 1e-6);
+                         robot.sizes(), 0.1 * edge,
+                         [&](double change) { return robot.values_of_robot(moved_rest(d, motion, change)); }) < 1e-6);
 }
 
 TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; of either order") {
@@ -121,9 +120,9 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
     for (const int order : {1, 2}) {
         Description d = shaped(order, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
         d.springs.clear();
-        const std::array<Vec3, 3> points = {
-            Vec3{-0.2 * edge, 0.5 * edge, 1.1 * edge}, {1.45 * edge, 0.62 * edge, 0.93 * edge},
-            {2.8 * edge, 0.45 * edge, 0.92 * edge}};
+        const std::array<Vec3, 3> points = {Vec3{-0.2 * edge, 0.5 * edge, 1.1 * edge},
+                                            {1.45 * edge, 0.62 * edge, 0.93 * edge},
+                                            {2.8 * edge, 0.45 * edge, 0.92 * edge}};
         // Of quadratic tets the patch would have more nodes than an attachment takes, and takes others as it moves.
         const double radius = order == 1 ? 0.5 * edge : 0;
         const auto cable_of = [&](const std::array<Vec3, 3>& at) {
@@ -135,19 +134,20 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
         d.cables = {cable_of(points)};
         const Attacher attacher(d.mesh);
         By by{.inputs = false, .parameters = false};
-        by.guides = {{0, 0, {}}, {0, 1, *attacher.slope(points[1], 0, 0)}, {0, 2, *attacher.slope(points[2], radius, 0)}};
+        by.guides = {
+            {0, 0, {}}, {0, 1, *attacher.slope(points[1], 0, 0)}, {0, 2, *attacher.slope(points[2], radius, 0)}};
         Settled_robot robot(d);
         for (Eigen::Index k = 0; k < 9; ++k) {
             CAPTURE(k);
-            const double error = gradient_error(
-                robot.told(by, [&](const Variation& v) { return v.guides[k]; }), robot.sizes(), 0.05 * edge,
-                [&](double change) {
-                    Description other = d;
-                    std::array<Vec3, 3> moved = points;
-                    moved[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)] += change;
-                    other.cables = {cable_of(moved)};
-                    return robot.values_of_robot(other);
-                });
+            const double error =
+                gradient_error(robot.told(by, [&](const Variation& v) { return v.guides[k]; }), robot.sizes(),
+                               0.05 * edge, [&](double change) {
+                                   Description other = d;
+                                   std::array<Vec3, 3> moved = points;
+                                   moved[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)] += change;
+                                   other.cables = {cable_of(moved)};
+                                   return robot.values_of_robot(other);
+                               });
             CHECK(error < 1e-6);
             worst = std::max(worst, error);
         }

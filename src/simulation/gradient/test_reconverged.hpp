@@ -14,7 +14,6 @@
 
 namespace pliant::sim::testing {
 
-
 /// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else.
 inline bool converge(const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
@@ -51,7 +50,6 @@ inline State settled_from(const Equilibrium& system, const Controls& controls, S
 
 /// The controls of a robot at the state that is looked at.
 using ControlsOf = std::function<Controls(Equilibrium&)>;
-
 
 /// Values of the measures of a robot that differs, converged anew; not a number where that fails.
 inline Eigen::VectorXd values_of(const Equilibrium& system, const Controls& controls, State state,

@@ -120,10 +120,10 @@ Eigen::VectorXd wanted_by_rest(const Linearisation& at) {
     for (std::size_t a = 0; a < at.system().actuators().size(); ++a) {
         const Parameter& input = all[a];
         const double share = input.value / at.system().actuators()[a].rest_measure();
-        const bool changes = a < d.cables.size()
-                                 ? d.cables[a].target.kind == CableTarget::Kind::shortening_m
-                                 : input.kind == Parameter::Kind::volume && d.chambers[a - d.cables.size()].target.kind ==
-                                                                                ChamberTarget::Kind::volume_change_m3;
+        const bool changes = a < d.cables.size() ? d.cables[a].target.kind == CableTarget::Kind::shortening_m
+                                                 : input.kind == Parameter::Kind::volume &&
+                                                       d.chambers[a - d.cables.size()].target.kind ==
+                                                           ChamberTarget::Kind::volume_change_m3;
         using Kind = Parameter::Kind;
         if (input.kind == Kind::length || input.kind == Kind::volume || input.kind == Kind::gas)
             rates[static_cast<Eigen::Index>(a)] = changes ? 1 : share;

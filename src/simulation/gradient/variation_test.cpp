@@ -32,7 +32,6 @@ Eigen::MatrixXd gradients(Linearisation& at, const std::vector<Slope>& slopes, c
     return rows;
 }
 
-
 /// By all inputs and all numbers of the robot.
 Worst errors_of(Case& c, const State& state, const ControlsOf& controls_of) {
     const Controls controls = controls_of(c.system);
@@ -46,21 +45,20 @@ Worst errors_of(Case& c, const State& state, const ControlsOf& controls_of) {
     Worst worst;
     const std::vector<Parameter> wanted = inputs(at), made_of = parameters(at);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const double error = gradient_error(
-            by_inputs.col(static_cast<Eigen::Index>(k)), values, wanted[k].value != 0 ? std::fabs(wanted[k].value) : 1,
-            [&](double change) {
-                State moved = at.state();
-                const Controls with = with_input(at, wanted[k], change, moved);
-                return values_of(c.system, with, moved, measures);
-            });
+        const double error = gradient_error(by_inputs.col(static_cast<Eigen::Index>(k)), values,
+                                            wanted[k].value != 0 ? std::fabs(wanted[k].value) : 1, [&](double change) {
+                                                State moved = at.state();
+                                                const Controls with = with_input(at, wanted[k], change, moved);
+                                                return values_of(c.system, with, moved, measures);
+                                            });
         INFO(wanted[k].name);
         CHECK(error < 1e-6);
         worst.inputs = std::max(worst.inputs, error);
     }
     for (std::size_t k = 0; k < made_of.size(); ++k) {
         const Parameter& p = made_of[k];
-        const double error = gradient_error(
-            by_parameters.col(static_cast<Eigen::Index>(k)), values, size_of(p), [&](double change) {
+        const double error =
+            gradient_error(by_parameters.col(static_cast<Eigen::Index>(k)), values, size_of(p), [&](double change) {
                 Case other(with_value(c.model.description(), p, p.value + change));
                 Controls with = controls_of(other.system);
                 if (p.kind == Parameter::Kind::ambient_pressure) with.drives = at.controls().drives;

@@ -19,7 +19,8 @@ Eigen::VectorXd positions(const State& state, const Controls& controls) {
 /// Multiplies `motion` by the blocks that it is given.
 contact::BlockVisitor multiplier(const Eigen::VectorXd& motion, Eigen::VectorXd& product) {
     return [&](int a, int b, const linalg::Matrix3& block) {
-        product.segment<3>(3 * static_cast<Eigen::Index>(a)) += block * motion.segment<3>(3 * static_cast<Eigen::Index>(b));
+        product.segment<3>(3 * static_cast<Eigen::Index>(a)) +=
+            block * motion.segment<3>(3 * static_cast<Eigen::Index>(b));
     };
 }
 

@@ -57,8 +57,7 @@ Eigen::MatrixXd law_products(const Elements& elements, const Description& descri
     for (const Material& material : description.materials)
         most = std::max(most, material::parameters(material.law)[0].direction.size());
     const std::size_t count = elements.tet_count();
-    Eigen::MatrixXd products =
-        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(most), static_cast<Eigen::Index>(count));
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(most), static_cast<Eigen::Index>(count));
     parallel_for(count, tets_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             for (int q = 0; q < elements.points_per_tet(); ++q) {
@@ -92,8 +91,9 @@ Eigen::VectorXd density_products(const Elements& elements, const Masses& masses,
             for (int q = 0; q < elements.points_per_tet(); ++q) {
                 double along = by_mass[t];
                 for (int a = 0; a < static_cast<int>(elements.nodes_per_tet()); ++a)
-                    along += elements.shape_value(q, a) *
-                             masses.weight.dot(weights.segment<3>(3 * static_cast<Eigen::Index>(elements.node_of(t, a))));
+                    along +=
+                        elements.shape_value(q, a) *
+                        masses.weight.dot(weights.segment<3>(3 * static_cast<Eigen::Index>(elements.node_of(t, a))));
                 product += elements.point_volume(t, q) * along;
             }
         }

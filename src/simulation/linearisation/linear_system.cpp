@@ -22,10 +22,10 @@ constexpr int most_rounds = 8, most_products = 200;
 // On two levels: of x in the norm of K, each round again; a residual that is beyond the other has not been solved for.
 constexpr double level_tolerance = 1e-4, level_residual = 1e-3;
 constexpr int level_rounds = 2, level_limit = 200;
-constexpr double column_residual = 1e-11;   // of the columns of the Schur complement
-constexpr double off_at_most = 0.1;  // of a quick way's answer to what it makes largest
-constexpr double singular = 1e-14;   // smallest over largest singular value, in balanced units
-constexpr double redundant = 1e-11;  // pivots of the Schur complement
+constexpr double column_residual = 1e-11;  // of the columns of the Schur complement
+constexpr double off_at_most = 0.1;        // of a quick way's answer to what it makes largest
+constexpr double singular = 1e-14;         // smallest over largest singular value, in balanced units
+constexpr double redundant = 1e-11;        // pivots of the Schur complement
 constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
 
 using linalg::view;

@@ -51,21 +51,21 @@ void add_skew_product(const linalg::SymmetricPattern& pattern, const std::vector
 /// Solves with a LinearSystem. Its preconditioner is the exact inverse of the system without the skew part, but for
 /// rounding: a Cholesky factor of K in single precision, or conjugate gradients on two levels, and the small Schur
 /// complement D - C^T K^-1 B. Solutions are refined with residuals of the very system. What that does not solve, or is
-/// nearly singular, is solved again with a factor in double precision. Where K is not positive definite, as at an unstable
-/// equilibrium, a multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and Schultz 1986)
-/// makes good for that and for the skew part. Forces and constraints are balanced first: each multiplier is scaled so
-/// that its column is as large as one of K.
+/// nearly singular, is solved again with a factor in double precision. Where K is not positive definite, as at an
+/// unstable equilibrium, a multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and
+/// Schultz 1986) makes good for that and for the skew part. Forces and constraints are balanced first: each multiplier
+/// is scaled so that its column is as large as one of K.
 class SystemSolver {
 public:
     /// `system` must outlive it.
     explicit SystemSolver(const LinearSystem& system);
     ~SystemSolver();
 
-    /// x with A x = b, or A^T x = b, to |b - A x| <= 1e-12 |b| in balanced units; or, where x is so much larger than b that
-    /// rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8 of x in the norm of K. Of
-    /// several solutions, where cables do the same, the one with the smallest multipliers. Errors: nothing solves it, since cables that do
-    /// the same are asked for different things; the matrix is singular (a limit point, a bifurcation, a part that can
-    /// move freely).
+    /// x with A x = b, or A^T x = b, to |b - A x| <= 1e-12 |b| in balanced units; or, where x is so much larger than b
+    /// that rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8 of x in the norm
+    /// of K. Of several solutions, where cables do the same, the one with the smallest multipliers. Errors: nothing
+    /// solves it, since cables that do the same are asked for different things; the matrix is singular (a limit point,
+    /// a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
 
 private:
@@ -93,18 +93,18 @@ private:
     const LinearSystem* system_;
     Way way_ = Way::none;
     bool singular_ = false;
-    bool exact_ = false;                ///< the preconditioner is the inverse but for rounding
-    double stiffness_ = 1;              ///< mean of the diagonal of K, N/m
-    Eigen::VectorXd column_, row_;      ///< (solved) scales of the multipliers and of the constraints
-    Eigen::MatrixXd forces_;            ///< B, scaled
-    Eigen::MatrixXd constraints_;       ///< C, scaled
-    Eigen::VectorXd compliance_;        ///< D, scaled
-    std::unique_ptr<linalg::Cholesky> factor_;    ///< of K, or K with more on its diagonal
-    std::unique_ptr<linalg::TwoLevel> levels_;    ///< of K
-    Eigen::MatrixXd from_forces_;       ///< K^-1 B
-    Eigen::MatrixXd from_constraints_;  ///< K^-1 C
-    Eigen::MatrixXd schur_inverse_;     ///< of D - C^T K^-1 B, or the pseudo-inverse
-    Eigen::MatrixXd schur_null_;        ///< columns: multipliers that do nothing
+    bool exact_ = false;                        ///< the preconditioner is the inverse but for rounding
+    double stiffness_ = 1;                      ///< mean of the diagonal of K, N/m
+    Eigen::VectorXd column_, row_;              ///< (solved) scales of the multipliers and of the constraints
+    Eigen::MatrixXd forces_;                    ///< B, scaled
+    Eigen::MatrixXd constraints_;               ///< C, scaled
+    Eigen::VectorXd compliance_;                ///< D, scaled
+    std::unique_ptr<linalg::Cholesky> factor_;  ///< of K, or K with more on its diagonal
+    std::unique_ptr<linalg::TwoLevel> levels_;  ///< of K
+    Eigen::MatrixXd from_forces_;               ///< K^-1 B
+    Eigen::MatrixXd from_constraints_;          ///< K^-1 C
+    Eigen::MatrixXd schur_inverse_;             ///< of D - C^T K^-1 B, or the pseudo-inverse
+    Eigen::MatrixXd schur_null_;                ///< columns: multipliers that do nothing
     using Whole = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
     std::shared_ptr<Whole> whole_;  ///< of A, balanced, where GMRES finds no solution with the others
 };

@@ -78,8 +78,8 @@ void add_actuators(const Linearisation& at, std::vector<Parameter>& all) {
         const auto a = static_cast<std::size_t>(d.growths[k].actuator);
         const GapElements* gaps = at.system().actuators()[a].gaps();
         if (gaps != nullptr && gaps->has(k))
-            all.push_back({Kind::gap_weight, k, fmt::format("gap {} of cable \"{}\": weight", k, d.cables[a].name), "Pa",
-                           d.growths[k].weight_Pa});
+            all.push_back({Kind::gap_weight, k, fmt::format("gap {} of cable \"{}\": weight", k, d.cables[a].name),
+                           "Pa", d.growths[k].weight_Pa});
     }
     for (const Drive& drive : at.controls().drives) {
         if (drive.kind != Drive::Kind::gas) continue;

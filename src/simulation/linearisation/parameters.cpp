@@ -184,9 +184,8 @@ Derivative by_gap_weight(const Linearisation& at, std::size_t growth) {
     const auto& growths = at.system().model().description().growths;
     const auto cable = static_cast<std::size_t>(growths[growth].actuator);
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    at.system().actuators()[cable].gaps()->add_weight_force(view(at.state().x),
-                                                            at.state().multiplier[static_cast<Eigen::Index>(cable)],
-                                                            growth, view(force));
+    at.system().actuators()[cable].gaps()->add_weight_force(
+        view(at.state().x), at.state().multiplier[static_cast<Eigen::Index>(cable)], growth, view(force));
     return by_force(at, force);
 }
 
@@ -320,9 +319,10 @@ Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span
     const Description& d = at.system().model().description();
     const Sums of = sums_of(at.system().model().elements(), d.materials.size(), tets);
     const auto moves = [](const Parameter& p) { return is_of_support(p.kind); };
-    const Eigen::VectorXd held = std::ranges::any_of(by, moves)
-                                     ? Eigen::VectorXd(adjoint.quantity.by_positions - at.motion_weights(adjoint.weights))
-                                     : Eigen::VectorXd();
+    const Eigen::VectorXd held =
+        std::ranges::any_of(by, moves)
+            ? Eigen::VectorXd(adjoint.quantity.by_positions - at.motion_weights(adjoint.weights))
+            : Eigen::VectorXd();
     std::optional<double> plates;
     Eigen::VectorXd all(static_cast<Eigen::Index>(by.size()));
     for (std::size_t k = 0; k < by.size(); ++k) {

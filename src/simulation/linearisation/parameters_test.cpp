@@ -80,9 +80,10 @@ TEST_CASE("every law's numbers and density, of either order") {
             d.gravity_m_s2 = {0, 3, -9.81};
             d.plates = {{"plate", end_of(d.mesh)}};
             Case c(std::move(d));
-            worst = std::max(worst, worst_error(
-                                        c, disturbed(c.system, 0, 0),
-                                        [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
+            worst =
+                std::max(worst, worst_error(
+                                    c, disturbed(c.system, 0, 0),
+                                    [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
         }
     }
     MESSAGE("laws: ", worst);

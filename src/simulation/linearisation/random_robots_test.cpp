@@ -6,9 +6,7 @@
 
 #include <cstdlib>
 
-#include "simulation/linearisation/test_differences.hpp"
-#include "simulation/linearisation/test_robots.hpp"
-#include "simulation/run/test_random_program.hpp"
+#include "simulation/linearisation/test_random_robots.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -18,34 +16,9 @@ namespace {
 
 struct Worst {
     Measured error;
-    unsigned product_seed = 0, input_seed = 0, solution_seed = 0;
+    double parameter = 0;
+    unsigned product_seed = 0, input_seed = 0, solution_seed = 0, parameter_seed = 0;
 };
-
-/// A random robot, now and then with what random_program leaves out: pressure on a patch with a free rim, a spring, a
-/// roller, a rigid plate.
-Description with_more(Description d, unsigned seed) {
-    test::Dice dice(seed + 1000);
-    const auto where = [&](const std::function<bool(Vec3)>& inside) { return reference::nodes_where(d.mesh, inside); };
-    if (dice.chance(0.4)) {
-        d.pressures = {patch(d.mesh, dice.between(0, 2) * test::side)};
-        d.pressures[0].pressure_Pa = std::pow(10, dice.between(1, 3));
-    }
-    if (dice.chance(0.4)) {
-        const Cable path = test::random_cable(dice, d.mesh, 0);
-        // Not as long as at rest: where a band begins to pull its force has a kink.
-        d.springs = {{"spring", path.points, std::pow(10, dice.between(-1, 3)), dice.between(0, 3) * test::side,
-                      dice.chance(0.5)}};
-    }
-    if (dice.chance(0.3))
-        d.supports.push_back({"roller",
-                              where([](Vec3 p) { return p.y < 1e-9 && p.x > test::side; }),
-                              {},
-                              ramp(0, 1),
-                              {},
-                              {{0, dice.between(-1, 1), 1}}});
-    if (dice.chance(0.2)) d.plates = {{"plate", where([](Vec3 p) { return p.x > 3 * test::side - 1e-9; })}};
-    return d;
-}
 
 void note(const Measured& e, unsigned seed, Worst& worst) {
     if (e.product > worst.error.product) worst.product_seed = seed;
@@ -55,6 +28,45 @@ void note(const Measured& e, unsigned seed, Worst& worst) {
     worst.error.transpose = std::max(worst.error.transpose, e.transpose);
     worst.error.solution = std::max(worst.error.solution, e.solution);
     worst.error.input = std::max(worst.error.input, e.input);
+}
+
+Eigen::VectorXd tail_only(Eigen::VectorXd rows, Eigen::Index free) {
+    rows.head(free).setZero();
+    return rows;
+}
+
+/// dF/dp of all that a robot is made with, against robots that are made differently.
+void note_parameters(Linearisation& at, unsigned seed, Worst& worst) {
+    const std::vector<Parameter> all = parameters(at);
+    // Of the forces, and of their change with a number as large as itself: what is much less drowns in rounding.
+    double largest = at.system().evaluate(at.state(), at.controls()).out_of_balance.norm();
+    for (const Parameter& p : all) {
+        if (p.kind == Parameter::Kind::law)
+            largest = std::max(largest, derivative(at, p).equations.norm() * size_of(p));
+    }
+    for (const Parameter& p : all) {
+        const Derivative by = derivative(at, p);
+        const auto m = static_cast<Eigen::Index>(at.solved().size());
+        // A row beside what it would be if all nodes moved by a share of the forces' change over their stiffness.
+        Eigen::VectorXd least(m);
+        for (Eigen::Index k = 0; k < m; ++k) {
+            Eigen::VectorXd row = Eigen::VectorXd::Zero(at.size());
+            row[at.size() - m + k] = 1;
+            const double motion = std::max(by.direct.positions.norm(), 1e-9 * at.state().x.norm() / size_of(p));
+            least[k] = 1e-3 * motion * at.motion_weights(row).norm();
+        }
+        const double error = best_error(0.02 * size_of(p), [&](double h) {
+            const Eigen::VectorXd found = difference([&](double change) { return equations_with(at, p, change); }, h);
+            const Eigen::Index n = at.size() - m;
+            const double off = (found - by.equations).head(n).norm() * size_of(p) / largest;
+            return off < 1e-13 ? relative_error(at, tail_only(found, n), tail_only(by.equations, n), least)
+                               : relative_error(at, found, by.equations, least);
+        });
+        INFO(p.name);
+        CHECK(error < 1e-7);
+        if (error > worst.parameter) worst.parameter_seed = seed;
+        worst.parameter = std::max(worst.parameter, error);
+    }
 }
 
 }  // namespace
@@ -71,25 +83,20 @@ TEST_CASE("random robots, as far as their programs lead") {
         ++tried;
         CAPTURE(seed);
         CAPTURE(test::described(p));
-        const Equilibrium system(*model);
-        const Settled settled =
-            settle(system, 2, 0.03, 1e-6, p.program.dynamics ? &p.program.dynamics->damping : nullptr);
-        Noise noise(seed);
-        State aside = settled.state;
-        for (double& x : aside.x) x += 0.003 * test::side * noise();
-        system.place_supports(settled.controls, aside.x);
-        const bool stays = settled.settled > 0 || !system.evaluate(aside, settled.controls).possible();
-        moved += settled.settled > 0 ? 1 : 0;
-        auto at = Linearisation::create(system, stays ? settled.state : aside, settled.controls);
+        RandomState random(*model, p, seed);
+        moved += random.moved ? 1 : 0;
+        auto at = Linearisation::create(random.system, random.state, random.controls);
         REQUIRE_MESSAGE(at, at.error().message);
         const Measured e = errors_of(*at, 0.25 * test::side, seed);
         CHECK(e.product < 1e-7);
         CHECK(e.transpose < 1e-13);
         CHECK(e.solution < 1e-12);
         note(e, seed, worst);
+        note_parameters(*at, seed, worst);
     }
     MESSAGE(moved, " of ", tried, " left their rest; worst: products ", worst.error.product, " (seed ",
             worst.product_seed, "), transposed ", worst.error.transpose, ", solutions ", worst.error.solution,
-            " (seed ", worst.solution_seed, "), inputs ", worst.error.input, " (seed ", worst.input_seed, ")");
+            " (seed ", worst.solution_seed, "), inputs ", worst.error.input, " (seed ", worst.input_seed,
+            "), parameters ", worst.parameter, " (seed ", worst.parameter_seed, ")");
     CHECK(3 * moved > count);
 }

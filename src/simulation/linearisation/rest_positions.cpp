@@ -96,7 +96,9 @@ Eigen::VectorXd held_weights(const Linearisation& at, const Eigen::VectorXd& wei
 Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) {
     const Equilibrium& system = at.system();
     Eigen::VectorXd force = zeros(at);
-    add_rest_product(system.model().elements(), masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, motion, force);
+    add_rest_product(system.model().elements(),
+                     masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, motion,
+                     force);
     for (const Plate& plate : system.plates()) plate.add_rest_product(view(at.state().x), view(motion), view(force));
     if (!system.plates().empty()) force += volume_gradient(system.model().mesh()).dot(motion) / 3 * plate_forces(at);
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
@@ -117,7 +119,9 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
     const Equilibrium& system = at.system();
     const Eigen::VectorXd weights = at.force_weights(adjoint).head(at.state().x.size());
     Eigen::VectorXd sum = zeros(at);
-    add_rest_weights(system.model().elements(), masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, weights, sum);
+    add_rest_weights(system.model().elements(),
+                     masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, weights,
+                     sum);
     for (const Plate& plate : system.plates()) plate.add_rest_weights(view(at.state().x), view(weights), view(sum));
     if (!system.plates().empty()) sum += weights.dot(plate_forces(at)) / 3 * volume_gradient(system.model().mesh());
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {

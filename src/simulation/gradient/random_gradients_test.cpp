@@ -1,0 +1,151 @@
+// Gradients of random robots, where their programs lead, against states that are converged anew.
+//
+// PLIANT_RANDOM_ROBOTS sets how many (8 unless told).
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "simulation/gradient/test_reconverged.hpp"
+#include "simulation/gradient/variation.hpp"
+#include "simulation/linearisation/test_random_robots.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using namespace pliant::sim::testing;
+
+namespace {
+
+/// A judgement of all measures with weights that make them about equally large, so that one gradient has them all.
+struct Judged {
+    std::vector<Measure> measures;
+    Eigen::VectorXd weights;
+    [[nodiscard]] double operator()(const Equilibrium& system, const Controls& controls, const State& state) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < measures.size(); ++k)
+            sum += weights[static_cast<Eigen::Index>(k)] * slope(system, state, controls, measures[k]).value;
+        return sum;
+    }
+};
+
+/// The state of another robot, or under other controls, near one that is converged: with the factor of that one, so
+/// that each iteration leaves a share of the error that goes with the difference. False: it does not converge.
+bool converge_beside(Linearisation& at, const Equilibrium& system, const Controls& controls, State& state) {
+    system.place_supports(controls, state.x);
+    double least = 1e300;
+    for (int k = 0; k < 40; ++k) {
+        const auto step = at.solve(at.equations(system, state, controls));
+        if (!step) return false;
+        const Change change = at.change_of(*step);
+        const double size = change.positions.norm() / state.x.norm();
+        if (!(size < 1e-3)) return false;
+        if (size > 0.5 * least && size < 1e-12) break;
+        state.x -= change.positions;
+        state.multiplier -= change.multipliers;
+        least = std::min(least, size);
+        if (size < 1e-16) break;
+    }
+    state.multiplier = system.evaluate(state, controls).multiplier;
+    return least < 1e-12;
+}
+
+struct Found {
+    double worst = 0;  ///< of what differences can tell
+    std::string name;
+    int tried = 0, told = 0;  ///< derivatives, and those that differences tell to 1e-6
+};
+
+/// A derivative against differences of states that are converged anew, beside its own size; beyond what rounding makes
+/// of states that should be the same, converged from a little aside.
+void hold_against(const std::string& name, double told, double size, Found& found,
+                  const std::function<double(double change, unsigned shaken)>& value_from) {
+    double noise = 1e-15;
+    for (const unsigned shaken : {1, 2, 3, 4})
+        noise = std::max(noise, std::fabs(value_from(0, shaken) - value_from(0, 0)));
+    const auto value = [&](double change) { return value_from(change, 0); };
+    double strict = 1e300;
+    const double error = best_error(0.02 * size, [&](double h) {
+        const double by_difference = (8 * (value(h) - value(-h)) - (value(2 * h) - value(-2 * h))) / (12 * h);
+        const double off = std::fabs(told - by_difference), beside = std::max(std::fabs(by_difference), 1e-300);
+        strict = std::min(strict, off / beside);
+        return std::max(0.0, off - 4 * noise / h) / beside;
+    });
+    INFO(name);
+    INFO("noise ", noise);
+    CHECK(error < 1e-6);
+    ++found.tried;
+    found.told += strict < 1e-6 ? 1 : 0;
+    if (error > found.worst) found = {error, name, found.tried, found.told};
+}
+
+/// By a few of all numbers, chosen at random, and along one motion of all rest positions.
+void try_robot(Linearisation& at, unsigned seed, Found& found) {
+    test::Dice dice(seed + 77);
+    Noise noise(seed);
+    const Description& d = at.system().model().description();
+    Judged judged{all_measures(d), {}};
+    std::vector<Slope> slopes;
+    for (const Measure& m : judged.measures) slopes.push_back(slope(at, m));
+    const Eigen::VectorXd sizes = sizes_of(at, slopes);
+    judged.weights = noise.vector(sizes.size());
+    for (Eigen::Index k = 0; k < sizes.size(); ++k) judged.weights[k] /= std::max(sizes[k], 1e-9);
+    Slope sum = no_slope(at.system());
+    for (std::size_t k = 0; k < slopes.size(); ++k) add(slopes[k], judged.weights[static_cast<Eigen::Index>(k)], sum);
+    const auto by = gradient(at, sum, {.rest = true});
+    REQUIRE_MESSAGE(by, by.error().message);
+    const auto converged = [&](const Equilibrium& system, const Controls& controls, State state, unsigned shaken) {
+        Noise aside(shaken);
+        if (shaken > 0) state.x += 1e-8 * test::side * aside.vector(state.x.size());
+        return converge_beside(at, system, controls, state) ? judged(system, controls, state) : std::nan("");
+    };
+    const std::vector<Parameter> wanted = inputs(at), made_of = parameters(at);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        if (wanted.size() > 3 && dice.chance(0.5)) continue;
+        const double size = wanted[k].value != 0 ? std::fabs(wanted[k].value) : 1;
+        hold_against(wanted[k].name, by->inputs[static_cast<Eigen::Index>(k)], size, found,
+                     [&](double change, unsigned shaken) {
+                         State state = at.state();
+                         const Controls controls = with_input(at, wanted[k], change, state);
+                         return converged(at.system(), controls, state, shaken);
+                     });
+    }
+    for (std::size_t k = 0; k < made_of.size(); ++k) {
+        if (dice.chance(0.6)) continue;
+        const Parameter& p = made_of[k];
+        hold_against(p.name, by->parameters[static_cast<Eigen::Index>(k)], size_of(p), found,
+                     [&](double change, unsigned shaken) {
+                         const Case other(with_value(d, p, p.value + change));
+                         return converged(other.system, controls_with(at, other.system, p, change), at.state(), shaken);
+                     });
+    }
+}
+
+}  // namespace
+
+TEST_CASE("random robots, by what is wanted of them and by what they are made with") {
+    const char* asked = std::getenv("PLIANT_RANDOM_ROBOTS");
+    const unsigned count = asked != nullptr ? static_cast<unsigned>(std::strtoul(asked, nullptr, 10)) : 8;
+    Found found;
+    unsigned tried = 0, seed = 1, given_up = 0;
+    for (; tried < count; ++seed) {
+        const test::RandomProgram p = test::random_program(seed);
+        const auto model = Model::create(with_more(p.robot, seed));
+        if (!model) continue;
+        RandomState random(*model, p, seed);
+        if (!random.moved) continue;
+        CAPTURE(seed);
+        CAPTURE(test::described(p));
+        if (!converge(random.system, random.controls, random.state)) {
+            ++given_up;
+            continue;
+        }
+        auto at = Linearisation::create(random.system, random.state, random.controls);
+        REQUIRE_MESSAGE(at, at.error().message);
+        ++tried;
+        try_robot(*at, seed, found);
+    }
+    MESSAGE(tried, " robots of ", seed - 1, ", ", given_up, " of which do not converge to the last digit; worst ",
+            found.worst, ": ", found.name, "; ", found.told, " of ", found.tried, " derivatives to 1e-6 of themselves");
+    CHECK(found.told > 0.7 * found.tried);
+}

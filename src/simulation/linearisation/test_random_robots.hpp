@@ -1,0 +1,114 @@
+// Random robots at a state of theirs, and the same robots made a little differently.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "simulation/linearisation/test_differences.hpp"
+#include "simulation/linearisation/test_parameters.hpp"
+#include "simulation/linearisation/test_robots.hpp"
+#include "simulation/run/test_random_program.hpp"
+
+namespace pliant::sim::testing {
+
+/// A random robot, now and then with what random_program leaves out: pressure on a patch with a free rim, a spring, a
+/// roller, a rigid plate.
+inline Description with_more(Description d, unsigned seed) {
+    test::Dice dice(seed + 1000);
+    const auto where = [&](const std::function<bool(Vec3)>& inside) { return reference::nodes_where(d.mesh, inside); };
+    if (dice.chance(0.4)) {
+        d.pressures = {patch(d.mesh, dice.between(0, 2) * test::side)};
+        d.pressures[0].pressure_Pa = std::pow(10, dice.between(1, 3));
+    }
+    if (dice.chance(0.4)) {
+        const Cable path = test::random_cable(dice, d.mesh, 0);
+        // Not as long as at rest: where a band begins to pull its force has a kink.
+        d.springs = {{"spring", path.points, std::pow(10, dice.between(-1, 3)), dice.between(0, 3) * test::side,
+                      dice.chance(0.5)}};
+    }
+    if (dice.chance(0.3))
+        d.supports.push_back({"roller",
+                              where([](Vec3 p) { return p.y < 1e-9 && p.x > test::side; }),
+                              {},
+                              ramp(0, 1),
+                              {},
+                              {{0, dice.between(-1, 1), 1}}});
+    if (dice.chance(0.2)) d.plates = {{"plate", where([](Vec3 p) { return p.x > 3 * test::side - 1e-9; })}};
+    return d;
+}
+
+/// Where the program of a robot leads or, where it leads nowhere in a few iterations, a little off its rest.
+struct RandomState {
+    Equilibrium system;
+    State state;
+    Controls controls;
+    bool moved = false;
+    RandomState(const Model& model, const test::RandomProgram& p, unsigned seed) : system(model) {
+        Settled settled = settle(system, 2, 0.03, 1e-6, p.program.dynamics ? &p.program.dynamics->damping : nullptr);
+        Noise noise(seed);
+        State aside = settled.state;
+        for (double& x : aside.x) x += 0.003 * test::side * noise();
+        system.place_supports(settled.controls, aside.x);
+        moved = settled.settled > 0;
+        const bool stays = moved || !system.evaluate(aside, settled.controls).possible();
+        state = stays ? std::move(settled.state) : std::move(aside);
+        controls = std::move(settled.controls);
+    }
+};
+
+/// With other coefficients of friction, or another stiffness of contact, frozen forces are in proportion.
+inline std::shared_ptr<const contact::Friction> friction_with(const contact::Friction& frozen, const Parameter& p,
+                                                              double factor) {
+    using Kind = Parameter::Kind;
+    std::vector<contact::FrozenPair> pairs(frozen.pairs().begin(), frozen.pairs().end());
+    for (contact::FrozenPair& pair : pairs) {
+        const bool its_own = (p.kind == Kind::self_friction && pair.obstacle < 0) ||
+                             (p.kind == Kind::obstacle_friction && pair.obstacle == static_cast<int>(p.index));
+        if (its_own || p.kind == Kind::contact_stiffness) pair.limit_N *= factor;
+    }
+    const std::vector<double> start(frozen.start().begin(), frozen.start().end());
+    return std::make_shared<const contact::Friction>(std::move(pairs), start, frozen.slip_m());
+}
+
+/// The controls of a robot that differs by `change` of a number: what is wanted, and lagged, stays.
+inline Controls controls_with(const Linearisation& at, const Equilibrium& other, const Parameter& p, double change) {
+    using Kind = Parameter::Kind;
+    const Controls& now = at.controls();
+    Controls controls = other.controls(now.time);
+    const Description& d = other.model().description();
+    const std::size_t steered = d.cables.size() + d.chambers.size();
+    for (std::size_t a = 0; a < steered; ++a) controls.drives[a] = now.drives[a];
+    controls.shares = now.shares;
+    controls.met = now.met;
+    const double factor = p.value != 0 ? 1 + change / p.value : 1;
+    if (now.friction) controls.friction = friction_with(*now.friction, p, factor);
+    if (p.kind == Kind::cable_friction && !now.shares[p.index].empty()) {
+        const Actuator& cable = at.system().actuators()[p.index];
+        for (double& share : controls.shares[p.index]) share = std::pow(share, factor);
+        const auto x = linalg::view(at.state().x);
+        if (controls.drives[p.index].kind == Drive::Kind::measure)
+            controls.drives[p.index].value +=
+                cable.measure(x, controls.shares[p.index]) - cable.measure(x, now.shares[p.index]);
+    }
+    if (!now.inertia) return controls;
+    Damping damping = now.inertia->damping();
+    if (p.kind == Kind::mass_damping) damping.mass_per_s += change;
+    if (p.kind == Kind::stiffness_damping) damping.stiffness_s += change;
+    controls.inertia = std::make_shared<const Inertia>(other.model().elements(), other.model().free_index(),
+                                                       now.inertia->start(), now.inertia->dt(), damping, nullptr);
+    return controls;
+}
+
+/// The equations of such a robot at the same unknowns.
+inline Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, double change) {
+    const Case other(with_value(at.system().model().description(), p, p.value + change));
+    const Controls controls = controls_with(at, other.system, p, change);
+    State state = at.state();
+    other.system.place_supports(controls, state.x);
+    return at.equations(other.system, state, controls);
+}
+
+}  // namespace pliant::sim::testing
