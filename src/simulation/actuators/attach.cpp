@@ -61,8 +61,7 @@ public:
     MovingLeastSquares(const std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& point, double reach)
         : reach_(reach), moments_(static_cast<Eigen::Index>(nodes.size()), 4), kernel_(moments_.rows()) {
         for (Eigen::Index i = 0; i < kernel_.size(); ++i) {
-            const Vec3 offset =
-                (points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])] - point) / reach;
+            const Vec3 offset = (points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])] - point) / reach;
             moments_.row(i) << 1, offset.x, offset.y, offset.z;
             const double fall = 1 - dot(offset, offset);
             kernel_[i] = fall * fall;
@@ -173,8 +172,7 @@ Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tol
     Patch patch = patch_at(location->tet, point, radius);
     const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
     if (!fit.good()) return carried_by_tet(point, tolerance);
-    return Attachment{
-        std::move(patch.nodes), {fit.weights().data(), fit.weights().data() + fit.weights().size()}, {}};
+    return Attachment{std::move(patch.nodes), {fit.weights().data(), fit.weights().data() + fit.weights().size()}, {}};
 }
 
 Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double tolerance) const {

@@ -36,9 +36,9 @@ public:
     /// A gap and how the cable passes it. Its tets have been chosen by who drives it.
     struct Gap {
         std::vector<std::size_t> tets;
-        Vec3 direction;        ///< of length 1
-        double length_m = 0;   ///< above 0
-        double weight_Pa = 0;  ///< above 0
+        Vec3 direction;          ///< of length 1
+        double length_m = 0;     ///< above 0
+        double weight_Pa = 0;    ///< above 0
         std::size_t number = 0;  ///< in the list of whoever made it
     };
     /// At least one gap with a tet.
@@ -64,8 +64,8 @@ public:
     [[nodiscard]] double scale(double m) const { return 1 - m / stiffness_N_; }
     /// What of m is left to close the gaps, N, once their elements have been shortened: c (M/L - s).
     [[nodiscard]] double tension(std::span<const double> x, double m) const;
-    /// c / L, N/m: how that changes with M; with weight_Pa of a gap, m^2; and result (3n) += factor * how it changes with
-    /// the rest positions. What stays is as in add_rest_product().
+    /// c / L, N/m: how that changes with M; with weight_Pa of a gap, m^2; and result (3n) += factor * how it changes
+    /// with the rest positions. What stays is as in add_rest_product().
     [[nodiscard]] double tension_rate() const { return stiffness_N_ / length_m_; }
     [[nodiscard]] double tension_by_weight(std::span<const double> x, std::size_t gap_number) const;
     void add_tension_rest_gradient(const Elements& elements, std::span<const double> x, double factor,
@@ -103,8 +103,8 @@ private:
         int point = 0;
         std::size_t gap = 0;
     };
-    std::vector<Point> points_;  ///< (points) where each one is
-    std::vector<Vec3> directions_;  ///< (gaps) d
+    std::vector<Point> points_;           ///< (points) where each one is
+    std::vector<Vec3> directions_;        ///< (gaps) d
     std::vector<double> gap_weights_Pa_;  ///< (gaps)
     std::vector<std::size_t> numbers_;    ///< (gaps)
     /// How the rest volumes change, over themselves.
@@ -119,8 +119,8 @@ private:
     /// growth of all gaps together and of each (gaps) do.
     void spread(const Elements& elements, const std::vector<linalg::Matrix3>& by_gradient, double by_whole,
                 const std::vector<double>& by_gap, std::span<double> result) const;
-    double stiffness_N_ = 0;           ///< c
-    double length_m_ = 0;              ///< L
+    double stiffness_N_ = 0;  ///< c
+    double length_m_ = 0;     ///< L
 };
 
 }  // namespace pliant::sim

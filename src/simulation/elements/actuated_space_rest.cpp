@@ -39,8 +39,8 @@ GapElements::Growths GapElements::growths(const Elements& elements, std::span<co
     Growths growths{0, std::vector<double>(volume.size(), 0.0)};
     double whole = 0;
     for (const Point& p : points_)
-        growths.of_gap[p.gap] += elements.point_volume(p.tet, p.point) *
-                                 elements.deformation_gradient(p.tet, p.point, motion).trace();
+        growths.of_gap[p.gap] +=
+            elements.point_volume(p.tet, p.point) * elements.deformation_gradient(p.tet, p.point, motion).trace();
     for (std::size_t g = 0; g < volume.size(); ++g) {
         growths.whole += growths.of_gap[g];
         growths.of_gap[g] /= volume[g];
@@ -128,8 +128,8 @@ void GapElements::add_tension_rest_gradient(const Elements& elements, std::span<
         const Point& p = points_[k];
         const AtPoint at = at_point(elements, p.tet, p.point, directions_[p.gap], x);
         const double stiffness = factor * stiffness_J_[k] / length_m_;
-        by_motion.push_back(stiffness * (at.length * Matrix3::Identity() -
-                                         at.F.transpose() * at.along * at.direction.transpose()));
+        by_motion.push_back(stiffness *
+                            (at.length * Matrix3::Identity() - at.F.transpose() * at.along * at.direction.transpose()));
         of_gap[p.gap] -= stiffness * at.length;
         of_all += stiffness * at.length;
     }

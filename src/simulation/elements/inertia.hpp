@@ -60,8 +60,8 @@ public:
     [[nodiscard]] Eigen::VectorXd mass_times(const Eigen::VectorXd& v) const;
     [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& v) const;
 
-    /// (3n) each, by what the step leads from: `force_weights` (3n) times the gradient and `velocity_weights` (3n) times
-    /// the velocity, both at a given x. dt_before is not filled in. The stiffness that damping takes stays.
+    /// (3n) each, by what the step leads from: `force_weights` (3n) times the gradient and `velocity_weights` (3n)
+    /// times the velocity, both at a given x. dt_before is not filled in. The stiffness that damping takes stays.
     [[nodiscard]] History start_weights(const Eigen::VectorXd& force_weights,
                                         const Eigen::VectorXd& velocity_weights) const;
 

@@ -9,6 +9,7 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/test_reconverged.hpp"
 #include "simulation/gradient/variation.hpp"
+#include "simulation/material/law_parameters.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;

@@ -7,6 +7,7 @@
 #include "simulation/actuators/attach.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/test_reconverged.hpp"
+#include "simulation/peers/reference_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
