@@ -83,7 +83,7 @@ public:
     struct Gradient {
         std::vector<double> inputs;         ///< (inputs)
         std::vector<double> parameters;     ///< (parameters)
-        std::vector<Point> rest_positions;  ///< (nodes); empty for a robot with gap elements, which are not known to it
+        std::vector<Point> rest_positions;  ///< (nodes)
     };
     /// By one transposed solution. With the rest shape, lengths and volumes that are driven stay as they are, in m and
     /// m^3, and everything that is tied to nodes moves along.

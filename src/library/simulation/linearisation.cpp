@@ -140,8 +140,7 @@ Linearisation::Gradient Linearisation::gradient(const Quantity& quantity) {
     Gradient out;
     out.inputs = numbers(sim::derivatives(work_->at, adjoint, work_->inputs));
     out.parameters = numbers(sim::derivatives(work_->at, adjoint, work_->parameters));
-    if (const auto rest = sim::rest_gradient(work_->at, adjoint))
-        out.rest_positions = library::points_of(linalg::points_of(*rest));
+    out.rest_positions = library::points_of(linalg::points_of(sim::rest_gradient(work_->at, adjoint)));
     return out;
 }
 

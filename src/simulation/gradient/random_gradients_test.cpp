@@ -40,14 +40,14 @@ bool converge_beside(Linearisation& at, const Equilibrium& system, const Control
         const Change change = at.change_of(*step);
         const double size = change.positions.norm() / state.x.norm();
         if (!(size < 1e-3)) return false;
-        if (size > 0.5 * least && size < 1e-12) break;
+        if (size > 0.5 * least && size < 1e-9) break;
         state.x -= change.positions;
         state.multiplier -= change.multipliers;
         least = std::min(least, size);
         if (size < 1e-16) break;
     }
     state.multiplier = system.evaluate(state, controls).multiplier;
-    return least < 1e-12;
+    return least < 1e-9;
 }
 
 struct Found {
