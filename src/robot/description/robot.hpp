@@ -14,6 +14,7 @@
 #include "geometry/mesh/placement.hpp"
 #include "geometry/shapes/solid.hpp"
 #include "robot/description/drive.hpp"
+#include "robot/description/goal.hpp"
 #include "robot/description/law.hpp"
 #include "robot/description/program.hpp"
 
@@ -146,6 +147,7 @@ struct CableSpec {
     bool fill_notches = false;           ///< the notches that it crosses are gaps
     double weight = default_gap_weight;  ///< of its gap elements, where their gap has none of its own
     int line = 0;
+    std::optional<SteeringSpec> steering{};
 };
 
 struct SpringSpec {
@@ -178,6 +180,7 @@ struct ChamberSpec {
     bool elements = false;               ///< the thesis' model (T3.6) instead of the volume constraint
     double weight = default_air_weight;  ///< of the elements, beside the softest Young's modulus
     int line = 0;
+    std::optional<SteeringSpec> steering{};
 };
 
 /// A rigid thing that the robot may touch.
@@ -222,6 +225,7 @@ struct Robot {
     std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle
     std::vector<ObstacleSpec> obstacles;
     std::vector<MarkerSpec> markers;
+    std::vector<GoalSpec> goals;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;

@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "robot/file/goal_file.hpp"
+
 namespace pliant::robot {
 namespace {
 
@@ -33,6 +35,29 @@ CableTarget read_target(Reader& cable) {
     for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
     reader.finish();
     return target;
+}
+
+SteeredBy steered_by(const CableTarget& target) {
+    switch (target.kind) {
+        case CableTarget::Kind::length_ratio:
+            return {{}, 1e-6, 1, "above 0, at most 1: a cable gets shorter", "tension"};
+        case CableTarget::Kind::shortening_m:
+            return {Dimension::length, 0, 1e300, "not below zero", "tension"};
+        case CableTarget::Kind::tension_N:
+            break;
+    }
+    return {Dimension::force, 0, 1e300, "not below zero: a cable can only pull", "tension"};
+}
+
+SteeredBy steered_by(const ChamberTarget& target) {
+    switch (target.kind) {
+        case ChamberTarget::Kind::volume_change_m3:
+            return {Dimension::volume, -1e300, 1e300, "volumes", "pressure"};
+        case ChamberTarget::Kind::pressure_Pa:
+            return {Dimension::pressure, -1e300, 1e300, "pressures", "pressure"};
+        default:
+            return {{}, 1e-6, 1e300, "above zero", "pressure"};
+    }
 }
 
 /// `points`, of what `kind` is.
@@ -79,6 +104,7 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     if (!(cable.friction >= 0 && cable.friction <= 10))
         reader.problem("friction", "is a coefficient: 0 or more, a cord in a plastic tube has 0.1 to 0.3");
     cable.target = read_target(reader);
+    cable.steering = read_steering(reader, steered_by(cable.target));
     if (reader.has("weight") && !cable.gap_elements)
         reader.problem("weight", "is that of gap elements, which act with model = \"gap-elements\" only");
     cable.weight = read_weight(reader).value_or(cable.weight);
@@ -198,6 +224,7 @@ void read_chamber(Reader& reader, Context& context, ChamberSpec& chamber) {
         reader.problem("weight", "is that of air elements, which act with model = \"elements\" only");
     chamber.weight = read_weight(reader).value_or(chamber.weight);
     chamber.target = read_chamber_target(reader);
+    chamber.steering = read_steering(reader, steered_by(chamber.target));
     const auto kind = chamber.target.kind;
     if (chamber.elements && kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
         reader.problem("target", "model = \"elements\" knows volumes only: volume_ratio or volume_change");

@@ -6,6 +6,7 @@
 #include "robot/file/actuator_file.hpp"
 #include "robot/file/body_file.hpp"
 #include "robot/file/contact_file.hpp"
+#include "robot/file/goal_file.hpp"
 #include "robot/file/place_file.hpp"
 #include "robot/file/program_file.hpp"
 
@@ -51,6 +52,7 @@ Result<Robot> read_robot(config::Document document, const std::vector<std::strin
     read_actuators(root, context);
     read_contact(root, context);
     read_markers(root, context);
+    read_goals(root, context);
     read_program(root, robot);
     root.finish();
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());

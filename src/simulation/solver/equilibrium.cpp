@@ -150,30 +150,37 @@ Eigen::VectorXd Equilibrium::external_at(double time) const {
     return force;
 }
 
-Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
+Drive Equilibrium::drive(std::size_t actuator, double target) const {
     const Description& d = model_->description();
     const double rest = actuators_[actuator].rest_measure();
     if (actuator < d.cables.size()) {
-        const CableTarget& target = d.cables[actuator].target;
-        const double value = target.at(time);
-        if (target.kind == CableTarget::Kind::tension_N) return {Drive::Kind::multiplier, value};
-        return {Drive::Kind::measure, target.kind == CableTarget::Kind::length_ratio ? value * rest : rest - value};
-    }
-    const std::size_t chamber = actuator - d.cables.size();
-    if (chamber < d.chambers.size()) {
-        const ChamberTarget& target = d.chambers[chamber].target;
-        const double value = target.at(time);
-        switch (target.kind) {
-            case ChamberTarget::Kind::volume_ratio:
-                return {Drive::Kind::measure, value * rest};
-            case ChamberTarget::Kind::volume_change_m3:
-                return {Drive::Kind::measure, rest + value};
-            case ChamberTarget::Kind::pressure_Pa:
-                return {Drive::Kind::multiplier, -value};
-            case ChamberTarget::Kind::gas_ratio:
-                return {Drive::Kind::gas, value * d.ambient_pressure_Pa * rest};
+        switch (d.cables[actuator].target.kind) {
+            case CableTarget::Kind::length_ratio:
+                return {Drive::Kind::measure, target * rest};
+            case CableTarget::Kind::shortening_m:
+                return {Drive::Kind::measure, rest - target};
+            case CableTarget::Kind::tension_N:
+                return {Drive::Kind::multiplier, target};
         }
     }
+    switch (d.chambers[actuator - d.cables.size()].target.kind) {
+        case ChamberTarget::Kind::volume_ratio:
+            return {Drive::Kind::measure, target * rest};
+        case ChamberTarget::Kind::volume_change_m3:
+            return {Drive::Kind::measure, rest + target};
+        case ChamberTarget::Kind::pressure_Pa:
+            return {Drive::Kind::multiplier, -target};
+        case ChamberTarget::Kind::gas_ratio:
+            break;
+    }
+    return {Drive::Kind::gas, target * d.ambient_pressure_Pa * rest};
+}
+
+Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
+    const Description& d = model_->description();
+    if (actuator < d.cables.size()) return drive(actuator, d.cables[actuator].target.at(time));
+    const std::size_t chamber = actuator - d.cables.size();
+    if (chamber < d.chambers.size()) return drive(actuator, d.chambers[chamber].target.at(time));
     const PressureLoad& load = d.pressures[chamber - d.chambers.size()];
     return {Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa};
 }

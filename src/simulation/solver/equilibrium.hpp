@@ -87,6 +87,8 @@ public:
     explicit Equilibrium(const Model& model);
 
     [[nodiscard]] Controls controls(double time) const;
+    /// What drives a cable or chamber whose target has this value.
+    [[nodiscard]] Drive drive(std::size_t actuator, double target) const;
     /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
     /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
     /// wanted.

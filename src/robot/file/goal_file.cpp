@@ -1,0 +1,281 @@
+#include "robot/file/goal_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "base/core/csv.hpp"
+#include "base/core/files.hpp"
+#include "base/core/text.hpp"
+
+namespace pliant::robot {
+namespace {
+
+using config::Reader;
+using Kind = GoalSpec::Kind;
+
+constexpr std::size_t most_waypoints = 100000;
+
+template <class Spec>
+void check_name(Reader& reader, std::string_view key, std::string_view kind, const std::string& name,
+                const std::vector<Spec>& known) {
+    if (name.empty() || std::ranges::any_of(known, [&](const Spec& spec) { return spec.name == name; })) return;
+    std::vector<std::string> names;
+    for (const Spec& spec : known) names.push_back(fmt::format("\"{}\"", spec.name));
+    reader.problem(key, names.empty()
+                            ? fmt::format("there is no {} \"{}\"; add a [[{}]]", kind, name, kind)
+                            : fmt::format("there is no {} \"{}\"; there is {}", kind, name, join_names(names)));
+}
+
+/// marker = "tip", or markers = ["a", "b"].
+std::vector<std::string> read_marker_names(Reader& reader, const Context& context) {
+    std::vector<std::string> names;
+    if (reader.has("marker") && reader.has("markers")) reader.problem("markers", "give either marker or markers");
+    if (reader.has("marker")) names = {reader.text("marker")};
+    if (reader.has("markers")) names = reader.texts("markers");
+    for (const char* key : {"marker", "markers"}) {
+        if (reader.raw(key) == nullptr) continue;
+        for (const std::string& name : names) check_name(reader, key, "marker", name, context.robot.markers);
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+            names.begin() + static_cast<std::ptrdiff_t>(i))
+            reader.problem("markers", fmt::format("names \"{}\" twice", names[i]));
+    }
+    return names;
+}
+
+/// A column of coordinates: in length units, or in the unit that its name gives in brackets.
+Result<std::vector<double>> read_column(const CsvTable& table, std::size_t column, double unit_m) {
+    double factor = 1;
+    if (const std::string_view unit = csv_unit(table.columns[column]); !unit.empty()) {
+        const Result<double> metres = unit_factor(unit, Dimension::length);
+        if (!metres)
+            return input_error("{}: column \"{}\": {}", table.place(table.header_line), table.columns[column],
+                               metres.error().message);
+        factor = *metres / unit_m;
+    }
+    std::vector<double> values;
+    for (const CsvRow& row : table.rows) {
+        const Result<double> value = table.number(row, column, table.columns[column]);
+        if (!value) return tl::unexpected(value.error());
+        values.push_back(factor * *value);
+    }
+    return values;
+}
+
+/// The column of this name, whatever unit follows in brackets.
+std::optional<std::size_t> find_column(const CsvTable& table, std::string_view name) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        std::string_view column = table.columns[c];
+        const std::size_t bracket = column.find_first_of("([");
+        if (bracket != std::string_view::npos) column = column.substr(0, bracket);
+        while (!column.empty() && column.back() == ' ') column.remove_suffix(1);
+        if (column == name) return c;
+    }
+    return std::nullopt;
+}
+
+/// Columns x, y, z; of several markers tip_x, tip_y and so on. A column `time` gives the times.
+Status read_path_table(const CsvTable& table, double unit_m, GoalSpec& goal) {
+    const std::size_t count = goal.markers.size();
+    goal.wanted.assign(table.rows.size(), std::vector<Vec3>(count));
+    for (std::size_t m = 0; m < count; ++m) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::string axis_name(1, "xyz"[axis]);
+            const std::string name = count == 1 ? axis_name : goal.markers[m] + "_" + axis_name;
+            const std::optional<std::size_t> column = find_column(table, name);
+            if (!column)
+                return input_error("{}: there is no column \"{}\"; a path needs {}", table.place(table.header_line),
+                                   name, count == 1 ? "x, y and z" : "MARKER_x, MARKER_y and MARKER_z of every marker");
+            const Result<std::vector<double>> values = read_column(table, *column, unit_m);
+            if (!values) return tl::unexpected(values.error());
+            for (std::size_t w = 0; w < values->size(); ++w) goal.wanted[w][m][axis] = (*values)[w];
+        }
+    }
+    const std::optional<std::size_t> time = find_column(table, "time");
+    for (const CsvRow& row : table.rows) {
+        if (!time) break;
+        const Result<double> value = table.number(row, *time, "time");
+        if (!value) return tl::unexpected(value.error());
+        goal.times.push_back(*value);
+    }
+    return {};
+}
+
+void read_path_file(Reader& reader, const Context& context, const std::string& file, GoalSpec& goal) {
+    const std::filesystem::path path = need_file(reader, "path", file, context);
+    const Result<std::string> text = read_file(path);
+    if (!text) return;  // said already
+    const Result<CsvTable> table = parse_csv(*text, path.string(), "x,y,z");
+    const Status read =
+        table ? read_path_table(*table, context.robot.unit_m, goal) : Status(tl::unexpected(table.error()));
+    if (!read) reader.problem("path", read.error().message);
+}
+
+/// point = [..], points = [[..], ..] for several markers, path = [[..], ..] or path = "FILE.csv".
+void read_position(Reader& reader, const Context& context, GoalSpec& goal) {
+    if (goal.markers.empty()) reader.problem("", "names no marker; add marker = \"NAME\"");
+    const config::Value* path = reader.raw("path");
+    if (reader.has("point")) goal.wanted = {{reader.vector("point")}};
+    if (reader.has("points")) goal.wanted = {reader.vectors("points")};
+    if (path != nullptr && std::holds_alternative<std::string>(path->data)) {
+        read_path_file(reader, context, reader.text("path"), goal);
+        return;
+    }
+    if (path != nullptr) {
+        for (const Vec3& point : reader.vectors("path")) goal.wanted.push_back({point});
+        if (goal.wanted.empty()) reader.problem("path", "holds no point");
+    }
+    for (const auto& points : goal.wanted) {
+        if (points.size() == goal.markers.size() || goal.markers.empty()) continue;
+        reader.problem(
+            reader.has("points")  ? "points"
+            : reader.has("point") ? "point"
+                                  : "path",
+            fmt::format("gives {} for {}; several markers take points = [[x, y, z], ...] or a CSV",
+                        points.size() == 1 ? "one point" : fmt::format("{} points", points.size()),
+                        goal.markers.size() == 1 ? "one marker" : fmt::format("{} markers", goal.markers.size())));
+        break;
+    }
+}
+
+void read_direction(Reader& reader, GoalSpec& goal) {
+    goal.kind = Kind::direction;
+    const config::Value* value = reader.raw("direction");
+    const auto* list = std::get_if<config::Array>(&value->data);
+    const bool several = list != nullptr && !list->empty() && std::holds_alternative<config::Array>(list->front().data);
+    const std::vector<Vec3> directions =
+        several ? reader.vectors("direction") : std::vector<Vec3>{reader.vector("direction")};
+    for (const Vec3& direction : directions) {
+        const double size = norm(direction);
+        if (!(size > 0)) return reader.problem("direction", "must not be zero");
+        goal.wanted.push_back({1 / size * direction});
+    }
+    if (goal.markers.size() != 2)
+        reader.problem("markers", "a direction is that from one marker to another: markers = [\"a\", \"b\"]");
+}
+
+/// force = "2 N", or a list of three; on `obstacle` or `support`.
+void read_force(Reader& reader, const Context& context, GoalSpec& goal) {
+    const bool contact = reader.has("obstacle");
+    goal.kind = contact ? Kind::contact_force : Kind::support_force;
+    if (contact == reader.has("support")) reader.problem("", "a force is that of one obstacle or one support");
+    if (contact)
+        check_name(reader, "obstacle", "obstacle", goal.on = reader.text("obstacle"), context.robot.obstacles);
+    else if (reader.has("support"))
+        check_name(reader, "support", "fixed", goal.on = reader.text("support"), context.robot.fixed);
+    for (const char* key : {"obstacle", "support"}) (void)reader.raw(key);
+    const config::Value* value = reader.raw("force");
+    goal.sum_of_sizes = !std::holds_alternative<config::Array>(value->data);
+    if (!goal.sum_of_sizes) {
+        const std::vector<double> force = reader.quantities("force", Dimension::force, 3);
+        goal.wanted = {{Vec3{force[0], force[1], force[2]}}};
+        return;
+    }
+    goal.wanted = {{Vec3{reader.quantity("force", Dimension::force), 0, 0}}};
+    if (!contact) reader.problem("force", "of a support has three components: [\"0 N\", \"0 N\", \"2 N\"]");
+    if (goal.wanted[0][0].x < 0) reader.problem("force", "is how hard the obstacle presses in all: not below zero");
+}
+
+double read_tolerance(Reader& reader, const GoalSpec& goal, double unit_m) {
+    double tolerance = 0;
+    if (goal.kind == Kind::direction)
+        tolerance = reader.quantity("tolerance", Dimension::angle, std::numbers::pi / 180);
+    if (goal.kind == Kind::position || goal.kind == Kind::plane)
+        tolerance = reader.quantity("tolerance", Dimension::length, 0.1 * unit_m);
+    if (goal.kind == Kind::contact_force || goal.kind == Kind::support_force)
+        tolerance = reader.quantity("tolerance", Dimension::force);
+    if (!(tolerance > 0) && (goal.kind == Kind::position || reader.has("tolerance")))
+        reader.problem("tolerance", "must be above zero");
+    return tolerance;
+}
+
+void read_times(Reader& reader, GoalSpec& goal) {
+    if (reader.has("times")) {
+        if (!goal.times.empty()) reader.problem("times", "stand in the CSV already");
+        goal.times = reader.numbers("times");
+        if (goal.times.size() == 1 && goal.wanted.size() > 1) goal.times.assign(goal.wanted.size(), goal.times[0]);
+    }
+    (void)reader.raw("times");
+    if (!goal.times.empty() && goal.wanted.size() == 1) goal.wanted.resize(goal.times.size(), goal.wanted.front());
+    if (!goal.times.empty() && goal.times.size() != goal.wanted.size())
+        reader.problem("times", fmt::format("gives {} times for {} waypoints", goal.times.size(), goal.wanted.size()));
+    for (std::size_t k = 0; k < goal.times.size(); ++k) {
+        if (goal.times[k] >= 0 && (k == 0 || goal.times[k] >= goal.times[k - 1])) continue;
+        reader.problem("times", "are seconds of the program: not below zero, and in their order");
+        break;
+    }
+}
+
+void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
+    constexpr std::array<std::string_view, 6> wants = {"point", "points", "path", "plane", "direction", "force"};
+    std::vector<std::string> given;
+    for (const std::string_view key : wants) {
+        if (reader.has(key)) given.emplace_back(key);
+    }
+    goal.markers = read_marker_names(reader, context);
+    if (given.size() != 1) {
+        reader.problem("", given.empty()
+                               ? std::string("wants nothing; add point, points, path, plane, direction or force")
+                               : "takes only one of " + join_names(given));
+    } else if (given[0] == "plane") {
+        goal.kind = Kind::plane;
+        const PlaneSelector plane = read_plane(reader);
+        if (norm(plane.normal) > 0) goal.wanted = {{plane.point, 1 / norm(plane.normal) * plane.normal}};
+        if (goal.markers.size() != 1) reader.problem("marker", "a plane is for one marker");
+    } else if (given[0] == "direction") {
+        read_direction(reader, goal);
+    } else if (given[0] == "force") {
+        read_force(reader, context, goal);
+    } else {
+        read_position(reader, context, goal);
+    }
+    for (const std::string_view key : wants) (void)reader.raw(key);
+    if (goal.kind != Kind::contact_force && goal.kind != Kind::support_force) {
+        for (const char* key : {"obstacle", "support"}) {
+            if (reader.raw(key) != nullptr) reader.problem(key, "is for a goal with a force");
+        }
+    } else if (!goal.markers.empty()) {
+        reader.problem("markers", "have no meaning beside force");
+    }
+    goal.tolerance = read_tolerance(reader, goal, context.robot.unit_m);
+    goal.weight = reader.number("weight", 1);
+    if (!(goal.weight > 0 && goal.weight <= 1e6)) reader.problem("weight", "is above zero, at most 1000000");
+    read_times(reader, goal);
+    if (goal.wanted.size() > most_waypoints)
+        reader.problem("path", fmt::format("has {} waypoints; {} are possible", goal.wanted.size(), most_waypoints));
+}
+
+/// Goals of one waypoint hold at all of them.
+void check_together(Reader& root, Robot& robot) {
+    std::size_t waypoints = 1;
+    std::vector<double> times;
+    for (const GoalSpec& goal : robot.goals) {
+        waypoints = std::max(waypoints, goal.wanted.size());
+        if (times.empty()) times = goal.times;
+    }
+    for (const GoalSpec& goal : robot.goals) {
+        if (goal.wanted.size() > 1 && goal.wanted.size() != waypoints)
+            root.problem("goal", fmt::format("\"{}\" has {} waypoints, another goal has {}; they are reached together",
+                                             goal.name, goal.wanted.size(), waypoints));
+        if (!goal.times.empty() && goal.times != times)
+            root.problem("goal", fmt::format("\"{}\" has other times than another goal", goal.name));
+    }
+    const auto steered = [](const auto& actuator) { return actuator.steering.has_value(); };
+    if (!robot.goals.empty() && std::ranges::none_of(robot.cables, steered) &&
+        std::ranges::none_of(robot.chambers, steered))
+        root.problem("goal",
+                     "no actuator may move for it; give a cable or chamber a range, such as range = [0.7, 1.0]");
+}
+
+}  // namespace
+
+void read_goals(Reader& root, Context& context) {
+    read_each(root, context, "goal", "goals", context.robot.goals, read_goal);
+    check_together(root, context.robot);
+}
+
+}  // namespace pliant::robot

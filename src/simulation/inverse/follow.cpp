@@ -1,0 +1,175 @@
+#include "simulation/inverse/follow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/core/stopwatch.hpp"
+#include "simulation/run/describe.hpp"
+
+namespace pliant::sim::inverse {
+namespace {
+
+Work operator-(const Work& a, const Work& b) {
+    return {a.forward - b.forward, a.failed - b.failed, a.linearised - b.linearised, a.solutions - b.solutions};
+}
+
+/// What an input may be after `seconds`: its range, and what its rate leaves of that.
+Bounds bounds_from(const Seeker& seeker, const Point& before, double seconds) {
+    Bounds bounds = seeker.whole_range();
+    const Eigen::VectorXd change = seeker.space().largest_change(seconds);
+    for (Eigen::Index i = 0; i < change.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        bounds.rate_lower[k] = before.inputs[i] - change[i] > 0;
+        bounds.rate_upper[k] = before.inputs[i] + change[i] < 1;
+        bounds.lower[i] = std::max(0.0, before.inputs[i] - change[i]);
+        bounds.upper[i] = std::min(1.0, before.inputs[i] + change[i]);
+    }
+    return bounds;
+}
+
+class Follower {
+public:
+    Follower(Stepper& stepper, const InverseTask& task, const FollowOptions& options, Progress& progress)
+        : stepper_(stepper), task_(task), options_(options), progress_(progress), seeker_(stepper, task) {}
+
+    InverseResult run() {
+        for (std::size_t k = 0; k < task_.waypoints() && result_.message.empty(); ++k) {
+            progress_.advance("inverse", static_cast<double>(k) / static_cast<double>(task_.waypoints()));
+            Stopwatch watch;
+            const Work before = seeker_.work();
+            const std::optional<Found> found = k == 0 ? first() : next(k);
+            if (!found) break;
+            now_ = found->point;
+            keep(*found, k, seeker_.work() - before, watch.read_s());
+            if (found->cancelled) stop(k);
+        }
+        progress_.advance("inverse", 1);
+        result_.reached = result_.waypoints.size() == task_.waypoints() &&
+                          std::ranges::all_of(result_.waypoints, [](const Waypoint& w) { return w.reached; });
+        return std::move(result_);
+    }
+
+private:
+    void stop(std::size_t waypoint) {
+        result_.cancelled = true;
+        result_.message = fmt::format("cancelled at waypoint {} of {}", waypoint + 1, task_.waypoints());
+    }
+
+    std::optional<Found> first() {
+        const Point rest{stepper_.rest(), seeker_.space().rest()};
+        std::string why;
+        const auto begin = seeker_.move(rest, rest.inputs, task_.times[0], progress_, &why);
+        std::optional<Found> best;
+        if (begin) best = seeker_.seek(*begin, 0, seeker_.whole_range(), progress_);
+        const double from_rest = best ? best->cost : 0;
+        for (int n = 0; n < options_.starts && !(best && best->reached) && !progress_.cancelled(); ++n) {
+            const auto start =
+                seeker_.move(rest, spread_point(n + 1, seeker_.space().size()), task_.times[0], progress_);
+            if (!start) continue;
+            Found other = seeker_.seek(*start, 0, seeker_.whole_range(), progress_);
+            constexpr double clearly = 0.98;
+            if (best && !other.reached && !(other.cost < clearly * best->cost)) continue;
+            if (begin && (other.reached || other.cost < clearly * from_rest))
+                note_ = fmt::format(
+                    "from rest the way to the first waypoint ended further off; beginning {} of {} that are spread "
+                    "over the ranges came nearer",
+                    n + 1, options_.starts);
+            best = std::move(other);
+        }
+        if (!note_.empty()) result_.notes.push_back(note_);
+        if (progress_.cancelled() && !(best && best->reached)) {
+            stop(0);
+            return std::nullopt;
+        }
+        if (!best) result_.message = fmt::format("the robot has no equilibrium to begin with: {}", why);
+        return best;
+    }
+
+    std::optional<Found> next(std::size_t k) {
+        Point begin = now_;
+        const double seconds = task_.times[k] - task_.times[k - 1];
+        const Bounds bounds = bounds_from(seeker_, now_, seconds);
+        if (seconds > 0) {
+            std::string why;
+            const auto moved = seeker_.move(now_, now_.inputs, task_.times[k], progress_, &why);
+            if (!moved) {
+                if (progress_.cancelled()) return stop(k), std::nullopt;
+                result_.message = fmt::format("stopped at waypoint {} of {}: {}", k + 1, task_.waypoints(), why);
+                return std::nullopt;
+            }
+            begin = *moved;
+        }
+        return seeker_.seek(begin, k, bounds, progress_);
+    }
+
+    void keep(const Found& found, std::size_t k, const Work& work, double wall_s) {
+        Waypoint waypoint{found.reached, found.goals, {}, found.limits, {}, work, wall_s};
+        const RobotState& robot = found.point.robot;
+        for (Eigen::Index i = 0; i < found.point.inputs.size(); ++i)
+            waypoint.values.push_back(seeker_.space().value(i, found.point.inputs[i]));
+        waypoint.state.index = static_cast<int>(k) + 1;
+        waypoint.state.time = task_.times[k];
+        waypoint.state.wall_s = wall_s;
+        describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation,
+                 waypoint.state);
+        result_.waypoints.push_back(std::move(waypoint));
+    }
+
+    Stepper& stepper_;
+    const InverseTask& task_;
+    FollowOptions options_;
+    Progress& progress_;
+    Seeker seeker_;
+    Point now_;
+    std::string note_;
+    InverseResult result_;
+};
+
+}  // namespace
+
+InverseResult follow(Stepper& stepper, const InverseTask& task, const FollowOptions& options, Progress& progress) {
+    return Follower(stepper, task, options, progress).run();
+}
+
+std::string text(const Limit& limit) {
+    switch (limit.kind) {
+        case Limit::Kind::lower:
+            return limit.input + " is at the lower end of its range";
+        case Limit::Kind::upper:
+            return limit.input + " is at the upper end of its range";
+        case Limit::Kind::rate:
+            return limit.input + " changes as fast as its rate allows";
+        case Limit::Kind::slack:
+            return limit.input + " is slack, and would have to push";
+        case Limit::Kind::no_state:
+            break;
+    }
+    return "no equilibrium was found further on: " + limit.reason;
+}
+
+Eigen::VectorXd spread_point(int n, Eigen::Index size) {
+    Eigen::VectorXd point(size);
+    int base = 1;
+    for (double& entry : point) {
+        const auto is_prime = [](int p) {
+            for (int q = 2; q * q <= p; ++q) {
+                if (p % q == 0) return false;
+            }
+            return true;
+        };
+        do ++base;
+        while (!is_prime(base));
+        entry = 0;
+        double digit = 1;
+        for (int rest = n; rest > 0; rest /= base) {
+            digit /= base;
+            entry += digit * (rest % base);
+        }
+    }
+    return point;
+}
+
+}  // namespace pliant::sim::inverse

@@ -1,0 +1,87 @@
+#include "simulation/inverse/input_space.hpp"
+
+#include <algorithm>
+
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim::inverse {
+
+using Kind = Parameter::Kind;
+
+InputSpace::InputSpace(const Stepper& stepper, const InverseTask& task) : stepper_(&stepper), task_(&task) {}
+
+double InputSpace::value(Eigen::Index i, double share) const {
+    const Steered& in = input(i);
+    return share >= 1 ? in.high : in.low + share * (in.high - in.low);
+}
+
+double InputSpace::share(Eigen::Index i, double value) const {
+    const Steered& in = input(i);
+    return (value - in.low) / (in.high - in.low);
+}
+
+Eigen::VectorXd InputSpace::rest() const {
+    Eigen::VectorXd shares(size());
+    for (Eigen::Index i = 0; i < size(); ++i) shares[i] = std::clamp(share(i, input(i).rest), 0.0, 1.0);
+    return shares;
+}
+
+Inputs InputSpace::inputs(const Eigen::VectorXd& shares, double time) const {
+    Inputs inputs = stepper_->program(time);
+    for (Eigen::Index i = 0; i < size(); ++i)
+        inputs.drives[input(i).actuator] = stepper_->system().drive(input(i).actuator, value(i, shares[i]));
+    return inputs;
+}
+
+/// Of what the drive wants, for a whole range; targets are linear in it.
+double InputSpace::drive_factor(Eigen::Index i) const {
+    const Equilibrium& system = stepper_->system();
+    const Steered& in = input(i);
+    return system.drive(in.actuator, in.high).value - system.drive(in.actuator, in.low).value;
+}
+
+bool InputSpace::is_slack(const RobotState& robot, Eigen::Index i) const {
+    const std::size_t a = input(i).actuator;
+    return robot.inputs.drives[a].kind == Drive::Kind::measure && stepper_->system().actuators()[a].only_pulls() &&
+           !(robot.now.state.multiplier[static_cast<Eigen::Index>(a)] > 0);
+}
+
+void InputSpace::take_up(RobotState& robot, Eigen::VectorXd& shares) const {
+    const Equilibrium& system = stepper_->system();
+    for (Eigen::Index i = 0; i < size(); ++i) {
+        if (!is_slack(robot, i)) continue;
+        const std::size_t a = input(i).actuator;
+        const double length = system.actuators()[a].measure(linalg::view(robot.x()));
+        const double taut = (length - system.drive(a, input(i).low).value) / drive_factor(i);
+        shares[i] = std::clamp(taut, 0.0, 1.0);
+        const Drive drive = system.drive(a, value(i, shares[i]));
+        robot.inputs.drives[a] = robot.drives[a] = drive;
+    }
+}
+
+std::vector<Derivative> InputSpace::derivatives(Linearisation& at) const {
+    const std::vector<Parameter> all = sim::inputs(at);
+    std::vector<Derivative> list;
+    for (Eigen::Index i = 0; i < size(); ++i) {
+        const Parameter& parameter = all[input(i).actuator];  // those of the actuators come first
+        Derivative by = derivative(at, parameter);
+        // A drive holds minus the pressure.
+        const double factor = parameter.kind == Kind::pressure ? -drive_factor(i) : drive_factor(i);
+        by.equations *= factor;
+        by.direct.positions *= factor;
+        by.direct.multipliers *= factor;
+        list.push_back(std::move(by));
+    }
+    return list;
+}
+
+Eigen::VectorXd InputSpace::largest_change(double seconds) const {
+    Eigen::VectorXd change(size());
+    for (Eigen::Index i = 0; i < size(); ++i) {
+        const Steered& in = input(i);
+        change[i] = in.rate ? *in.rate * (task_->timed ? seconds : 1) / (in.high - in.low) : 2;
+    }
+    return change;
+}
+
+}  // namespace pliant::sim::inverse

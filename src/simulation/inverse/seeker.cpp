@@ -1,0 +1,286 @@
+#include "simulation/inverse/seeker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/inverse/bounded_step.hpp"
+
+namespace pliant::sim::inverse {
+namespace {
+
+constexpr double aim = 0.5;            // of the tolerances: noise of the solver must not undo what was reached
+constexpr double first_radius = 0.25;  // shares of the ranges
+constexpr double largest_radius = 1, smallest_radius = 1e-6;
+constexpr double no_gain = 0.01;                         // of a tolerance: the next step would bring no more
+constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // decrease found over that expected
+constexpr double quick = 0.04;      // cost left by a step of a linearisation that may be used again
+constexpr int most_moves = 60;      // for one waypoint
+constexpr double price_room = 0.1;  // of the cost at one tolerance
+constexpr int price_rounds = 4;
+
+/// Distance from the goals, in tolerances.
+double distance(double cost) {
+    return std::sqrt(2 * std::max(cost, 0.0));
+}
+
+}  // namespace
+
+/// One look for the least cost.
+struct Seeker::Search {
+    std::size_t waypoint;
+    const Bounds& bounds;
+    Point base;  ///< the way begins there
+    Point now;
+    Eigen::VectorXd residuals;
+    double cost = 0;
+    PriceTerm price{};
+    bool fresh = false;          ///< the sensitivity is of `now`
+    Eigen::VectorXd gradient{};  ///< at `now`, where fresh
+    std::string no_state{};      ///< why the last move led nowhere; empty if it did not
+    bool cancelled = false;
+};
+
+struct Seeker::Trial {
+    std::optional<Point> point;  ///< as far as it got
+    bool arrived = false;
+    std::string reason;
+};
+
+Seeker::Seeker(Stepper& stepper, const InverseTask& task)
+    : stepper_(&stepper),
+      task_(&task),
+      space_(stepper, task),
+      rows_(stepper, task, space_),
+      has_memory_(stepper.system().has_friction() || stepper.system().has_cable_friction()),
+      radius_(first_radius) {}
+
+Bounds Seeker::whole_range() const {
+    const auto count = static_cast<std::size_t>(space_.size());
+    return {Eigen::VectorXd::Zero(space_.size()), Eigen::VectorXd::Ones(space_.size()), std::vector<bool>(count, false),
+            std::vector<bool>(count, false)};
+}
+
+std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inputs, double time,
+                                  const Progress& progress, std::string* why) {
+    Point to{from.robot, inputs};
+    ++work_.forward;
+    const StepReport report = stepper_->drive(to.robot, space_.inputs(inputs, time), progress);
+    if (!report.arrived) {
+        ++work_.failed;
+        if (why != nullptr) *why = report.reason;
+        return std::nullopt;
+    }
+    space_.take_up(to.robot, to.inputs);
+    return to;
+}
+
+double Seeker::cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const {
+    residuals = rows_.values(point.robot, point.inputs, search.waypoint, search.price);
+    return 0.5 * residuals.squaredNorm();
+}
+
+Found Seeker::seek(const Point& start, std::size_t waypoint, const Bounds& bounds, const Progress& progress) {
+    Search search{waypoint, bounds, start, start, {}};
+    search.cost = cost_of(search, search.now, search.residuals);
+    radius_ = std::max(radius_, 0.1 * first_radius);
+    minimise(search, progress);
+    Found found;
+    const auto all_reached = [&] {
+        found.goals = rows_.goals(search.now.robot, waypoint);
+        return std::ranges::all_of(found.goals, [](const GoalState& goal) { return goal.reached; });
+    };
+    found.reached = all_reached();
+    found.cost = search.cost;
+    if (!found.reached)
+        found.limits = limits(search);
+    else if (rows_.has_prices() && !search.cancelled) {
+        lower_price(search, progress);
+        found.reached = all_reached();
+    }
+    found.point = std::move(search.now);
+    found.cancelled = search.cancelled;
+    return found;
+}
+
+/// The price may make up for no more than what the goals have left to their tolerances: each round ends with less of
+/// the sum, so that the goals stay reached.
+void Seeker::lower_price(Search& search, const Progress& progress) {
+    search.price.before = search.base.inputs;
+    double last = rows_.price(search.now.robot, search.now.inputs, search.price.before);
+    for (int round = 0; round < price_rounds && last > 0 && !search.cancelled; ++round) {
+        search.price.factor = price_room / last;
+        search.cost = cost_of(search, search.now, search.residuals);
+        minimise(search, progress);
+        const double price = rows_.price(search.now.robot, search.now.inputs, search.price.before);
+        if (price > 0.9 * last) break;
+        last = price;
+    }
+    search.price.factor = 0;
+}
+
+/// The sensitivity takes every cable for what it is, taut or slack.
+bool Seeker::treats_as_it_is(const Point& point) const {
+    for (Eigen::Index i = 0; i < space_.size(); ++i) {
+        if (space_.is_slack(point.robot, i) == pulls_[static_cast<std::size_t>(i)]) return false;
+    }
+    return true;
+}
+
+/// At `now`. The length of a slack cable does nothing until it is taut: those that it helps to pull are taken for taut.
+bool Seeker::linearise(Search& search) {
+    const auto count = static_cast<std::size_t>(space_.size());
+    std::vector<bool> pulled(count, false);
+    std::vector<std::size_t> slack_inputs, slack_cables;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        if (!space_.is_slack(search.now.robot, at)) continue;
+        const bool longer = space_.drives_longer(at);
+        const double now = search.now.inputs[at];
+        if (!(longer ? now > search.bounds.lower[at] : now < search.bounds.upper[at])) continue;
+        slack_inputs.push_back(i);
+        slack_cables.push_back(space_.input(at).actuator);
+    }
+    const auto create = [&] {
+        ++work_.linearised;
+        if (sensitivity_) work_.solutions += sensitivity_->solutions();
+        sensitivity_.reset();
+        auto made = Sensitivity::create(*stepper_, space_, search.now.robot, pulled);
+        if (!made) return false;
+        sensitivity_.emplace(std::move(*made));
+        sensitivity_->use(rows_.gradients(sensitivity_->at(), search.waypoint, search.price));
+        price_factor_ = search.price.factor;
+        return true;
+    };
+    if (!create()) return false;
+    if (!slack_cables.empty()) {
+        const Eigen::VectorXd by_tension = sensitivity_->by_tensions(search.residuals, slack_cables);
+        bool any = false;
+        for (std::size_t k = 0; k < slack_inputs.size(); ++k)
+            any |= pulled[slack_inputs[k]] = by_tension[static_cast<Eigen::Index>(k)] < 0;
+        if (any && !create()) return false;
+    }
+    pulls_.assign(count, true);
+    for (std::size_t i = 0; i < count; ++i)
+        pulls_[i] = pulled[i] || !space_.is_slack(search.now.robot, static_cast<Eigen::Index>(i));
+    search.fresh = true;
+    return true;
+}
+
+Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step, const Progress& progress) {
+    Eigen::VectorXd wanted = search.now.inputs + step;
+    for (Eigen::Index i = 0; i < wanted.size(); ++i) {
+        wanted[i] = std::clamp(wanted[i], search.bounds.lower[i], search.bounds.upper[i]);
+        // What is slack pays out as the others move, and is taken up again afterwards.
+        if (!pulls_[static_cast<std::size_t>(i)])
+            wanted[i] = space_.drives_longer(i) ? search.bounds.upper[i] : search.bounds.lower[i];
+    }
+    const Point& from = has_memory_ ? search.base : search.now;
+    const double time = from.robot.inputs.time;
+    Trial trial;
+    Point to{from.robot, wanted};
+    ++work_.forward;
+    const StepReport report = stepper_->drive(to.robot, space_.inputs(wanted, time), progress);
+    trial.arrived = report.arrived;
+    trial.reason = report.reason;
+    if (!report.arrived) {
+        ++work_.failed;
+        if (report.pieces == 0) return trial;
+        to.inputs = from.inputs + to.robot.now.along * (wanted - from.inputs);
+    }
+    space_.take_up(to.robot, to.inputs);
+    trial.point = std::move(to);
+    return trial;
+}
+
+void Seeker::minimise(Search& search, const Progress& progress) {
+    const bool priced = search.price.factor > 0;
+    search.fresh = false;
+    search.no_state.clear();
+    bool usable = sensitivity_ && price_factor_ == search.price.factor && treats_as_it_is(search.now);
+    for (int moves = 0; moves < most_moves && radius_ > smallest_radius;) {
+        if (!priced && distance(search.cost) <= aim) return;
+        if ((search.cancelled = progress.cancelled())) return;
+        if (!usable && !linearise(search)) return;
+        usable = true;
+        Eigen::VectorXd lower = search.bounds.lower - search.now.inputs,
+                        upper = search.bounds.upper - search.now.inputs;
+        for (Eigen::Index i = 0; i < space_.size(); ++i) {
+            const bool pulls = pulls_[static_cast<std::size_t>(i)];
+            lower[i] = pulls ? std::clamp(lower[i], -radius_, 0.0) : 0.0;
+            upper[i] = pulls ? std::clamp(upper[i], 0.0, radius_) : 0.0;
+            // One that is only taken for taut does nothing when it is let go.
+            if (search.fresh && space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
+        }
+        const auto step = bounded_step(
+            search.residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
+            [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, 1e-3,
+            priced ? 0 : 0.1 * aim);
+        if (!sensitivity_->status()) {
+            usable = false;
+            sensitivity_.reset();
+            if (search.fresh) return;
+            continue;
+        }
+        if (search.fresh) search.gradient = step.gradient;
+        const double gain = distance(search.cost) - distance(search.cost - step.decrease);
+        if (!(gain > no_gain * (priced ? 0.1 : 1))) {
+            if (search.fresh) return;
+            usable = false;
+            continue;
+        }
+        ++moves;
+        Trial trial = attempt(search, step.step, progress);
+        if (progress.cancelled() && !trial.arrived) {
+            search.cancelled = true;
+            return;
+        }
+        search.no_state = trial.arrived ? "" : trial.reason;
+        Eigen::VectorXd residuals;
+        const double cost = trial.point ? cost_of(search, *trial.point, residuals) : 1e300;
+        const double ratio = (search.cost - cost) / step.decrease;
+        const double length = step.step.lpNorm<Eigen::Infinity>();
+        if (!trial.arrived || (ratio < poor && search.fresh))
+            radius_ = 0.3 * length;
+        else if (ratio > good && length > 0.9 * radius_)
+            radius_ = std::min(2 * radius_, largest_radius);
+        const bool slow = cost > quick * search.cost;
+        if (ratio > none) {
+            const bool straight = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
+            if (straight) sensitivity_->learn(step.step, residuals - search.residuals - step.change);
+            search.now = std::move(*trial.point);
+            search.residuals = std::move(residuals);
+            search.cost = cost;
+            usable = straight && !slow && treats_as_it_is(search.now);
+        } else if (!search.fresh) {
+            usable = false;
+        }
+        if (ratio > none) search.fresh = false;
+    }
+}
+
+std::vector<Limit> Seeker::limits(const Search& search) const {
+    std::vector<Limit> limits;
+    constexpr double matters = 1e-3;  // of the largest entry that the gradient could have
+    const double least = matters * search.gradient.lpNorm<Eigen::Infinity>();
+    for (Eigen::Index i = 0; i < search.gradient.size(); ++i) {
+        const double downhill = -search.gradient[i];
+        const auto k = static_cast<std::size_t>(i);
+        const std::string& name = space_.input(i).name;
+        constexpr double rounding = 1e-9;
+        const bool wants_longer = (downhill > 0) == space_.drives_longer(i);
+        const bool slack = space_.is_slack(search.now.robot, i);
+        if (slack && (!pulls_[k] || wants_longer)) {
+            limits.push_back({Limit::Kind::slack, name, ""});
+            continue;
+        }
+        if (!(std::fabs(downhill) > least)) continue;
+        if (downhill > 0 && search.now.inputs[i] > search.bounds.upper[i] - rounding)
+            limits.push_back({search.bounds.rate_upper[k] ? Limit::Kind::rate : Limit::Kind::upper, name, ""});
+        if (downhill < 0 && search.now.inputs[i] < search.bounds.lower[i] + rounding)
+            limits.push_back({search.bounds.rate_lower[k] ? Limit::Kind::rate : Limit::Kind::lower, name, ""});
+    }
+    if (!search.no_state.empty()) limits.push_back({Limit::Kind::no_state, "", search.no_state});
+    return limits;
+}
+
+}  // namespace pliant::sim::inverse

@@ -1,0 +1,83 @@
+#include "simulation/scene/build_goals.hpp"
+
+#include <algorithm>
+
+namespace pliant::robot {
+namespace {
+
+template <class List>
+std::size_t index_of(const List& list, const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find_if(list, [&](const auto& entry) { return entry.name == name; }) -
+                                    list.begin());
+}
+
+sim::Goal tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec) {
+    sim::Goal goal;
+    goal.name = spec.name;
+    goal.kind = spec.kind;
+    goal.sum_of_sizes = spec.sum_of_sizes;
+    goal.tolerance = spec.tolerance;
+    goal.weight = spec.weight;
+    for (const std::string& marker : spec.markers)
+        goal.markers.push_back(index_of(model.description().markers, marker));
+    if (spec.kind == GoalSpec::Kind::contact_force) goal.on = index_of(robot.obstacles, spec.on);
+    if (spec.kind == GoalSpec::Kind::support_force) goal.on = index_of(robot.fixed, spec.on);
+    goal.wanted = spec.wanted;
+    for (std::vector<Vec3>& at : goal.wanted) {
+        if (spec.kind == GoalSpec::Kind::plane) at[0] = robot.unit_m * at[0];
+        if (spec.kind != GoalSpec::Kind::position) continue;
+        for (Vec3& point : at) point = robot.unit_m * point;
+    }
+    return goal;
+}
+
+sim::Steered steered(std::size_t actuator, const std::string& name, const SteeringSpec& spec, bool ratio) {
+    return {actuator, name, spec.low, spec.high, ratio ? 1.0 : 0.0, spec.rate, spec.effort_price, spec.change_price};
+}
+
+std::vector<sim::Steered> steered_actuators(const Robot& robot) {
+    std::vector<sim::Steered> inputs;
+    for (std::size_t c = 0; c < robot.cables.size(); ++c) {
+        const CableSpec& cable = robot.cables[c];
+        if (cable.steering)
+            inputs.push_back(
+                steered(c, cable.name, *cable.steering, cable.target.kind == CableTarget::Kind::length_ratio));
+    }
+    for (std::size_t c = 0; c < robot.chambers.size(); ++c) {
+        const ChamberSpec& chamber = robot.chambers[c];
+        const auto kind = chamber.target.kind;
+        if (chamber.steering)
+            inputs.push_back(
+                steered(robot.cables.size() + c, chamber.name, *chamber.steering,
+                        kind == ChamberTarget::Kind::volume_ratio || kind == ChamberTarget::Kind::gas_ratio));
+    }
+    return inputs;
+}
+
+}  // namespace
+
+Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals) {
+    if (robot.program.dynamics)
+        return input_error("{}: program: time_step: goals are for a robot at rest at every waypoint; leave it out",
+                           robot.file.string());
+    if (need_goals && robot.goals.empty())
+        return input_error("{}: goal: there is none; add a [[goal]] with marker = \"NAME\" and point = [x, y, z]",
+                           robot.file.string());
+    sim::InverseTask task;
+    task.inputs = steered_actuators(robot);
+    if (task.inputs.empty())
+        return input_error(
+            "{}: range: no actuator has one; give a cable or chamber a range, such as range = [0.7, 1.0]",
+            robot.file.string());
+    std::size_t waypoints = 1;
+    for (const GoalSpec& goal : robot.goals) {
+        task.goals.push_back(tied(robot, model, goal));
+        waypoints = std::max(waypoints, goal.wanted.size());
+        if (!goal.times.empty()) task.times = goal.times;
+    }
+    task.timed = !task.times.empty();
+    if (!task.timed) task.times.assign(waypoints, robot.program.duration);
+    return task;
+}
+
+}  // namespace pliant::robot
