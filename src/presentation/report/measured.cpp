@@ -139,7 +139,7 @@ std::string deviation_line(const Deviation& d) {
     return text;
 }
 
-Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result) {
+Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result, const std::string& as) {
     std::array<double, 3> least{}, most{};
     least.fill(std::numeric_limits<double>::infinity());
     most.fill(-std::numeric_limits<double>::infinity());
@@ -162,10 +162,9 @@ Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory
     }
     const std::size_t x = along == 0 ? 1 : 0, y = along == 2 ? 1 : 2;
     constexpr std::array<std::string_view, 3> axes = {"x (mm)", "y (mm)", "z (mm)"};
-    Plot plot{"Markers: simulated and measured", std::string(axes[x]), std::string(axes[y]), {}};
+    Plot plot{"Markers: simulated and " + as, std::string(axes[x]), std::string(axes[y]), {}};
     for (std::size_t i = 0; i < paths.size(); ++i) {
-        Series simulated{paths[i].marker + ", simulated", {}, false},
-            measured{paths[i].marker + ", measured", {}, true};
+        Series simulated{paths[i].marker + ", simulated", {}, false}, measured{paths[i].marker + ", " + as, {}, true};
         for (const Vec3& p : ways[i]) simulated.points.push_back({1e3 * p[x], 1e3 * p[y]});
         for (const Vec3& p : paths[i].points) measured.points.push_back({1e3 * p[x], 1e3 * p[y]});
         plot.series.push_back(std::move(simulated));

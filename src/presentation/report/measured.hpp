@@ -37,6 +37,8 @@ struct Deviation {
 [[nodiscard]] std::string deviation_line(const Deviation& deviation);
 
 /// Simulated ways as lines and measured points as dots, in mm, seen along the axis in which the markers move least.
-[[nodiscard]] Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result);
+/// `as`: what the points are called.
+[[nodiscard]] Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result,
+                                 const std::string& as = "measured");
 
 }  // namespace pliant::report

@@ -166,7 +166,7 @@ std::vector<std::pair<Colour, std::string>> Painter::legend() const {
     else if (first != actuates.end())
         entries.emplace_back(element_colour,
                              "elements of " + s_.mesh.region_names[static_cast<std::size_t>(first - actuates.begin())]);
-    if (!s_.measured.empty()) entries.emplace_back(measured_colour, "measured");
+    if (!s_.measured.empty()) entries.emplace_back(measured_colour, s_.measured_as);
     if (!s_.obstacles.empty())
         entries.emplace_back(obstacle_colour, s_.obstacles.size() == 1 ? "obstacle" : "obstacles");
     return entries;
@@ -253,9 +253,9 @@ Result<Picture> Painter::stages() {
 }
 
 Result<Picture> Painter::measured() {
-    auto png = plot_png(measured_plot(s_.measured, s_.result));
+    auto png = plot_png(measured_plot(s_.measured, s_.result, s_.measured_as));
     if (!png) return tl::unexpected(png.error());
-    return Picture{"measured.png", "Markers, simulated and measured", std::move(*png)};
+    return Picture{s_.measured_as + ".png", "Markers, simulated and " + s_.measured_as, std::move(*png)};
 }
 
 /// Unit and factor that keep the numbers short.

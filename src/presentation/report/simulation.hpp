@@ -61,6 +61,7 @@ struct Simulation {
     /// (regions), true of empty space whose elements drive an actuator: its edges are drawn. May be empty.
     std::vector<bool> region_actuates{};
     std::vector<MeasuredPath> measured{};  ///< of markers of the result; may be empty
+    std::string measured_as = "measured";  ///< what these are called: places that were wanted are "wanted"
 };
 
 /// What a robot's run becomes: everything but timing, memory and measured markers. All arguments must outlive it.

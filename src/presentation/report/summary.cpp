@@ -83,7 +83,7 @@ std::string summary_json(const Simulation& s, int indent) {
     for (std::size_t i = 1; i < s.result.steps.size(); ++i)
         out["steps"].push_back(step_json(s.result.steps[i], contact));
     for (const Deviation& d : deviations(s.measured, s.result)) {
-        out["measured"][d.marker] = {{"points", d.points},
+        out[s.measured_as][d.marker] = {{"points", d.points},
                                      {"mean_mm", mm_per_m * d.mean_m},
                                      {"largest_mm", mm_per_m * d.largest_m},
                                      {"way_mm", mm_per_m * d.way_m}};

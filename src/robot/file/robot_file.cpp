@@ -1,5 +1,8 @@
 #include "robot/file/robot_file.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/core/files.hpp"
 #include "geometry/open/open_geometry.hpp"
 #include "robot/description/robot.hpp"
@@ -29,7 +32,63 @@ mesh::NamedShapes read_shapes(Reader& root) {
     return shapes;
 }
 
-Result<Robot> read_robot(config::Document document, const std::vector<std::string>& assignments) {
+/// The values of `from` in place of those of `into`, and beside them; as `--set` would bring them in, without lines.
+void put_over(config::Table& into, config::Table from) {
+    for (auto& [key, value] : from) {
+        const auto is_it = [&key = key](const config::Entry& entry) { return entry.first == key; };
+        const auto there = std::find_if(into.begin(), into.end(), is_it);
+        if (there == into.end())
+            into.emplace_back(key, std::move(value));
+        else
+            there->second = std::move(value);
+    }
+}
+
+void forget_lines(config::Value& value) {
+    value.line = 0;
+    if (auto* list = std::get_if<config::Array>(&value.data)) {
+        for (config::Value& entry : *list) forget_lines(entry);
+    }
+    if (auto* table = std::get_if<config::Table>(&value.data)) {
+        for (auto& [key, entry] : *table) forget_lines(entry);
+    }
+}
+
+/// robot = "FILE.toml": that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of what
+/// it says there. Without that key the document as it is.
+Result<config::Document> on_base(config::Document document) {
+    Problems problems(document.file.string());
+    Reader root(document.root, problems);
+    if (!root.has("robot")) return document;
+    const fs::path file = document.file.parent_path() / root.text("robot");
+    const std::vector<std::string> changes = root.texts("set");
+    const config::Value* program = root.raw("program");
+    if (program != nullptr && !std::holds_alternative<config::Table>(program->data))
+        root.problem("program", "must be a table");
+    root.finish();
+    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
+    Result<config::Document> base = config::load(file);
+    if (!base) return tl::unexpected(base.error());
+    for (const std::string& change : changes) {
+        if (Status status = config::set(*base, change); !status) return tl::unexpected(status.error());
+    }
+    auto& table = std::get<config::Table>(base->root.data);
+    if (program == nullptr) return base;
+    config::Value own = *program;
+    forget_lines(own);
+    const auto there =
+        std::find_if(table.begin(), table.end(), [](const config::Entry& entry) { return entry.first == "program"; });
+    if (there == table.end())
+        table.emplace_back("program", std::move(own));
+    else if (auto* theirs = std::get_if<config::Table>(&there->second.data))
+        put_over(*theirs, std::get<config::Table>(std::move(own.data)));
+    return base;
+}
+
+Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {
+    Result<config::Document> based = on_base(std::move(given));
+    if (!based) return tl::unexpected(based.error());
+    config::Document& document = *based;
     for (const std::string& assignment : assignments) {
         if (Status status = config::set(document, assignment); !status) return tl::unexpected(status.error());
     }

@@ -177,7 +177,7 @@ Eigen::VectorXd GoalRows::values(const RobotState& robot, const Eigen::VectorXd&
                                  const PriceTerm& price) const {
     std::vector<double> all;
     for (const Goal& goal : task_->goals) {
-        const double factor = scale(goal);
+        const double factor = price.goals * scale(goal);
         for (const double miss : misses(goal, got(stepper_->system(), robot, goal), goal.at(waypoint)))
             all.push_back(factor * miss);
     }
@@ -215,7 +215,7 @@ double GoalRows::price(const RobotState& robot, const Eigen::VectorXd& inputs, c
 
 RowGradients GoalRows::gradients(Linearisation& at, std::size_t waypoint, const PriceTerm& price) const {
     RowWriter rows(at.system());
-    for (const Goal& goal : task_->goals) add_goal(rows, at, goal, goal.at(waypoint), scale(goal));
+    for (const Goal& goal : task_->goals) add_goal(rows, at, goal, goal.at(waypoint), price.goals * scale(goal));
     for (Eigen::Index i = 0; price.factor > 0 && i < space_->size(); ++i) {
         const Steered& in = space_->input(i);
         rows.begin();

@@ -25,9 +25,10 @@ struct RowGradients {
     Eigen::MatrixXd by_inputs;                                  ///< (rows, inputs) without what goes through the state
 };
 
-/// Prices of inputs beside the goals: none where `factor` is 0.
+/// Prices of inputs beside the goals: none where `factor` is 0. The residuals of the goals count `goals` times.
 struct PriceTerm {
     double factor = 0;
+    double goals = 1;
     Eigen::VectorXd before;  ///< (inputs) what a change is counted from
 };
 

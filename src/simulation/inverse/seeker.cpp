@@ -16,6 +16,7 @@ constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // decrease found over 
 constexpr double quick = 0.04;      // cost left by a step of a linearisation that may be used again
 constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
+constexpr double widened = 30;      // tolerances while the price is lowered
 constexpr int price_rounds = 4;
 
 /// Distance from the goals, in tolerances.
@@ -28,7 +29,7 @@ double distance(double cost) {
 /// One look for the least cost.
 struct Seeker::Search {
     std::size_t waypoint;
-    const Bounds& bounds;
+    const Bounds* bounds;
     Point base;  ///< the way begins there
     Point now;
     Eigen::VectorXd residuals;
@@ -80,7 +81,7 @@ double Seeker::cost_of(const Search& search, const Point& point, Eigen::VectorXd
 }
 
 Found Seeker::seek(const Point& start, std::size_t waypoint, const Bounds& bounds, const Progress& progress) {
-    Search search{waypoint, bounds, start, start, {}};
+    Search search{waypoint, &bounds, start, start, {}};
     search.cost = cost_of(search, search.now, search.residuals);
     radius_ = std::max(radius_, 0.1 * first_radius);
     minimise(search, progress);
@@ -102,20 +103,32 @@ Found Seeker::seek(const Point& start, std::size_t waypoint, const Bounds& bound
     return found;
 }
 
-/// The price may make up for no more than what the goals have left to their tolerances: each round ends with less of
-/// the sum, so that the goals stay reached.
+/// Solutions of the goals lie along curves, which can only be followed in long steps where the goals may be missed by a
+/// little: each round first lowers the price with wider tolerances, then returns to the goals by the shortest way. What
+/// does not end at a lower price with all goals reached is not kept.
 void Seeker::lower_price(Search& search, const Progress& progress) {
     search.price.before = search.base.inputs;
     double last = rows_.price(search.now.robot, search.now.inputs, search.price.before);
     for (int round = 0; round < price_rounds && last > 0 && !search.cancelled; ++round) {
+        const Search kept = search;
         search.price.factor = price_room / last;
+        search.price.goals = 1 / widened;
+        search.cost = cost_of(search, search.now, search.residuals);
+        minimise(search, progress);
+        search.price.factor = 0;
+        search.price.goals = 1;
         search.cost = cost_of(search, search.now, search.residuals);
         minimise(search, progress);
         const double price = rows_.price(search.now.robot, search.now.inputs, search.price.before);
-        if (price > 0.9 * last) break;
+        if (!(distance(search.cost) <= 1) || !(price < last)) {
+            const bool cancelled = search.cancelled;
+            search = kept;
+            search.cancelled = cancelled;
+            break;
+        }
+        if (price > 0.95 * last) break;
         last = price;
     }
-    search.price.factor = 0;
 }
 
 /// The sensitivity takes every cable for what it is, taut or slack.
@@ -136,7 +149,7 @@ bool Seeker::linearise(Search& search) {
         if (!space_.is_slack(search.now.robot, at)) continue;
         const bool longer = space_.drives_longer(at);
         const double now = search.now.inputs[at];
-        if (!(longer ? now > search.bounds.lower[at] : now < search.bounds.upper[at])) continue;
+        if (!(longer ? now > search.bounds->lower[at] : now < search.bounds->upper[at])) continue;
         slack_inputs.push_back(i);
         slack_cables.push_back(space_.input(at).actuator);
     }
@@ -169,10 +182,10 @@ bool Seeker::linearise(Search& search) {
 Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step, const Progress& progress) {
     Eigen::VectorXd wanted = search.now.inputs + step;
     for (Eigen::Index i = 0; i < wanted.size(); ++i) {
-        wanted[i] = std::clamp(wanted[i], search.bounds.lower[i], search.bounds.upper[i]);
+        wanted[i] = std::clamp(wanted[i], search.bounds->lower[i], search.bounds->upper[i]);
         // What is slack pays out as the others move, and is taken up again afterwards.
         if (!pulls_[static_cast<std::size_t>(i)])
-            wanted[i] = space_.drives_longer(i) ? search.bounds.upper[i] : search.bounds.lower[i];
+            wanted[i] = space_.drives_longer(i) ? search.bounds->upper[i] : search.bounds->lower[i];
     }
     const Point& from = has_memory_ ? search.base : search.now;
     const double time = from.robot.inputs.time;
@@ -202,8 +215,8 @@ void Seeker::minimise(Search& search, const Progress& progress) {
         if ((search.cancelled = progress.cancelled())) return;
         if (!usable && !linearise(search)) return;
         usable = true;
-        Eigen::VectorXd lower = search.bounds.lower - search.now.inputs,
-                        upper = search.bounds.upper - search.now.inputs;
+        Eigen::VectorXd lower = search.bounds->lower - search.now.inputs,
+                        upper = search.bounds->upper - search.now.inputs;
         for (Eigen::Index i = 0; i < space_.size(); ++i) {
             const bool pulls = pulls_[static_cast<std::size_t>(i)];
             lower[i] = pulls ? std::clamp(lower[i], -radius_, 0.0) : 0.0;
@@ -223,7 +236,7 @@ void Seeker::minimise(Search& search, const Progress& progress) {
         }
         if (search.fresh) search.gradient = step.gradient;
         const double gain = distance(search.cost) - distance(search.cost - step.decrease);
-        if (!(gain > no_gain * (priced ? 0.1 : 1))) {
+        if (priced ? !(step.decrease > no_gain * price_room) : !(gain > no_gain)) {
             if (search.fresh) return;
             usable = false;
             continue;
@@ -274,10 +287,10 @@ std::vector<Limit> Seeker::limits(const Search& search) const {
             continue;
         }
         if (!(std::fabs(downhill) > least)) continue;
-        if (downhill > 0 && search.now.inputs[i] > search.bounds.upper[i] - rounding)
-            limits.push_back({search.bounds.rate_upper[k] ? Limit::Kind::rate : Limit::Kind::upper, name, ""});
-        if (downhill < 0 && search.now.inputs[i] < search.bounds.lower[i] + rounding)
-            limits.push_back({search.bounds.rate_lower[k] ? Limit::Kind::rate : Limit::Kind::lower, name, ""});
+        if (downhill > 0 && search.now.inputs[i] > search.bounds->upper[i] - rounding)
+            limits.push_back({search.bounds->rate_upper[k] ? Limit::Kind::rate : Limit::Kind::upper, name, ""});
+        if (downhill < 0 && search.now.inputs[i] < search.bounds->lower[i] + rounding)
+            limits.push_back({search.bounds->rate_lower[k] ? Limit::Kind::rate : Limit::Kind::lower, name, ""});
     }
     if (!search.no_state.empty()) limits.push_back({Limit::Kind::no_state, "", search.no_state});
     return limits;

@@ -1,0 +1,140 @@
+#include "robot/file/program_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "base/core/error.hpp"
+
+namespace pliant::robot {
+namespace {
+
+/// TOML's basic strings are JSON's.
+std::string quoted(const std::string& text) {
+    return nlohmann::json(text).dump();
+}
+
+/// What a key may drive: its value over the robot's own program, and how it is written.
+struct Driven {
+    std::string name;
+    std::string unit;  ///< empty: a plain number
+    double rest = 0;
+    std::function<double(double time)> at;
+};
+
+Driven driven(const CableSpec& cable) {
+    using Kind = CableTarget::Kind;
+    const Kind kind = cable.target.kind;
+    return {cable.name,
+            kind == Kind::shortening_m ? "m"
+            : kind == Kind::tension_N  ? "N"
+                                       : "",
+            kind == Kind::length_ratio ? 1.0 : 0.0, [&](double time) { return cable.target.at(time); }};
+}
+
+Driven driven(const ChamberSpec& chamber) {
+    using Kind = ChamberTarget::Kind;
+    const Kind kind = chamber.target.kind;
+    const bool ratio = kind == Kind::volume_ratio || kind == Kind::gas_ratio;
+    return {chamber.name,
+            kind == Kind::volume_change_m3 ? "m^3"
+            : kind == Kind::pressure_Pa    ? "Pa"
+                                           : "",
+            ratio ? 1.0 : 0.0, [&](double time) { return chamber.target.at(time); }};
+}
+
+std::vector<Driven> everything_driven(const Robot& robot) {
+    std::vector<Driven> list;
+    for (const CableSpec& cable : robot.cables) list.push_back(driven(cable));
+    for (const ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    const auto share = [&](const std::string& name, const Curve& curve) {
+        list.push_back({name, "", 0, [&](double time) { return curve.at(time); }});
+    };
+    for (const LoadSpec& load : robot.loads) share(load.name, load.share);
+    for (const FixedSpec& fixed : robot.fixed) share(fixed.name, fixed.share);
+    for (const ObstacleSpec& obstacle : robot.obstacles) share(obstacle.name, obstacle.share);
+    if (!(robot.gravity_m_s2 == Vec3{})) share("gravity", robot.gravity_share);
+    return list;
+}
+
+/// Of one thing at every point.
+struct Column {
+    const Driven* of = nullptr;
+    std::vector<double> values;
+};
+
+std::vector<Column> columns_of(const std::vector<Driven>& all, const std::vector<ProgramPoint>& points) {
+    std::vector<Column> columns;
+    for (const Driven& one : all) {
+        Column column{&one, {}};
+        for (const ProgramPoint& point : points) {
+            const auto given =
+                std::ranges::find_if(point.values, [&](const auto& value) { return value.first == one.name; });
+            column.values.push_back(given != point.values.end() ? given->second : one.at(point.time));
+        }
+        const auto is_rest = [&](double value) { return value == one.rest; };
+        // Without keys the program leads straight to the end of the file's own.
+        const bool needs_none = std::ranges::all_of(column.values, is_rest) && is_rest(one.at(1e300));
+        if (!needs_none) columns.push_back(std::move(column));
+    }
+    return columns;
+}
+
+/// One that moves nothing, such as a support that stays, needs no key.
+bool does_something(const Robot& robot, const std::string& name) {
+    for (const FixedSpec& fixed : robot.fixed) {
+        if (fixed.name == name) return fixed.rotate_deg != 0 || !(fixed.move == Vec3{});
+    }
+    for (const ObstacleSpec& obstacle : robot.obstacles) {
+        if (obstacle.name == name) return !(obstacle.move == Vec3{});
+    }
+    return true;
+}
+
+std::string relative_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    std::error_code code;
+    const std::filesystem::path to = std::filesystem::weakly_canonical(std::filesystem::absolute(file), code);
+    const std::filesystem::path from = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), code);
+    const std::filesystem::path relative = to.lexically_relative(from);
+    return relative.empty() ? to.string() : relative.string();
+}
+
+}  // namespace
+
+Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
+                                 const std::vector<std::string>& assignments, const std::filesystem::path& folder,
+                                 const std::vector<ProgramPoint>& points, int steps_per_point, double tolerance) {
+    const std::vector<Driven> all = everything_driven(robot);
+    std::vector<Column> columns = columns_of(all, points);
+    std::erase_if(columns, [&](const Column& column) { return !does_something(robot, column.of->name); });
+    for (const Column& column : columns) {
+        if (std::ranges::count_if(all, [&](const Driven& d) { return d.name == column.of->name; }) > 1)
+            return input_error(
+                "{}: two things are named \"{}\", which the program must name; give them different names",
+                file.string(), column.of->name);
+    }
+    std::string text = fmt::format("robot = {}\n", quoted(relative_path(file, folder)));
+    if (!assignments.empty()) {
+        text += "set = [";
+        for (std::size_t k = 0; k < assignments.size(); ++k) text += (k > 0 ? ", " : "") + quoted(assignments[k]);
+        text += "]\n";
+    }
+    text += fmt::format("\n[program]\nsteps = {}\nduration = \"{} s\"\ntolerance = {}\n",
+                        points.size() * static_cast<std::size_t>(steps_per_point), points.size(), tolerance);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        text += fmt::format("\n[[program.key]]\ntime = \"{} s\"\n", k + 1);
+        for (const Column& column : columns) {
+            const std::string& unit = column.of->unit;
+            text += fmt::format("{} = ", quoted(column.of->name));
+            text += unit.empty() ? fmt::format("{}\n", column.values[k])
+                                 : fmt::format("\"{} {}\"\n", column.values[k], unit);
+        }
+    }
+    return text;
+}
+
+}  // namespace pliant::robot

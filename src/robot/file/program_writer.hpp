@@ -1,0 +1,27 @@
+// A program as a robot file that stands on another one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robot/description/robot.hpp"
+
+namespace pliant::robot {
+
+/// Where a program is to lead: values of cables and chambers in what their targets name, SI.
+struct ProgramPoint {
+    double time = 0;  ///< of the robot's own program: where all that is not given here stands
+    std::vector<std::pair<std::string, double>> values;
+};
+
+/// `robot`: as read from `file` with `assignments`. Text of a file in `folder` that gives the same robot a program
+/// which is at point k at the time k + 1, s, in `steps_per_point` steps each. An error: what must be given a key has
+/// the name of another thing that has one.
+[[nodiscard]] Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
+                                               const std::vector<std::string>& assignments,
+                                               const std::filesystem::path& folder,
+                                               const std::vector<ProgramPoint>& points, int steps_per_point,
+                                               double tolerance);
+
+}  // namespace pliant::robot
