@@ -211,7 +211,7 @@ std::string measured_section(const Simulation& s) {
         rows.push_back({d.marker, fmt::format("{}", d.points), fmt::format("{:.3g} mm", 1e3 * d.mean_m),
                         fmt::format("{:.3g} mm", 1e3 * d.largest_m), fmt::format("{:.3g} mm", 1e3 * d.way_m)});
     }
-    return "<h2>Markers as " + escaped(s.measured_as) + "</h2>\n" +
+    return "<h2>Markers as " + html_escaped(s.measured_as) + "</h2>\n" +
            table("", {"marker", "points", "mean distance", "largest", "simulated way"}, rows);
 }
 

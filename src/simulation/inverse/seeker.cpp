@@ -55,6 +55,12 @@ Seeker::Seeker(Stepper& stepper, const InverseTask& task)
       has_memory_(stepper.system().has_friction() || stepper.system().has_cable_friction()),
       radius_(first_radius) {}
 
+Work Seeker::work() const {
+    Work work = work_;
+    if (sensitivity_) work.solutions += sensitivity_->solutions();
+    return work;
+}
+
 Bounds Seeker::whole_range() const {
     const auto count = static_cast<std::size_t>(space_.size());
     return {Eigen::VectorXd::Zero(space_.size()), Eigen::VectorXd::Ones(space_.size()), std::vector<bool>(count, false),

@@ -66,7 +66,7 @@ public:
 
     [[nodiscard]] const InputSpace& space() const { return space_; }
     [[nodiscard]] const GoalRows& rows() const { return rows_; }
-    [[nodiscard]] const Work& work() const { return work_; }
+    [[nodiscard]] Work work() const;
 
     /// The robot under these inputs at this time of the program, on a straight way from where it is. Nothing: there is
     /// no equilibrium on the way, or it was cancelled; `why` says so.

@@ -14,7 +14,9 @@ Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace
         double& tension = state.multiplier[static_cast<Eigen::Index>(space.input(i).actuator)];
         if (pulled[static_cast<std::size_t>(i)]) tension = std::max(tension, std::numeric_limits<double>::min());
     }
-    Result<Linearisation> at = Linearisation::create(stepper.system(), state, robot.controls);
+    constexpr double residual = 1e-6;  // a step is tried in any case
+    const KnownPattern known = known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get());
+    Result<Linearisation> at = Linearisation::create(stepper.system(), state, robot.controls, known, residual);
     if (!at) return tl::unexpected(at.error());
     Sensitivity made(std::move(*at));
     made.by_ = space.derivatives(made.at_);

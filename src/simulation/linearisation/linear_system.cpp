@@ -15,7 +15,7 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double wanted_residual = 1e-13, allowed_residual = 1e-12;
+constexpr double allowed_beside_wanted = 10;
 constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
 constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
 constexpr int most_rounds = 8, most_products = 200;
@@ -351,7 +351,7 @@ Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double
 std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
     double left = b.norm();
-    const double wanted = wanted_residual * left;
+    const double wanted = system_->wanted_residual * left;
     const int rounds = levels_ ? level_rounds : most_rounds;
     for (int round = 0; round < rounds && left > wanted; ++round) {
         const Eigen::VectorXd next = x + correction(residual, wanted, side);
@@ -363,7 +363,7 @@ std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Si
         left = rest.norm();
         if (slow) break;
     }
-    const double allowed = levels_ ? level_residual : allowed_residual;
+    const double allowed = levels_ ? level_residual : allowed_beside_wanted * system_->wanted_residual;
     if (!(left <= allowed * b.norm()) && !(left <= rounding_of(x, side))) return std::nullopt;
     return x;
 }

@@ -18,6 +18,9 @@ namespace pliant::sim {
 
 enum class Side { direct, transposed };
 
+/// Of a solution, beside the right-hand side: about as good as can be had.
+inline constexpr double best_residual = 1e-13;
+
 ///     A = | K    B |     K  tangent over the free nodes, N/m: symmetric + skew
 ///         | C^T  D |     B  force of the unit of each multiplier; C  gradient of each constraint; D  compliances
 ///
@@ -29,12 +32,13 @@ struct LinearSystem {
     bool two_levels = false;                           ///< a factor of K would take longer
     Eigen::VectorXd positions;                         ///< (3 free nodes) m, for those
     std::vector<FreeRoller> rollers;
-    std::vector<double> symmetric;         ///< (entries of the layout's pattern)
-    std::vector<double> skew;              ///< likewise, or empty where there is none
-    Eigen::MatrixXd forces;                ///< B (3 free nodes, solved)
-    Eigen::MatrixXd constraints;           ///< C (3 free nodes, solved)
-    Eigen::VectorXd compliance;            ///< the diagonal D (solved)
-    std::vector<std::string> multipliers;  ///< (solved) what they belong to, for messages: cable "left"
+    std::vector<double> symmetric;           ///< (entries of the layout's pattern)
+    std::vector<double> skew;                ///< likewise, or empty where there is none
+    Eigen::MatrixXd forces;                  ///< B (3 free nodes, solved)
+    Eigen::MatrixXd constraints;             ///< C (3 free nodes, solved)
+    Eigen::VectorXd compliance;              ///< the diagonal D (solved)
+    std::vector<std::string> multipliers;    ///< (solved) what they belong to, for messages: cable "left"
+    double wanted_residual = best_residual;  ///< of solutions, beside the right-hand side
 
     [[nodiscard]] Eigen::Index free_size() const { return forces.rows(); }
     [[nodiscard]] Eigen::Index size() const { return forces.rows() + forces.cols(); }
@@ -61,11 +65,11 @@ public:
     explicit SystemSolver(const LinearSystem& system);
     ~SystemSolver();
 
-    /// x with A x = b, or A^T x = b, to |b - A x| <= 1e-12 |b| in balanced units; or, where x is so much larger than b
-    /// that rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8 of x in the norm
-    /// of K. Of several solutions, where cables do the same, the one with the smallest multipliers. Errors: nothing
-    /// solves it, since cables that do the same are asked for different things; the matrix is singular (a limit point,
-    /// a bifurcation, a part that can move freely).
+    /// x with A x = b, or A^T x = b, to |b - A x| <= 10 |b| times what is wanted, in balanced units; or, where x is so
+    /// much larger than b that rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8
+    /// of x in the norm of K. Of several solutions, where cables do the same, the one with the smallest multipliers.
+    /// Errors: nothing solves it, since cables that do the same are asked for different things; the matrix is singular
+    /// (a limit point, a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
 
 private:

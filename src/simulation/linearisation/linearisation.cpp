@@ -91,7 +91,7 @@ KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& l
 }
 
 Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,
-                                            const KnownPattern& known) {
+                                            const KnownPattern& known, double residual) {
     const Evaluation evaluation = system.evaluate(state, controls);
     if (!evaluation.possible()) return failure("a state that {} has no linearisation", name(evaluation.flaw));
     Linearisation made;
@@ -100,6 +100,7 @@ Result<Linearisation> Linearisation::create(const Equilibrium& system, const Sta
     made.controls_ = controls;
     made.find_unknowns();
     made.assemble(known);
+    made.matrix_->wanted_residual = residual;
     return made;
 }
 

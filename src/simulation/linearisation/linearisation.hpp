@@ -95,9 +95,11 @@ struct KnownPattern {
 class Linearisation {
 public:
     /// Copies state and controls; `system` must outlive it. The state need not be converged, but F is not zero then.
-    /// `known` saves the time to find the order of elimination. An error: the state is one that no body can have.
+    /// `known` saves the time to find the order of elimination, a larger residual some of that of solutions. An error:
+    /// the state is one that no body can have.
     [[nodiscard]] static Result<Linearisation> create(const Equilibrium& system, const State& state,
-                                                      const Controls& controls, const KnownPattern& known = {});
+                                                      const Controls& controls, const KnownPattern& known = {},
+                                                      double residual = best_residual);
 
     [[nodiscard]] const Equilibrium& system() const { return *system_; }
     [[nodiscard]] const State& state() const { return state_; }
