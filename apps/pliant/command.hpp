@@ -25,6 +25,7 @@ struct Output {
 using AddCommand = void (*)(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_inverse(CLI::App& app, int& status);
+void add_workspace(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_slice(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);

@@ -16,7 +16,7 @@ using config::Reader;
 
 CableTarget read_target(Reader& cable) {
     using Kind = CableTarget::Kind;
-    Reader reader = cable.table("target");
+    Reader reader = cable.table("target", !cable.has("range"));  // without one it is as at rest
     CableTarget target;
     const int given = int{reader.has("length_ratio")} + int{reader.has("shortening")} + int{reader.has("tension")};
     if (cable.has("target") && given != 1) reader.problem("", "takes one of length_ratio, shortening and tension");
@@ -132,7 +132,7 @@ void read_spring(Reader& reader, Context& context, SpringSpec& spring) {
 ChamberTarget read_chamber_target(Reader& chamber) {
     using Kind = ChamberTarget::Kind;
     constexpr std::array<std::string_view, 4> kinds = {"volume_ratio", "volume_change", "pressure", "gas_ratio"};
-    Reader reader = chamber.table("target");
+    Reader reader = chamber.table("target", !chamber.has("range"));
     const auto given = std::count_if(kinds.begin(), kinds.end(), [&](auto kind) { return reader.has(kind); });
     if (chamber.has("target") && given != 1)
         reader.problem("", "takes one of volume_ratio, volume_change, pressure and gas_ratio");

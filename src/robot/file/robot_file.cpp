@@ -60,7 +60,7 @@ Result<config::Document> on_base(config::Document document) {
     Problems problems(document.file.string());
     Reader root(document.root, problems);
     if (!root.has("robot")) return document;
-    const fs::path file = document.file.parent_path() / root.text("robot");
+    const fs::path file = (document.file.parent_path() / root.text("robot")).lexically_normal();
     const std::vector<std::string> changes = root.texts("set");
     const config::Value* program = root.raw("program");
     if (program != nullptr && !std::holds_alternative<config::Table>(program->data))

@@ -1,11 +1,75 @@
 #include "simulation/inverse/force_goals.hpp"
 
+#include <vector>
+
 #include "base/linalg/vectors.hpp"
+#include "simulation/contact/pairs.hpp"
 
 namespace pliant::sim::inverse {
 namespace {
 
 constexpr Eigen::Index axes = 3;
+
+/// Robot and obstacle nodes, as contact knows them.
+std::vector<double> positions(const State& state, const Controls& controls) {
+    std::vector<double> all(state.x.begin(), state.x.end());
+    all.insert(all.end(), controls.obstacles.begin(), controls.obstacles.end());
+    return all;
+}
+
+contact::Stencil stencil_of(const contact::Pair& pair, const std::vector<double>& x) {
+    contact::Stencil stencil;
+    for (std::size_t k = 0; k < stencil.size(); ++k) {
+        const std::size_t first = 3 * static_cast<std::size_t>(pair.nodes[k]);
+        stencil[k] = {x[first], x[first + 1], x[first + 2]};
+    }
+    return stencil;
+}
+
+/// Calls `visit` with each pair that the goal's obstacle presses with.
+template <class Visit>
+void visit_pairs(const Equilibrium& system, const Controls& controls, const std::vector<double>& x, const Goal& goal,
+                 const Visit& visit) {
+    const contact::Contact* contact = system.model().contact(controls.met);
+    if (contact == nullptr) return;
+    for (const contact::Pair& pair : contact->find(x)) {
+        if (pair.obstacle == static_cast<int>(goal.on)) visit(pair, contact->settings().stiffness_Pa);
+    }
+}
+
+/// The sizes of all normal forces of the obstacle on the robot, added up.
+double pressing_force(const Equilibrium& system, const State& state, const Controls& controls, const Goal& goal) {
+    const std::vector<double> x = positions(state, controls);
+    double sum = 0;
+    visit_pairs(system, controls, x, goal, [&](const contact::Pair& pair, double stiffness_Pa) {
+        sum += contact::normal_force(pair, stiffness_Pa, stencil_of(pair, x));
+    });
+    return sum;
+}
+
+/// By central differences of each pair's own force: it depends on the four nodes of the pair alone.
+Quantity pressing_gradient(const Linearisation& at, const Goal& goal) {
+    Quantity quantity{Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())};
+    const std::vector<double> x = positions(at.state(), at.controls());
+    const int robot_nodes = at.system().model().node_count();
+    visit_pairs(at.system(), at.controls(), x, goal, [&](const contact::Pair& pair, double stiffness_Pa) {
+        constexpr double share = 1e-5;  // of the distance within which the pair acts
+        const double step = share * pair.reach_m;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(pair.node_count()); ++k) {
+            if (pair.nodes[k] >= robot_nodes) continue;
+            for (std::size_t axis = 0; axis < axes; ++axis) {
+                contact::Stencil nearer = stencil_of(pair, x), farther = nearer;
+                nearer[k][axis] += step;
+                farther[k][axis] -= step;
+                quantity.by_positions[3 * pair.nodes[k] + static_cast<Eigen::Index>(axis)] +=
+                    (contact::normal_force(pair, stiffness_Pa, nearer) -
+                     contact::normal_force(pair, stiffness_Pa, farther)) /
+                    (2 * step);
+            }
+        }
+    });
+    return quantity;
+}
 
 /// The energy of contact changes with the place of an obstacle as with its nodes: what a motion of the obstacle does to
 /// the forces on the robot is, by symmetry, what a motion of the robot does to the force on the obstacle.
@@ -50,13 +114,14 @@ Vec3 force_of(const Equilibrium& system, const State& state, const Controls& con
     const Model& model = system.model();
     if (goal.kind == GoalKind::support_force)
         return model.held().reactions(model.description().supports, evaluation.out_of_balance)[goal.on];
-    const contact::Forces forces = system.contact_forces(state, controls);
-    if (goal.sum_of_sizes) return {norm(forces.on_robot_N[goal.on]), 0, 0};
-    return forces.on_robot_N[goal.on];
+    if (goal.sum_of_sizes) return {pressing_force(system, state, controls, goal), 0, 0};
+    if (model.contact(controls.met) == nullptr) return {};
+    return system.contact_forces(state, controls).on_robot_N[goal.on];
 }
 
 std::vector<Quantity> force_gradients(Linearisation& at, const Goal& goal) {
     if (goal.kind == GoalKind::support_force) return support_gradients(at, goal);
+    if (goal.sum_of_sizes) return {pressing_gradient(at, goal)};
     return contact_gradients(at, goal);
 }
 

@@ -1,0 +1,31 @@
+// Where markers can get: a table, and the sheets as surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/mesh/tri_mesh.hpp"
+#include "simulation/inverse/workspace.hpp"
+#include "simulation/model/model.hpp"
+
+namespace pliant::report {
+
+struct WorkspaceReport {
+    std::string robot;
+    const sim::Model& model;
+    const sim::InverseTask& task;
+    const sim::inverse::Workspace& workspace;
+};
+
+/// A row per sample: piece, inputs, found, markers, tensions, pressures.
+[[nodiscard]] std::string workspace_csv(const WorkspaceReport& report);
+/// Samples, how many of them have an equilibrium, and the box of each marker, mm.
+[[nodiscard]] std::string workspace_json(const WorkspaceReport& report, int indent = 2);
+/// The sheets that a marker can get to, m: two triangles for every four neighbours that have an equilibrium. Empty
+/// where there are none.
+[[nodiscard]] mesh::TriMesh workspace_surface(const sim::inverse::Workspace& workspace, std::size_t marker);
+/// The same, and lines of a single input, as legacy VTK with inputs, tensions (N) and pressures (kPa) at every point,
+/// mm.
+[[nodiscard]] std::string workspace_vtk(const WorkspaceReport& report, std::size_t marker);
+
+}  // namespace pliant::report

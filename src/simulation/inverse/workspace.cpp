@@ -1,0 +1,154 @@
+#include "simulation/inverse/workspace.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/linalg/vectors.hpp"
+#include "simulation/inverse/follow.hpp"
+
+namespace pliant::sim::inverse {
+namespace {
+
+constexpr int spread_in_one_piece = 50;
+
+/// The inputs of a piece, in the order in which they are solved.
+struct Plan {
+    int rows = 0, columns = 0;
+    std::vector<Eigen::VectorXd> inputs;
+};
+
+Plan line(int side) {
+    Plan plan{1, side, {}};
+    for (int k = 0; k < side; ++k)
+        plan.inputs.push_back(Eigen::VectorXd::Constant(1, 1 - static_cast<double>(k) / (side - 1)));
+    return plan;
+}
+
+/// Inputs i and j vary; the others stand at the ends that `ends` tells, bit by bit.
+Plan sheet(Eigen::Index size, Eigen::Index i, Eigen::Index j, unsigned ends, int side) {
+    Plan plan{side, side, {}};
+    Eigen::VectorXd inputs(size);
+    unsigned bit = 0;
+    for (Eigen::Index k = 0; k < size; ++k) {
+        if (k != i && k != j) inputs[k] = (ends >> bit++ & 1U) != 0 ? 1 : 0;
+    }
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            inputs[i] = static_cast<double>(row) / (side - 1);
+            inputs[j] = static_cast<double>(column) / (side - 1);
+            plan.inputs.push_back(inputs);
+        }
+    }
+    return plan;
+}
+
+std::vector<Plan> plans_for(Eigen::Index size, const WorkspaceOptions& options) {
+    std::vector<Plan> plans;
+    if (size == 1) return {line(options.side)};
+    const bool sheets = size <= static_cast<Eigen::Index>(most_inputs_with_sheets);
+    for (Eigen::Index i = 0; sheets && i < size; ++i) {
+        for (Eigen::Index j = i + 1; j < size; ++j) {
+            for (unsigned ends = 0; ends < 1U << static_cast<unsigned>(size - 2); ++ends)
+                plans.push_back(sheet(size, i, j, ends, options.side));
+        }
+    }
+    for (int first = 0; first < options.between; first += spread_in_one_piece) {
+        Plan plan;
+        const int end = std::min(options.between, first + spread_in_one_piece);
+        for (int k = first; k < end; ++k) plan.inputs.push_back(spread_point(k + 1, size));
+        plans.push_back(std::move(plan));
+    }
+    return plans;
+}
+
+class PieceSolver {
+public:
+    PieceSolver(Stepper& stepper, const InverseTask& task, const InputSpace& space)
+        : stepper_(stepper), task_(task), space_(space) {}
+
+    /// Nothing where it was cancelled.
+    std::optional<WorkspacePiece> solve(const Plan& plan, Progress& progress,
+                                        const std::function<void()>& after_each) const {
+        WorkspacePiece piece{plan.rows, plan.columns, {}};
+        piece.samples.resize(plan.inputs.size());
+        RobotState now = stepper_.rest(), row = now;
+        for (std::size_t k = 0; k < plan.inputs.size(); ++k) {
+            if (progress.cancelled()) return std::nullopt;
+            // The first of a row comes from the first of the row before.
+            if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0) now = row;
+            piece.samples[k] = sample(now, plan.inputs[k], progress);
+            if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0 && piece.samples[k].found) row = now;
+            after_each();
+        }
+        if (progress.cancelled()) return std::nullopt;
+        return piece;
+    }
+
+private:
+    /// `now` becomes its state; without one it stays, and the way from rest is tried too.
+    WorkspaceSample sample(RobotState& now, const Eigen::VectorXd& inputs, const Progress& progress) const {
+        WorkspaceSample sample;
+        for (Eigen::Index i = 0; i < inputs.size(); ++i) sample.values.push_back(space_.value(i, inputs[i]));
+        const Inputs wanted = space_.inputs(inputs, task_.times.back());
+        RobotState next = now;
+        sample.found = stepper_.drive(next, wanted, progress).arrived;
+        if (!sample.found && !progress.cancelled()) {
+            next = stepper_.rest();
+            sample.found = stepper_.drive(next, wanted, progress).arrived;
+        }
+        if (!sample.found) return sample;
+        now = std::move(next);
+        const Description& d = stepper_.model().description();
+        for (const Marker& marker : d.markers)
+            sample.markers.push_back(position(marker.point, linalg::view(std::as_const(now.now.state.x))));
+        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+            const double m = now.now.state.multiplier[static_cast<Eigen::Index>(a)];
+            if (a < d.cables.size())
+                sample.tensions_N.push_back(m);
+            else
+                sample.pressures_Pa.push_back(0 - m);
+        }
+        return sample;
+    }
+
+    Stepper& stepper_;
+    const InverseTask& task_;
+    const InputSpace& space_;
+};
+
+}  // namespace
+
+Result<Workspace> find_workspace(Stepper& stepper, const InverseTask& task, const WorkspaceOptions& options,
+                                 const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,
+                                 const std::function<Status(std::size_t, const WorkspacePiece&)>& keep,
+                                 Progress& progress) {
+    const InputSpace space(stepper, task);
+    const std::vector<Plan> plans = plans_for(space.size(), options);
+    std::size_t all = 0, done = 0;
+    for (const Plan& plan : plans) all += plan.inputs.size();
+    const PieceSolver solver(stepper, task, space);
+    Workspace workspace;
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+        const auto tell = [&] {
+            progress.advance("workspace", static_cast<double>(done) / static_cast<double>(all));
+            ++done;
+        };
+        if (std::optional<WorkspacePiece> before = known ? known(k) : std::nullopt;
+            before && before->samples.size() == plans[k].inputs.size()) {
+            done += before->samples.size();
+            workspace.pieces.push_back(std::move(*before));
+            continue;
+        }
+        std::optional<WorkspacePiece> piece = solver.solve(plans[k], progress, tell);
+        if (!piece) {
+            workspace.cancelled = true;
+            return workspace;
+        }
+        if (Status kept = keep ? keep(k, *piece) : Status(); !kept) return tl::unexpected(kept.error());
+        workspace.pieces.push_back(std::move(*piece));
+    }
+    progress.advance("workspace", 1);
+    return workspace;
+}
+
+}  // namespace pliant::sim::inverse

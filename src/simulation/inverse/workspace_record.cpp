@@ -1,0 +1,57 @@
+#include "simulation/inverse/workspace_record.hpp"
+
+#include <limits>
+
+#include "simulation/stepper/cbor_numbers.hpp"
+
+namespace pliant::sim::inverse {
+namespace {
+
+using cbor::Json;
+
+template <class T>
+Json packed(const std::vector<T>& numbers) {
+    return cbor::packed(std::span<const T>(numbers));
+}
+
+WorkspaceSample read_sample(cbor::Reader& outer, const Json& map) {
+    WorkspaceSample sample;
+    cbor::Reader reader(map);
+    sample.values = reader.numbers<double>("values");
+    sample.found = reader.boolean("found");
+    sample.markers = reader.numbers<Vec3>("markers");
+    sample.tensions_N = reader.numbers<double>("tensions");
+    sample.pressures_Pa = reader.numbers<double>("pressures");
+    if (!reader.status()) outer.fail("a sample");
+    return sample;
+}
+
+}  // namespace
+
+std::string piece_bytes(const WorkspacePiece& piece) {
+    Json map = {{"rows", piece.rows}, {"columns", piece.columns}, {"samples", Json::array()}};
+    for (const WorkspaceSample& sample : piece.samples) {
+        map["samples"].push_back({{"values", packed(sample.values)},
+                                  {"found", sample.found},
+                                  {"markers", packed(sample.markers)},
+                                  {"tensions", packed(sample.tensions_N)},
+                                  {"pressures", packed(sample.pressures_Pa)}});
+    }
+    const std::vector<std::uint8_t> bytes = Json::to_cbor(map);
+    return {bytes.begin(), bytes.end()};
+}
+
+Result<WorkspacePiece> piece_from_bytes(std::string_view bytes) {
+    const Json map = cbor::parsed(bytes);
+    cbor::Reader reader(map);
+    constexpr int most = std::numeric_limits<int>::max();
+    WorkspacePiece piece{reader.integer("rows", 0, most), reader.integer("columns", 0, most), {}};
+    const Json& samples = reader.at("samples");
+    if (!samples.is_array()) reader.fail("no samples");
+    for (std::size_t k = 0; reader.status() && k < samples.size(); ++k)
+        piece.samples.push_back(read_sample(reader, samples[k]));
+    if (!reader.status()) return tl::unexpected(reader.status().error());
+    return piece;
+}
+
+}  // namespace pliant::sim::inverse

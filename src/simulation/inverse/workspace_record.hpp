@@ -1,0 +1,16 @@
+// A piece of a workspace as bytes, so that a search may go on where it was stopped.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/core/error.hpp"
+#include "simulation/inverse/workspace.hpp"
+
+namespace pliant::sim::inverse {
+
+[[nodiscard]] std::string piece_bytes(const WorkspacePiece& piece);
+/// Errors: damaged.
+[[nodiscard]] Result<WorkspacePiece> piece_from_bytes(std::string_view bytes);
+
+}  // namespace pliant::sim::inverse

@@ -1,0 +1,88 @@
+// Where markers get: samples are equilibria, and an interrupted search gives the same bits.
+#include "simulation/inverse/workspace.hpp"
+
+#include <doctest/doctest.h>
+
+#include <map>
+
+#include "base/core/near.hpp"
+#include "simulation/inverse/test_robots.hpp"
+
+using namespace pliant;
+using namespace pliant::sim;
+using namespace pliant::sim::inverse;
+using namespace pliant::sim::inverse::testing;
+
+namespace {
+
+/// Cancels after so many samples.
+class Impatient final : public Progress {
+public:
+    explicit Impatient(int samples) : left_(samples) {}
+    void advance(std::string_view, double) override { --left_; }
+    [[nodiscard]] bool cancelled() const override { return left_ <= 0; }
+
+private:
+    int left_;
+};
+
+void check_same(const Workspace& a, const Workspace& b) {
+    REQUIRE(a.pieces.size() == b.pieces.size());
+    for (std::size_t p = 0; p < a.pieces.size(); ++p) {
+        REQUIRE(a.pieces[p].samples.size() == b.pieces[p].samples.size());
+        for (std::size_t k = 0; k < a.pieces[p].samples.size(); ++k) {
+            CHECK(a.pieces[p].samples[k].markers == b.pieces[p].samples[k].markers);
+            CHECK(a.pieces[p].samples[k].tensions_N == b.pieces[p].samples[k].tensions_N);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every sample is where its inputs lead, and the sheets hold all ends of the ranges") {
+    const Model model = made(bar(3));
+    const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}, {0.9, 1}});
+    Stepper stepper(model, tight);
+    Progress silent;
+    const auto workspace = find_workspace(stepper, task, {.side = 3, .between = 4}, {}, {}, silent);
+    REQUIRE(workspace);
+    REQUIRE(workspace->pieces.size() == 7);  // three pairs of inputs, two ends of the third; and those in between
+    int corners = 0;
+    for (const WorkspacePiece& piece : workspace->pieces) {
+        CHECK(piece.samples.size() == (piece.rows > 0 ? 9U : 4U));
+        for (const WorkspaceSample& sample : piece.samples) {
+            REQUIRE(sample.found);
+            const bool corner =
+                piece.rows > 0 && sample.values[0] != 0.925 && sample.values[1] != 0.925 && sample.values[2] != 0.95;
+            corners += corner ? 1 : 0;
+            if (!corner || sample.values[0] > 0.9) continue;
+            CHECK(norm(sample.markers[0] - tip_under(model, task, sample.values)) < 2e-6);
+        }
+    }
+    CHECK(corners == 24);
+}
+
+TEST_CASE("a search that was stopped goes on to the same bits") {
+    const Model model = made(bar(2));
+    const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}});
+    const WorkspaceOptions options{.side = 4, .between = 60};
+    Progress silent;
+    Stepper one(model, tight), other(model, tight);
+    const auto whole = find_workspace(one, task, options, {}, {}, silent);
+    REQUIRE(whole);
+    std::map<std::size_t, WorkspacePiece> kept;
+    const auto known = [&](std::size_t k) { return kept.contains(k) ? std::optional(kept.at(k)) : std::nullopt; };
+    const auto keep = [&](std::size_t k, const WorkspacePiece& piece) -> Status {
+        kept[k] = piece;
+        return {};
+    };
+    Impatient impatient(20);
+    const auto stopped = find_workspace(other, task, options, known, keep, impatient);
+    REQUIRE(stopped);
+    CHECK(stopped->cancelled);
+    CHECK(kept.size() == 1);
+    const auto rest = find_workspace(other, task, options, known, keep, silent);
+    REQUIRE(rest);
+    CHECK_FALSE(rest->cancelled);
+    check_same(*whole, *rest);
+}

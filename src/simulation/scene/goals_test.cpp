@@ -1,0 +1,140 @@
+// Goals and ranges of a robot file: what they become, and the slips that people make.
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
+#include "robot/file/program_writer.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/build_goals.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+using testing::check_problem;
+
+namespace {
+
+const std::string body = R"(name = "bar"
+length_unit = "mm"
+[material.soft]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.4
+[[body]]
+name = "bar"
+material = "soft"
+geometry = { box = [[0, 0, 0], [40, 10, 10]] }
+[mesh]
+size = "6 mm"
+order = 1
+[[fixed]]
+name = "clamp"
+box = [[0, 0, 0], [0, 10, 10]]
+[[cable]]
+name = "flexor"
+points = [[0, 5, 8], [40, 5, 8]]
+range = [0.8, 1.0]
+rate = 0.05
+price = { tension = 2 }
+[[marker]]
+name = "tip"
+point = [40, 5, 5]
+[[marker]]
+name = "middle"
+point = [20, 5, 5]
+[program]
+steps = 3
+)";
+
+const std::string reach = "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\n";
+
+}  // namespace
+
+TEST_CASE("goals and ranges become SI, tied to markers and actuators") {
+    const auto built = testing::build(parse_robot(
+        body + reach + "path = [[38, 5, 9], [37, 5, 11]]\ntolerance = \"0.2 mm\"\nweight = 3\ntimes = [0.5, 1]\n",
+        "bar.toml"));
+    const auto task = build_goals(built.robot, built.model);
+    REQUIRE_MESSAGE(task, (task ? "" : task.error().message));
+    REQUIRE(task->goals.size() == 1);
+    const sim::Goal& goal = task->goals[0];
+    CHECK(goal.markers == std::vector<std::size_t>{0});
+    REQUIRE(goal.wanted.size() == 2);
+    CHECK(goal.wanted[1][0].z == near(0.011, {.relative = 1e-12}));
+    CHECK(goal.tolerance == near(2e-4, {.relative = 1e-12}));
+    CHECK(goal.weight == near(3, {.relative = 1e-12}));
+    CHECK(task->times == std::vector<double>{0.5, 1});
+    REQUIRE(task->inputs.size() == 1);
+    CHECK(task->inputs[0].low == near(0.8, {.relative = 1e-12}));
+    CHECK(*task->inputs[0].rate == near(0.05, {.relative = 1e-12}));
+    CHECK(task->inputs[0].effort_price == near(2, {.relative = 1e-12}));
+}
+
+TEST_CASE("a path is read from a table, in the unit that its columns name") {
+    const test::Folder folder("goals");
+    std::ofstream(folder.path() / "path.csv") << "# drawn\ntime,x (cm),y (mm),z\n0.5,3.8,5,9\n1,3.7,5,11\n";
+    const auto robot = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    REQUIRE(robot->goals[0].wanted.size() == 2);
+    CHECK(robot->goals[0].wanted[0][0].x == near(38, {.relative = 1e-12}));
+    CHECK(robot->goals[0].wanted[1][0].z == near(11, {.relative = 1e-12}));
+    CHECK(robot->goals[0].times == std::vector<double>{0.5, 1});
+    std::ofstream(folder.path() / "path.csv") << "x,y,z\n38,5,9\n37,,11\n";
+    const auto hole = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    REQUIRE_FALSE(hole);
+    CHECK(test::holds(hole.error().message, "path.csv:3"));
+    CHECK(test::holds(hole.error().message, "bar.toml:"));
+    std::ofstream(folder.path() / "path.csv") << "x,y\n38,5\n";
+    const auto flat = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    REQUIRE_FALSE(flat);
+    CHECK(test::holds(flat.error().message, "there is no column \"z\""));
+}
+
+TEST_CASE("slips in goals and ranges are named, with their line") {
+    check_problem(body + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
+                  "bar.toml:32: goal.a.marker: there is no marker \"tipp\"; there is \"tip\" and \"middle\"");
+    check_problem(test::replaced(body, "[0.8, 1.0]", "[1.0, 0.8]"), "range: is empty");
+    check_problem(test::replaced(body, "[0.8, 1.0]", "[0.8, 1.1]"), "range: is not possible");
+    check_problem(test::replaced(body, "rate = 0.05", "rate = 0"), "rate: must be above zero");
+    check_problem(test::replaced(body, "tension = 2", "tensoin = 2"), "tensoin");
+    check_problem(test::replaced(body, "range = [0.8, 1.0]\n", ""), "belongs to an actuator with a range");
+    const std::string unranged = test::replaced(body, "range = [0.8, 1.0]\nrate = 0.05\nprice = { tension = 2 }\n", "");
+    check_problem(unranged + reach + "point = [38, 5, 9]\n", "no actuator may move for it");
+    check_problem(body + reach, "wants nothing");
+    check_problem(body + reach + "point = [1, 2, 3]\ntolerance = \"0 mm\"\n", "tolerance: must be above zero");
+    check_problem(body + reach + "path = [[1, 2, 3], [2, 3, 4]]\n[[goal]]\nname = \"b\"\nmarker = \"middle\"\n" +
+                      "path = [[1, 2, 3], [2, 3, 4], [3, 4, 5]]\n",
+                  "they are reached together");
+    check_problem(body + reach + "point = [1, 2, 3]\ntimes = [1, 0.5]\n", "in their order");
+    check_problem(body + "[[goal]]\nname = \"a\"\nmarkers = [\"tip\"]\ndirection = [0, 0, 1]\n",
+                  "from one marker to another");
+    check_problem(body + "[[goal]]\nname = \"a\"\nobstacle = \"ball\"\nforce = \"1 N\"\ntolerance = \"0.1 N\"\n",
+                  "there is no obstacle \"ball\"");
+}
+
+TEST_CASE("a program of waypoints stands on the robot file and leads where it says") {
+    const test::Folder folder("goals");
+    const std::filesystem::path file = folder.path() / "bar.toml";
+    std::ofstream(file) << body;
+    const auto robot = load_robot(file, {"mesh.size=7 mm"});
+    REQUIRE(robot);
+    const auto text = program_text(*robot, file, {"mesh.size=7 mm"}, folder.path() / "out",
+                                   {{1, {{"flexor", 0.97}}}, {1, {{"flexor", 0.95}}}}, 2, 1e-5);
+    REQUIRE_MESSAGE(text, (text ? "" : text.error().message));
+    std::filesystem::create_directory(folder.path() / "out");
+    std::ofstream(folder.path() / "out" / "program.toml") << *text;
+    const auto built = testing::build(load_robot(folder.path() / "out" / "program.toml"));
+    CHECK(built.robot.name == "bar");
+    CHECK(built.robot.mesh.size == near(7, {.relative = 1e-12}));
+    CHECK(built.robot.program.steps == 4);
+    CHECK(built.robot.program.tolerance == near(1e-5, {.relative = 1e-12}));
+    const sim::Trajectory run = testing::run_to_the_end(built);
+    CHECK(run.steps[2].cables[0].length_ratio == near(0.97, {.relative = 1e-4}));
+    CHECK(run.steps[4].cables[0].length_ratio == near(0.95, {.relative = 1e-4}));
+    std::ofstream(folder.path() / "out" / "program.toml") << *text << "\n[mesh]\nsize = \"3 mm\"\n";
+    const auto more = load_robot(folder.path() / "out" / "program.toml");
+    REQUIRE_FALSE(more);
+    CHECK(test::holds(more.error().message, "mesh"));
+}
