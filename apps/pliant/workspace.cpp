@@ -92,23 +92,42 @@ private:
 Result<sim::inverse::Workspace> search(const Options& options, const sim::Model& model, const sim::Program& program,
                                        const sim::InverseTask& task, const std::optional<KeptPieces>& kept,
                                        Progress& progress) {
-    sim::Stepper stepper(model, sim::stepper_options(program));
     return sim::inverse::find_workspace(
-        stepper, task, options.search, [&](std::size_t k) { return kept ? kept->read(k) : std::nullopt; },
+        model, sim::stepper_options(program), task, options.search,
+        [&](std::size_t k) { return kept ? kept->read(k) : std::nullopt; },
         [&](std::size_t k, const auto& piece) { return kept ? kept->write(k, piece) : Status(); }, progress);
 }
 
+/// The rows and columns of all sheets, as lines.
+std::vector<report::MeasuredPath> lines_of(const report::WorkspaceReport& report, std::size_t marker) {
+    std::vector<report::MeasuredPath> lines;
+    for (const sim::inverse::WorkspacePiece& piece : report.workspace.pieces) {
+        const auto add = [&](int count, const auto& index) {
+            report::MeasuredPath line{report.model.description().markers[marker].name, {}};
+            for (int k = 0; k < count; ++k) {
+                const auto& sample = piece.samples[static_cast<std::size_t>(index(k))];
+                if (sample.found) line.points.push_back(sample.markers[marker]);
+            }
+            if (!line.points.empty()) lines.push_back(std::move(line));
+        };
+        for (int row = 0; row < piece.rows; ++row) add(piece.columns, [&](int k) { return row * piece.columns + k; });
+        for (int column = 0; piece.rows > 1 && column < piece.columns; ++column)
+            add(piece.rows, [&](int k) { return k * piece.columns + column; });
+    }
+    return lines;
+}
+
 /// The robot at rest, with where its first marker can get.
-Result<std::string> picture(const robot::Robot& robot, const sim::Model& model, const mesh::TriMesh& surface,
-                            Progress& progress) {
-    const sim::Stepper stepper(model, sim::stepper_options(robot.program));
+Result<std::string> picture(const robot::Robot& robot, const report::WorkspaceReport& report, Progress& progress) {
+    const sim::Stepper stepper(report.model, sim::stepper_options(robot.program));
     const sim::RobotState rest = stepper.rest();
     sim::Trajectory trajectory;
     sim::Step step;
-    sim::describe(model, stepper.system(), rest.now.state, rest.controls, rest.evaluation, step);
+    sim::describe(report.model, stepper.system(), rest.now.state, rest.controls, rest.evaluation, step);
     trajectory.steps = {step};
-    report::Simulation simulation = describe(robot, model, trajectory);
-    simulation.obstacles.push_back({"workspace", surface, false, {Vec3{}}});
+    report::Simulation simulation = describe(robot, report.model, trajectory);
+    simulation.measured = lines_of(report, 0);
+    simulation.measured_as = "within reach";
     const report::Surface outer = report::outer_surface(simulation.mesh, simulation.region_material);
     const auto pictures = report::draw_pictures(simulation, outer, {}, progress);
     if (!pictures) return tl::unexpected(pictures.error());
@@ -137,10 +156,8 @@ Status write_results(const Options& options, const robot::Robot& robot, const re
         for (std::size_t m = 0; status && m < report.model.description().markers.size(); ++m)
             status = write_marker(report, m, folder);
         if (!status) return status;
-        const bool drawn = !report.model.description().markers.empty();
-        const mesh::TriMesh surface = drawn ? report::workspace_surface(report.workspace, 0) : mesh::TriMesh{};
-        if (!surface.triangles.empty()) {
-            const Result<std::string> png = picture(robot, report.model, surface, progress);
+        if (!report.model.description().markers.empty() && !lines_of(report, 0).empty()) {
+            const Result<std::string> png = picture(robot, report, progress);
             if (!png) return tl::unexpected(png.error());
             if (status = write_file(folder / "workspace.png", *png); !status) return status;
         }

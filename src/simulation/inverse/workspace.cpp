@@ -118,15 +118,14 @@ private:
 
 }  // namespace
 
-Result<Workspace> find_workspace(Stepper& stepper, const InverseTask& task, const WorkspaceOptions& options,
+Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping, const InverseTask& task,
+                                 const WorkspaceOptions& options,
                                  const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,
                                  const std::function<Status(std::size_t, const WorkspacePiece&)>& keep,
                                  Progress& progress) {
-    const InputSpace space(stepper, task);
-    const std::vector<Plan> plans = plans_for(space.size(), options);
+    const std::vector<Plan> plans = plans_for(static_cast<Eigen::Index>(task.inputs.size()), options);
     std::size_t all = 0, done = 0;
     for (const Plan& plan : plans) all += plan.inputs.size();
-    const PieceSolver solver(stepper, task, space);
     Workspace workspace;
     for (std::size_t k = 0; k < plans.size(); ++k) {
         const auto tell = [&] {
@@ -139,7 +138,10 @@ Result<Workspace> find_workspace(Stepper& stepper, const InverseTask& task, cons
             workspace.pieces.push_back(std::move(*before));
             continue;
         }
-        std::optional<WorkspacePiece> piece = solver.solve(plans[k], progress, tell);
+        // Each with a stepper of its own: what was solved before leaves no trace.
+        Stepper stepper(model, stepping);
+        const InputSpace space(stepper, task);
+        std::optional<WorkspacePiece> piece = PieceSolver(stepper, task, space).solve(plans[k], progress, tell);
         if (!piece) {
             workspace.cancelled = true;
             return workspace;

@@ -44,8 +44,8 @@ inline constexpr std::size_t most_inputs_with_sheets = 5;
 
 /// `known`: gives a piece that was made before, by its index, if there is one; `keep` is given each new one, and its
 /// error ends the work. Both may be empty. The same numbers however often it was interrupted.
-[[nodiscard]] Result<Workspace> find_workspace(Stepper& stepper, const InverseTask& task,
-                                               const WorkspaceOptions& options,
+[[nodiscard]] Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping,
+                                               const InverseTask& task, const WorkspaceOptions& options,
                                                const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,
                                                const std::function<Status(std::size_t, const WorkspacePiece&)>& keep,
                                                Progress& progress);

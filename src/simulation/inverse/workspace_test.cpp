@@ -42,9 +42,8 @@ void check_same(const Workspace& a, const Workspace& b) {
 TEST_CASE("every sample is where its inputs lead, and the sheets hold all ends of the ranges") {
     const Model model = made(bar(3));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}, {0.9, 1}});
-    Stepper stepper(model, tight);
     Progress silent;
-    const auto workspace = find_workspace(stepper, task, {.side = 3, .between = 4}, {}, {}, silent);
+    const auto workspace = find_workspace(model, tight, task, {.side = 3, .between = 4}, {}, {}, silent);
     REQUIRE(workspace);
     REQUIRE(workspace->pieces.size() == 7);  // three pairs of inputs, two ends of the third; and those in between
     int corners = 0;
@@ -67,8 +66,7 @@ TEST_CASE("a search that was stopped goes on to the same bits") {
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}});
     const WorkspaceOptions options{.side = 4, .between = 60};
     Progress silent;
-    Stepper one(model, tight), other(model, tight);
-    const auto whole = find_workspace(one, task, options, {}, {}, silent);
+    const auto whole = find_workspace(model, tight, task, options, {}, {}, silent);
     REQUIRE(whole);
     std::map<std::size_t, WorkspacePiece> kept;
     const auto known = [&](std::size_t k) { return kept.contains(k) ? std::optional(kept.at(k)) : std::nullopt; };
@@ -77,11 +75,11 @@ TEST_CASE("a search that was stopped goes on to the same bits") {
         return {};
     };
     Impatient impatient(20);
-    const auto stopped = find_workspace(other, task, options, known, keep, impatient);
+    const auto stopped = find_workspace(model, tight, task, options, known, keep, impatient);
     REQUIRE(stopped);
     CHECK(stopped->cancelled);
     CHECK(kept.size() == 1);
-    const auto rest = find_workspace(other, task, options, known, keep, silent);
+    const auto rest = find_workspace(model, tight, task, options, known, keep, silent);
     REQUIRE(rest);
     CHECK_FALSE(rest->cancelled);
     check_same(*whole, *rest);
