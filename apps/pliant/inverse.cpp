@@ -194,7 +194,7 @@ void add_inverse(CLI::App& app, int& status) {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     add_output_options(*command, options->output, true);
-    command->footer("Example: pliant inverse examples/inverse/finger/robot.toml -o out");
+    command->footer("Example: pliant inverse examples/inverse/trunk_helix/robot.toml -o out");
     on_call(*command, status, [options] { return inverse(*options); });
 }
 

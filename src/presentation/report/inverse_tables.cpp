@@ -196,6 +196,7 @@ std::string waypoint_line(const InverseReport& r, std::size_t k) {
     std::vector<std::string> parts;
     for (std::size_t g = 0; g < r.task.goals.size(); ++g) {
         const InputUnit unit = unit_of(r.task.goals[g]);
+        if (at.goals[g].reached) continue;
         parts.push_back(
             fmt::format("{} {:.3g} {} off", r.task.goals[g].name, unit.factor * at.goals[g].error, unit.name));
     }

@@ -29,7 +29,7 @@ struct InputUnit {
 /// One row a waypoint: index, time, reached; for each goal wanted, got and error; inputs; tensions and pressures of all
 /// actuators.
 [[nodiscard]] std::string waypoints_csv(const InverseReport& report);
-/// "waypoint 3 of 20: reached, reach 0.012 mm off, flexor 0.83, 5 equilibria, 12 ms".
+/// "waypoint 3 of 20: not reached, reach 0.42 mm off, flexor 0.83": goals that are not reached, and all inputs.
 [[nodiscard]] std::string waypoint_line(const InverseReport& report, std::size_t waypoint);
 /// Where markers are wanted, for pictures. Empty where no goal is a place.
 [[nodiscard]] std::vector<MeasuredPath> wanted_paths(const InverseReport& report);
