@@ -2,8 +2,13 @@
 #include "simulation/inverse/follow.hpp"
 
 #include <doctest/doctest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <utility>
 
 #include "base/core/near.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/inverse/test_robots.hpp"
 
 using namespace pliant;
@@ -23,8 +28,6 @@ void check_found(Description d, const std::vector<std::pair<double, double>>& ra
     const InverseResult result = solve(model, task);
     REQUIRE_MESSAGE(result.waypoints.size() == 1, result.message);
     const Waypoint& found = result.waypoints[0];
-    MESSAGE("forward ", found.work.forward, ", linearised ", found.work.linearised, ", solutions ",
-            found.work.solutions, ", ", 1e3 * found.wall_s, " ms, error ", found.goals[0].error);
     CHECK(found.reached);
     CHECK(found.goals[0].error <= tolerance);
     CHECK(found.limits.empty());
@@ -50,4 +53,148 @@ TEST_CASE("several cables are found again, also with quadratic elements") {
     check_found(bar(2), {{0.7, 1}, {0.7, 1}}, {0.95, 0.8});
     check_found(bar(4), {{0.7, 1}, {0.7, 1}, {0.7, 1}, {0.7, 1}}, {0.8, 0.95, 0.9, 1});
     check_found(bar(3, 2), {{0.7, 1}, {0.7, 1}, {0.7, 1}}, {0.9, 1, 0.85});
+}
+
+namespace {
+
+/// A closed curve of places of the tip, each of which some inputs lead to.
+InverseTask path_task(const Model& model, std::size_t waypoints) {
+    InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}, {0.75, 1}});
+    task.goals = {at_point({})};
+    task.goals[0].wanted.clear();
+    for (std::size_t k = 0; k < waypoints; ++k) {
+        const double phase = 6.283185307179586 * static_cast<double>(k) / static_cast<double>(waypoints);
+        task.goals[0].wanted.push_back(
+            {tip_under(model, task, {0.9 - 0.04 * std::cos(phase), 0.97, 0.93 - 0.04 * std::sin(phase)})});
+    }
+    task.times.assign(waypoints, 1);
+    return task;
+}
+
+}  // namespace
+
+TEST_CASE("a path of 20 waypoints is followed, and the program that was found leads along it") {
+    Description d = bar(3);
+    const Model model = made(d);
+    const InverseTask task = path_task(model, 20);
+    const InverseResult result = solve(model, task);
+    REQUIRE(result.waypoints.size() == 20);
+    CHECK(result.reached);
+    int forward = 0;
+    for (std::size_t k = 1; k < result.waypoints.size(); ++k) forward += result.waypoints[k].work.forward;
+    CHECK(forward <= 3 * 19);  // warm: hardly more than the waypoints themselves
+    for (std::size_t c = 0; c < 3; ++c) {
+        Curve keys{{0}, {1}};
+        for (std::size_t k = 0; k < 20; ++k) {
+            keys.time.push_back(static_cast<double>(k) + 1);
+            keys.value.push_back(result.waypoints[k].values[c]);
+        }
+        d.cables[c].target.keys = keys;
+    }
+    const Program program{.steps = 20, .duration = 20, .tolerance = 1e-6, .checks = false};
+    const Trajectory run = sim::testing::solve(std::move(d), program);
+    REQUIRE_MESSAGE(run.converged, run.message);
+    for (std::size_t k = 0; k < 20; ++k)
+        CHECK(norm(run.steps[k + 1].markers[0].position_m - task.goals[0].wanted[k][0]) <= 1e-4);
+}
+
+TEST_CASE("the same bits on any number of threads") {
+    const Model model = made(bar(3));
+    const InverseTask task = path_task(model, 3);
+    const auto solve_on = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return solve(model, task);
+    };
+    const InverseResult one = solve_on(1), four = solve_on(4);
+    REQUIRE(one.waypoints.size() == four.waypoints.size());
+    for (std::size_t k = 0; k < one.waypoints.size(); ++k) CHECK(one.waypoints[k].values == four.waypoints[k].values);
+}
+
+TEST_CASE("loads that grow with the waypoints' times are made up for") {
+    Description d = bar(2);
+    d.loads = {
+        {"weight", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; }), {}, {0, 0, -0.02}}};
+    d.loads[0].shares.assign(d.loads[0].nodes.size(), 1.0 / static_cast<double>(d.loads[0].nodes.size()));
+    const Model model = made(std::move(d));
+    InverseTask task = task_for(model, {{0.7, 1}, {0.7, 1}});
+    Goal height;
+    height.name = "height";
+    height.kind = GoalKind::plane;
+    height.markers = {0};
+    height.wanted = {{{0, 0, 0.6 * width}, {0, 0, 1}}};
+    height.tolerance = 2e-5;
+    task.goals = {height};
+    task.times = {0.25, 0.5, 0.75, 1};
+    task.timed = true;
+    const InverseResult result = solve(model, task);
+    REQUIRE(result.waypoints.size() == 4);
+    CHECK(result.reached);
+    for (std::size_t k = 1; k < 4; ++k) CHECK(result.waypoints[k].values[0] < result.waypoints[k - 1].values[0]);
+}
+
+TEST_CASE("friction in the guides: each waypoint is a step from the one before") {
+    Description d = bar(2);
+    for (Cable& cable : d.cables) cable.friction = 0.2;
+    const Model model = made(std::move(d));
+    InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
+    const Vec3 a = tip_under(model, task, {0.9, 0.98}), b = tip_under(model, task, {0.84, 0.98});
+    task.goals = {at_point(a)};
+    task.goals[0].wanted = {{a}, {b}, {a}};
+    task.times = {1, 1, 1};
+    const InverseResult result = solve(model, task);
+    REQUIRE(result.waypoints.size() == 3);
+    CHECK(result.reached);
+    Stepper stepper(model, tight);
+    const InputSpace space(stepper, task);
+    RobotState robot = stepper.rest();
+    for (const Waypoint& at : result.waypoints) {
+        Eigen::VectorXd shares(2);
+        for (Eigen::Index i = 0; i < 2; ++i) shares[i] = space.share(i, at.values[static_cast<std::size_t>(i)]);
+        REQUIRE(stepper.drive(robot, space.inputs(shares, 1), {}).arrived);
+        const Vec3 tip = position(model.description().markers[0].point, linalg::view(std::as_const(robot.now.state.x)));
+        CHECK(norm(tip - at.state.markers[0].position_m) < 2e-5);
+    }
+}
+
+TEST_CASE("where the way from rest ends aside, another beginning is found, and a note says so") {
+    // A step from rest does not show the force of a table that nothing touches yet.
+    Description d = bar(2);
+    ContactRules rules;
+    rules.surface = contact::robot_surface(d.mesh);
+    rules.settings = {0.05 * width, 1e5, 0, 1e-5, true};
+    rules.obstacles.push_back({{"table", contact::HalfSpace{{0, 0, -0.4 * width}, {0, 0, 1}}, 0}, {}});
+    d.contact = std::move(rules);
+    const Model model = made(std::move(d));
+    InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}});
+    Goal press;
+    press.name = "press";
+    press.kind = GoalKind::contact_force;
+    press.sum_of_sizes = true;
+    press.wanted = {{{0.05, 0, 0}}};
+    press.tolerance = 2e-3;
+    task.goals = {press};
+    const InverseResult result = solve(model, task);
+    CHECK(result.reached);
+    CHECK(result.notes.size() == 1);
+    CHECK_FALSE(solve(model, task, {.starts = 0}).reached);
+}
+
+TEST_CASE("a search that is cancelled keeps the waypoints that it has") {
+    class AfterTwo final : public Progress {
+    public:
+        void advance(std::string_view, double fraction) override { over_ = fraction > 0.39; }
+        [[nodiscard]] bool cancelled() const override { return over_; }
+
+    private:
+        bool over_ = false;
+    } progress;
+    const Model model = made(bar(3));
+    const InverseTask task = path_task(model, 5);
+    Stepper stepper(model, tight);
+    const InverseResult result = follow(stepper, task, {}, progress);
+    CHECK(result.cancelled);
+    CHECK_FALSE(result.reached);
+    CHECK(result.waypoints.size() >= 2);
+    CHECK(result.waypoints.size() < 5);
+    CHECK(result.message == "cancelled at waypoint 3 of 5");
 }

@@ -90,7 +90,6 @@ TEST_CASE("the bar is pressed on the table with the force that is wanted") {
     down.tolerance = 10 * width;
     task.goals.push_back(down);
     const Waypoint found = solve(model, task).waypoints.at(0);
-    MESSAGE("force ", found.goals[0].got[0].x, " N, ", found.values[0], ", forward ", found.work.forward);
     CHECK(found.reached);
     CHECK(found.goals[0].got[0].x == near(0.05, {.absolute = 1e-3}));
     CHECK(found.state.contacts[0].force_N.z == near(found.goals[0].got[0].x, {.relative = 1e-3}));

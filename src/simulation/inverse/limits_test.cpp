@@ -55,8 +55,6 @@ TEST_CASE("aside of everything that can be reached: the nearest point, as dense 
         const Vec3 wanted = tip_under(model, task, {0.85, 1}) + aside;
         task.goals = {at_point(wanted)};
         const Waypoint found = solve(model, task).waypoints.at(0);
-        MESSAGE("error ", found.goals[0].error, " at ", found.values[0], " ", found.values[1], ", forward ",
-                found.work.forward);
         CHECK_FALSE(found.reached);
         const double sampled = nearest_sampled(model, task, wanted, 24);
         CHECK(found.goals[0].error <= sampled + 2e-6);
@@ -89,7 +87,6 @@ TEST_CASE("an antagonist pays out and takes over") {
     const InverseResult result = solve(model, task);
     REQUIRE(result.waypoints.size() == 3);
     CHECK(result.reached);
-    for (const Waypoint& at : result.waypoints) MESSAGE(at.values[0], " ", at.values[1], " forward ", at.work.forward);
 }
 
 TEST_CASE("a rate leaves a waypoint out of reach, and is named") {
@@ -133,7 +130,6 @@ TEST_CASE("of cables that do the same, a price of tension leaves the least") {
     const Found found = seeker.seek(*begin, 0, seeker.whole_range(), silent);
     CHECK(found.reached);
     const double first = 20 * found.point.inputs[0], second = 20 * found.point.inputs[1];
-    MESSAGE(first, " N, ", second, " N, forward ", seeker.work().forward);
     CHECK(first == near(4, {.absolute = 0.1}));
     CHECK(second == near(0, {.absolute = 0.1}));
 }

@@ -8,12 +8,12 @@
 namespace pliant::sim::inverse {
 namespace {
 
-constexpr double aim = 0.5;            // of the tolerances: noise of the solver must not undo what was reached
+constexpr double aim = 0.7;            // of the tolerances: noise of the solver must not undo what was reached
 constexpr double first_radius = 0.25;  // shares of the ranges
 constexpr double largest_radius = 1, smallest_radius = 1e-6;
 constexpr double no_gain = 0.01;                         // of a tolerance: the next step would bring no more
 constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // decrease found over that expected
-constexpr double quick = 0.04;      // cost left by a step of a linearisation that may be used again
+constexpr double quick = 0.15;      // cost left by a step of a linearisation that may be used again
 constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
 constexpr double widened = 30;      // tolerances while the price is lowered

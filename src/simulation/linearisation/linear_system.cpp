@@ -223,7 +223,7 @@ bool SystemSolver::begin_quickly(Way way) {
     }
     exact_ = true;
     // Conjugate gradients see by themselves that they do not solve.
-    return take_schur_complement() && (levels_ || is_far_from_singular());
+    return take_schur_complement() && (levels_ || is_content() || is_far_from_singular());
 }
 
 void SystemSolver::begin_surely() {
@@ -231,7 +231,7 @@ void SystemSolver::begin_surely() {
     const bool begun = factorise();
     factor_->release_work_space();
     if (begun) (void)take_schur_complement();
-    singular_ = !begun || is_singular();
+    singular_ = !begun || (!is_content() && is_singular());
     if (singular_ && schur_null_.cols() == 0) {
         take_whole_factor();
         singular_ = whole_ == nullptr || is_singular();
@@ -245,6 +245,11 @@ bool SystemSolver::is_far_from_singular() const {
     const Eigen::VectorXd once = precondition(v, Side::direct);
     const Eigen::VectorXd back = multiply(precondition(once, Side::direct), Side::direct) - once;
     return back.norm() < off_at_most * once.norm();
+}
+
+/// Where less will do the solutions themselves tell whether there are any.
+bool SystemSolver::is_content() const {
+    return system_->wanted_residual > inner_tolerance;
 }
 
 Status SystemSolver::prepare() {

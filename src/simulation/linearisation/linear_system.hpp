@@ -85,6 +85,7 @@ private:
     [[nodiscard]] bool apply_body(Eigen::VectorXd& v) const;
     [[nodiscard]] bool take_schur_complement();
     [[nodiscard]] bool is_far_from_singular() const;
+    [[nodiscard]] bool is_content() const;
     [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side) const;
     [[nodiscard]] Eigen::VectorXd correction(const Eigen::VectorXd& residual, double wanted, Side side) const;
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v, Side side) const;
