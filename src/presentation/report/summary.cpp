@@ -84,9 +84,9 @@ std::string summary_json(const Simulation& s, int indent) {
         out["steps"].push_back(step_json(s.result.steps[i], contact));
     for (const Deviation& d : deviations(s.measured, s.result)) {
         out[s.measured_as][d.marker] = {{"points", d.points},
-                                     {"mean_mm", mm_per_m * d.mean_m},
-                                     {"largest_mm", mm_per_m * d.largest_m},
-                                     {"way_mm", mm_per_m * d.way_m}};
+                                        {"mean_mm", mm_per_m * d.mean_m},
+                                        {"largest_mm", mm_per_m * d.largest_m},
+                                        {"way_mm", mm_per_m * d.way_m}};
     }
     out["timing"] = timing_json(s);
     out["peak_memory_MB"] = s.peak_memory_MB;

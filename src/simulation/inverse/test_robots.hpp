@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/actuators/attach.hpp"
 #include "simulation/inverse/follow.hpp"
+#include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/test_problems.hpp"
 
