@@ -17,14 +17,12 @@
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
-#include "robot/bodies/build.hpp"
 #include "robot/file/program_writer.hpp"
 #include "robot/file/robot_file.hpp"
-#include "simulated.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
-#include "simulation/scene/build_model.hpp"
+#include "simulation/scene/scene.hpp"
 
 namespace pliant::app {
 namespace {
@@ -41,12 +39,10 @@ struct Options {
 constexpr double tightest_needed = 1e-5;
 
 struct Solved {
-    robot::Robot robot;
-    mesh::TetMesh mesh;
-    sim::Model model;
+    robot::Scene scene;
     sim::InverseTask task;
     sim::inverse::InverseResult result;
-    [[nodiscard]] report::InverseReport report() const { return {robot.name, model, task, result}; }
+    [[nodiscard]] report::InverseReport report() const { return {scene.robot.name, scene.model, task, result}; }
 };
 
 double tolerance_of(const robot::Robot& robot) {
@@ -56,25 +52,24 @@ double tolerance_of(const robot::Robot& robot) {
 Result<Solved> solve(const Options& options, Progress& progress) {
     Result<robot::Robot> robot = read_robot(options.robot, options.assignments);
     if (!robot) return tl::unexpected(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, progress);
-    if (!mesh) return tl::unexpected(mesh.error());
-    Result<sim::Model> model = robot::build_model(*robot, *mesh);
-    if (!model) return tl::unexpected(model.error());
-    Result<sim::InverseTask> task = robot::build_goals(*robot, *model);
+    Result<robot::Scene> scene = robot::build_scene(std::move(*robot), progress);
+    if (!scene) return tl::unexpected(scene.error());
+    Result<sim::InverseTask> task = robot::build_goals(scene->robot, scene->model);
     if (!task) return tl::unexpected(task.error());
     on_signal(OnSignal::ask);
-    sim::StepperOptions stepping = sim::stepper_options(robot->program);
-    stepping.tolerance = tolerance_of(*robot);
-    sim::Stepper stepper(*model, stepping);
+    sim::StepperOptions stepping = sim::stepper_options(scene->robot.program);
+    stepping.tolerance = tolerance_of(scene->robot);
+    sim::Stepper stepper(scene->model, stepping);
     sim::inverse::InverseResult result = sim::inverse::follow(stepper, *task, {options.starts}, progress);
-    return Solved{std::move(*robot), std::move(*mesh), std::move(*model), std::move(*task), std::move(result)};
+    return Solved{std::move(*scene), std::move(*task), std::move(result)};
 }
 
 /// With friction the way matters: what was found in one step is repeated in one step.
 int steps_per_waypoint(const Solved& solved) {
-    const bool has_friction = std::ranges::any_of(solved.robot.cables, [](const auto& c) { return c.friction > 0; }) ||
-                              (solved.robot.contact && solved.robot.contact->friction > 0) ||
-                              std::ranges::any_of(solved.robot.obstacles, [](const auto& o) { return o.friction > 0; });
+    const bool has_friction =
+        std::ranges::any_of(solved.scene.robot.cables, [](const auto& c) { return c.friction > 0; }) ||
+        (solved.scene.robot.contact && solved.scene.robot.contact->friction > 0) ||
+        std::ranges::any_of(solved.scene.robot.obstacles, [](const auto& o) { return o.friction > 0; });
     constexpr std::size_t fewest = 10;
     return has_friction ? 1 : static_cast<int>((fewest + solved.task.waypoints() - 1) / solved.task.waypoints());
 }
@@ -87,8 +82,8 @@ Result<std::string> program_of(const Options& options, const Solved& solved, int
             point.values.emplace_back(solved.task.inputs[i].name, at.values[i]);
         points.push_back(std::move(point));
     }
-    return robot::program_text(solved.robot, options.robot, options.assignments, options.folder, points, steps_each,
-                               tolerance_of(solved.robot));
+    return robot::program_text(solved.scene.robot, options.robot, options.assignments, options.folder, points,
+                               steps_each, tolerance_of(solved.scene.robot));
 }
 
 /// Where the program led elsewhere than the waypoints were found, by more than their goals allow.
@@ -121,11 +116,11 @@ Result<std::vector<std::string>> write_results(const Options& options, const Sol
     const std::filesystem::path file = std::filesystem::path(options.folder) / "program.toml";
     Result<robot::Robot> robot = robot::parse_robot(*program, file);
     if (!robot) return tl::unexpected(robot.error());
-    Result<sim::Model> model = robot::build_model(*robot, solved.mesh);
-    if (!model) return tl::unexpected(model.error());
-    const sim::Trajectory run = sim::run(*model, robot->program, progress);
+    const Result<robot::Scene> scene = robot::build_scene(std::move(*robot), progress);
+    if (!scene) return tl::unexpected(scene.error());
+    const sim::Trajectory run = sim::run(scene->model, scene->robot.program, progress);
     if (progress.cancelled()) return cancelled();
-    report::Simulation simulation = describe(*robot, *model, run);
+    report::Simulation simulation = report::simulation_of(scene->robot, scene->model, run);
     simulation.measured = report::wanted_paths(solved.report());
     simulation.measured_as = "wanted";
     const Status status =
@@ -143,8 +138,9 @@ Result<std::vector<std::string>> write_results(const Options& options, const Sol
 
 void print_text(const Options& options, const Solved& solved) {
     const report::InverseReport report = solved.report();
-    fmt::print("{}, {}\n", counted(solved.model.node_count(), "node"),
-               counted(solved.mesh.tet_count(), solved.mesh.order == 2 ? "quadratic tet" : "linear tet"));
+    fmt::print("{}, {}\n", counted(solved.scene.model.node_count(), "node"),
+               counted(solved.scene.model.mesh().tet_count(),
+                       solved.scene.model.mesh().order == 2 ? "quadratic tet" : "linear tet"));
     for (std::size_t k = 0; k < solved.result.waypoints.size(); ++k) {
         fmt::print("{}\n", waypoint_line(report, k));
         for (const sim::inverse::Limit& limit : solved.result.waypoints[k].limits) fmt::print("  {}\n", text(limit));

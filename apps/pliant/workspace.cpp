@@ -18,13 +18,11 @@
 #include "interrupt.hpp"
 #include "presentation/report/pictures.hpp"
 #include "presentation/report/workspace_files.hpp"
-#include "robot/bodies/build.hpp"
-#include "simulated.hpp"
 #include "simulation/inverse/workspace_record.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
-#include "simulation/scene/build_model.hpp"
+#include "simulation/scene/scene.hpp"
 
 namespace pliant::app {
 namespace {
@@ -125,7 +123,7 @@ Result<std::string> picture(const robot::Robot& robot, const report::WorkspaceRe
     sim::Step step;
     sim::describe(report.model, stepper.system(), rest.now.state, rest.controls, rest.evaluation, step);
     trajectory.steps = {step};
-    report::Simulation simulation = describe(robot, report.model, trajectory);
+    report::Simulation simulation = report::simulation_of(robot, report.model, trajectory);
     simulation.measured = lines_of(report, 0);
     simulation.measured_as = "within reach";
     const report::Surface outer = report::outer_surface(simulation.mesh, simulation.region_material);
@@ -168,18 +166,16 @@ Status write_results(const Options& options, const robot::Robot& robot, const re
 Result<int> workspace(const Options& options) {
     auto progress = terminal_progress(options.output);
     on_signal(OnSignal::leave);
-    const Result<robot::Robot> robot = read_robot(options.robot, options.assignments);
+    Result<robot::Robot> robot = read_robot(options.robot, options.assignments);
     if (!robot) return tl::unexpected(robot.error());
-    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
-    if (!mesh) return tl::unexpected(mesh.error());
-    const Result<sim::Model> model = robot::build_model(*robot, std::move(*mesh));
-    if (!model) return tl::unexpected(model.error());
-    const Result<sim::InverseTask> task = robot::build_goals(*robot, *model, false);
+    const Result<robot::Scene> scene = robot::build_scene(std::move(*robot), *progress);
+    if (!scene) return tl::unexpected(scene.error());
+    const Result<sim::InverseTask> task = robot::build_goals(scene->robot, scene->model, false);
     if (!task) return tl::unexpected(task.error());
     const Result<std::optional<KeptPieces>> kept = KeptPieces::open(options);
     if (!kept) return tl::unexpected(kept.error());
     on_signal(OnSignal::ask);
-    const auto found = search(options, *model, robot->program, *task, *kept, *progress);
+    const auto found = search(options, scene->model, scene->robot.program, *task, *kept, *progress);
     if (!found) return tl::unexpected(found.error());
     if (found->cancelled) {
         progress.reset();
@@ -188,9 +184,9 @@ Result<int> workspace(const Options& options) {
             *kept ? fmt::format("; the same command with --resume goes on from {}", (*kept)->folder().string()) : "");
         return exit_failed;
     }
-    const report::WorkspaceReport report{robot->name, *model, *task, *found};
+    const report::WorkspaceReport report{scene->robot.name, scene->model, *task, *found};
     if (!options.folder.empty()) {
-        if (Status status = write_results(options, *robot, report, *progress); !status)
+        if (Status status = write_results(options, scene->robot, report, *progress); !status)
             return tl::unexpected(status.error());
         (*kept)->remove();
     }

@@ -63,13 +63,13 @@ private:
         std::string why;
         const auto begin = seeker_.move(rest, rest.inputs, task_.times[0], progress_, &why);
         std::optional<Found> best;
-        if (begin) best = seeker_.seek(*begin, 0, seeker_.whole_range(), progress_);
+        if (begin) best = seeker_.seek(*begin, rest, 0, seeker_.whole_range(), progress_);
         const double from_rest = best ? best->cost : 0;
         for (int n = 0; n < options_.starts && !(best && best->reached) && !progress_.cancelled(); ++n) {
             const auto start =
                 seeker_.move(rest, spread_point(n + 1, seeker_.space().size()), task_.times[0], progress_);
             if (!start) continue;
-            Found other = seeker_.seek(*start, 0, seeker_.whole_range(), progress_);
+            Found other = seeker_.seek(*start, rest, 0, seeker_.whole_range(), progress_);
             constexpr double clearly = 0.98;
             if (best && !other.reached && !(other.cost < clearly * best->cost)) continue;
             if (begin && (other.reached || other.cost < clearly * from_rest))
@@ -102,7 +102,7 @@ private:
             }
             begin = *moved;
         }
-        return seeker_.seek(begin, k, bounds, progress_);
+        return seeker_.seek(begin, now_, k, bounds, progress_);
     }
 
     void keep(const Found& found, std::size_t k, const Work& work, double wall_s) {

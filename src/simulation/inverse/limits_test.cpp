@@ -127,7 +127,7 @@ TEST_CASE("of cables that do the same, a price of tension leaves the least") {
     both << 0.5, 0.4;
     const auto begin = seeker.move(rest, both, 1, silent);
     REQUIRE(begin);
-    const Found found = seeker.seek(*begin, 0, seeker.whole_range(), silent);
+    const Found found = seeker.seek(*begin, *begin, 0, seeker.whole_range(), silent);
     CHECK(found.reached);
     const double first = 20 * found.point.inputs[0], second = 20 * found.point.inputs[1];
     CHECK(first == near(4, {.absolute = 0.1}));

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/inverse/bounded_step.hpp"
-
 namespace pliant::sim::inverse {
 namespace {
 
@@ -30,7 +28,7 @@ double distance(double cost) {
 struct Seeker::Search {
     std::size_t waypoint;
     const Bounds* bounds;
-    Point base;  ///< the way begins there
+    Point base;  ///< the waypoint before
     Point now;
     Eigen::VectorXd residuals;
     double cost = 0;
@@ -39,6 +37,7 @@ struct Seeker::Search {
     Eigen::VectorXd gradient{};  ///< at `now`, where fresh
     std::string no_state{};      ///< why the last move led nowhere; empty if it did not
     bool cancelled = false;
+    [[nodiscard]] bool is_priced() const { return price.factor > 0; }
 };
 
 struct Seeker::Trial {
@@ -86,10 +85,11 @@ double Seeker::cost_of(const Search& search, const Point& point, Eigen::VectorXd
     return 0.5 * residuals.squaredNorm();
 }
 
-Found Seeker::seek(const Point& start, std::size_t waypoint, const Bounds& bounds, const Progress& progress) {
-    Search search{waypoint, &bounds, start, start, {}};
+Found Seeker::seek(const Point& start, const Point& before, std::size_t waypoint, const Bounds& bounds,
+                   const Progress& progress) {
+    Search search{waypoint, &bounds, before, start, {}};
     search.cost = cost_of(search, search.now, search.residuals);
-    radius_ = std::max(radius_, 0.1 * first_radius);
+    radius_ = std::max(radius_, first_radius);
     minimise(search, progress);
     Found found;
     const auto all_reached = [&] {
@@ -194,16 +194,15 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
             wanted[i] = space_.drives_longer(i) ? search.bounds->upper[i] : search.bounds->lower[i];
     }
     const Point& from = has_memory_ ? search.base : search.now;
-    const double time = from.robot.inputs.time;
     Trial trial;
     Point to{from.robot, wanted};
     ++work_.forward;
-    const StepReport report = stepper_->drive(to.robot, space_.inputs(wanted, time), progress);
+    const StepReport report = stepper_->drive(to.robot, space_.inputs(wanted, task_->times[search.waypoint]), progress);
     trial.arrived = report.arrived;
     trial.reason = report.reason;
     if (!report.arrived) {
         ++work_.failed;
-        if (report.pieces == 0) return trial;
+        if (report.pieces == 0 || has_memory_) return trial;
         to.inputs = from.inputs + to.robot.now.along * (wanted - from.inputs);
     }
     space_.take_up(to.robot, to.inputs);
@@ -211,40 +210,61 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     return trial;
 }
 
+/// Within the bounds and the trust region; of what is not taken for pulling nothing.
+BoundedStep Seeker::best_step(const Search& search) {
+    Eigen::VectorXd lower = search.bounds->lower - search.now.inputs, upper = search.bounds->upper - search.now.inputs;
+    for (Eigen::Index i = 0; i < space_.size(); ++i) {
+        const bool pulls = pulls_[static_cast<std::size_t>(i)];
+        lower[i] = pulls ? std::clamp(lower[i], -radius_, 0.0) : 0.0;
+        upper[i] = pulls ? std::clamp(upper[i], 0.0, radius_) : 0.0;
+        // One that is only taken for taut does nothing when it is let go.
+        if (space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
+    }
+    constexpr double accuracy = 1e-3;
+    return bounded_step(
+        search.residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
+        [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, accuracy,
+        search.is_priced() ? 0 : 0.1 * aim);
+}
+
+/// Takes the trial if it is better, and adapts the trust region. True: the sensitivity serves for another step.
+bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
+    Eigen::VectorXd residuals;
+    const double cost = trial.point ? cost_of(search, *trial.point, residuals) : 1e300;
+    const double ratio = (search.cost - cost) / step.decrease;
+    const double length = step.step.lpNorm<Eigen::Infinity>();
+    if (!trial.arrived || (ratio < poor && search.fresh))
+        radius_ = 0.3 * length;
+    else if (ratio > good && length > 0.9 * radius_)
+        radius_ = std::min(2 * radius_, largest_radius);
+    search.no_state = trial.arrived ? "" : trial.reason;
+    if (!(ratio > none)) return search.fresh;
+    const bool as_asked = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
+    if (as_asked) sensitivity_->learn(step.step, residuals - search.residuals - step.change);
+    const bool was_quick = cost <= quick * search.cost;
+    search.now = std::move(*trial.point);
+    search.residuals = std::move(residuals);
+    search.cost = cost;
+    search.fresh = false;
+    return as_asked && was_quick && treats_as_it_is(search.now);
+}
+
 void Seeker::minimise(Search& search, const Progress& progress) {
-    const bool priced = search.price.factor > 0;
     search.fresh = false;
     search.no_state.clear();
     bool usable = sensitivity_ && price_factor_ == search.price.factor && treats_as_it_is(search.now);
     for (int moves = 0; moves < most_moves && radius_ > smallest_radius;) {
-        if (!priced && distance(search.cost) <= aim) return;
+        if (!search.is_priced() && distance(search.cost) <= aim) return;
         if ((search.cancelled = progress.cancelled())) return;
         if (!usable && !linearise(search)) return;
-        usable = true;
-        Eigen::VectorXd lower = search.bounds->lower - search.now.inputs,
-                        upper = search.bounds->upper - search.now.inputs;
-        for (Eigen::Index i = 0; i < space_.size(); ++i) {
-            const bool pulls = pulls_[static_cast<std::size_t>(i)];
-            lower[i] = pulls ? std::clamp(lower[i], -radius_, 0.0) : 0.0;
-            upper[i] = pulls ? std::clamp(upper[i], 0.0, radius_) : 0.0;
-            // One that is only taken for taut does nothing when it is let go.
-            if (search.fresh && space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
-        }
-        const auto step = bounded_step(
-            search.residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
-            [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, 1e-3,
-            priced ? 0 : 0.1 * aim);
-        if (!sensitivity_->status()) {
-            usable = false;
-            sensitivity_.reset();
-            if (search.fresh) return;
-            continue;
-        }
-        if (search.fresh) search.gradient = step.gradient;
+        const BoundedStep step = best_step(search);
+        const bool solved = sensitivity_->status().has_value();
         const double gain = distance(search.cost) - distance(search.cost - step.decrease);
-        if (priced ? !(step.decrease > no_gain * price_room) : !(gain > no_gain)) {
+        const bool worth_it = solved && (search.is_priced() ? step.decrease > no_gain * price_room : gain > no_gain);
+        if (solved && search.fresh) search.gradient = step.gradient;
+        if (!worth_it) {
             if (search.fresh) return;
-            usable = false;
+            usable = false;  // what the state at hand says counts
             continue;
         }
         ++moves;
@@ -253,27 +273,7 @@ void Seeker::minimise(Search& search, const Progress& progress) {
             search.cancelled = true;
             return;
         }
-        search.no_state = trial.arrived ? "" : trial.reason;
-        Eigen::VectorXd residuals;
-        const double cost = trial.point ? cost_of(search, *trial.point, residuals) : 1e300;
-        const double ratio = (search.cost - cost) / step.decrease;
-        const double length = step.step.lpNorm<Eigen::Infinity>();
-        if (!trial.arrived || (ratio < poor && search.fresh))
-            radius_ = 0.3 * length;
-        else if (ratio > good && length > 0.9 * radius_)
-            radius_ = std::min(2 * radius_, largest_radius);
-        const bool slow = cost > quick * search.cost;
-        if (ratio > none) {
-            const bool straight = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
-            if (straight) sensitivity_->learn(step.step, residuals - search.residuals - step.change);
-            search.now = std::move(*trial.point);
-            search.residuals = std::move(residuals);
-            search.cost = cost;
-            usable = straight && !slow && treats_as_it_is(search.now);
-        } else if (!search.fresh) {
-            usable = false;
-        }
-        if (ratio > none) search.fresh = false;
+        usable = judge(search, step, std::move(trial));
     }
 }
 

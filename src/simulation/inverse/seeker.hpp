@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/core/progress.hpp"
+#include "simulation/inverse/bounded_step.hpp"
 #include "simulation/inverse/goal_rows.hpp"
 #include "simulation/inverse/sensitivity.hpp"
 
@@ -74,8 +75,10 @@ public:
                                             const Progress& progress, std::string* why = nullptr);
     [[nodiscard]] Bounds whole_range() const;
 
-    /// From `start`, which is at the waypoint's time.
-    [[nodiscard]] Found seek(const Point& start, std::size_t waypoint, const Bounds& bounds, const Progress& progress);
+    /// From `start`, which is at the waypoint's time. `before`: the waypoint before, or rest, from which changes count
+    /// and, where friction acts, every way begins, as a step of a program will.
+    [[nodiscard]] Found seek(const Point& start, const Point& before, std::size_t waypoint, const Bounds& bounds,
+                             const Progress& progress);
 
 private:
     struct Search;
@@ -85,6 +88,8 @@ private:
     [[nodiscard]] bool linearise(Search& search);
     [[nodiscard]] bool treats_as_it_is(const Point& point) const;
     [[nodiscard]] Trial attempt(const Search& search, const Eigen::VectorXd& step, const Progress& progress);
+    [[nodiscard]] BoundedStep best_step(const Search& search);
+    [[nodiscard]] bool judge(Search& search, const BoundedStep& step, Trial trial);
     [[nodiscard]] std::vector<Limit> limits(const Search& search) const;
     [[nodiscard]] double cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const;
 

@@ -116,6 +116,18 @@ private:
     const InputSpace& space_;
 };
 
+/// One that was kept may have been tampered with.
+bool fits(const WorkspacePiece& piece, const Plan& plan, const Description& d, std::size_t inputs) {
+    const auto sample_fits = [&](const WorkspaceSample& sample) {
+        if (sample.values.size() != inputs) return false;
+        if (!sample.found) return sample.markers.empty() && sample.tensions_N.empty() && sample.pressures_Pa.empty();
+        return sample.markers.size() == d.markers.size() && sample.tensions_N.size() == d.cables.size() &&
+               sample.pressures_Pa.size() == d.chambers.size();
+    };
+    return piece.rows == plan.rows && piece.columns == plan.columns && piece.samples.size() == plan.inputs.size() &&
+           std::ranges::all_of(piece.samples, sample_fits);
+}
+
 }  // namespace
 
 Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping, const InverseTask& task,
@@ -133,7 +145,7 @@ Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepp
             ++done;
         };
         if (std::optional<WorkspacePiece> before = known ? known(k) : std::nullopt;
-            before && before->samples.size() == plans[k].inputs.size()) {
+            before && fits(*before, plans[k], model.description(), task.inputs.size())) {
             done += before->samples.size();
             workspace.pieces.push_back(std::move(*before));
             continue;

@@ -7,6 +7,7 @@
 
 #include "base/core/near.hpp"
 #include "simulation/inverse/test_robots.hpp"
+#include "simulation/inverse/workspace_record.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -83,4 +84,24 @@ TEST_CASE("a search that was stopped goes on to the same bits") {
     REQUIRE(rest);
     CHECK_FALSE(rest->cancelled);
     check_same(*whole, *rest);
+    kept.at(0).samples[3].markers.clear();
+    const auto mended = find_workspace(model, tight, task, options, known, keep, silent);
+    REQUIRE(mended);
+    check_same(*whole, *mended);
+}
+
+TEST_CASE("a piece is the same after it was bytes, and damaged bytes are an error") {
+    const WorkspacePiece piece{1, 2, {{{0.9, 1e-300}, true, {{1, 2, 3}}, {0.1}, {}}, {{0.8, 2}, false, {}, {}, {}}}};
+    const std::string bytes = piece_bytes(piece);
+    const auto read = piece_from_bytes(bytes);
+    REQUIRE(read);
+    CHECK(read->rows == 1);
+    CHECK(read->columns == 2);
+    REQUIRE(read->samples.size() == 2);
+    CHECK(read->samples[0].values == piece.samples[0].values);
+    CHECK(read->samples[0].markers == piece.samples[0].markers);
+    CHECK(read->samples[0].tensions_N == piece.samples[0].tensions_N);
+    CHECK_FALSE(read->samples[1].found);
+    for (std::size_t size = 0; size < bytes.size(); ++size) CHECK_FALSE(piece_from_bytes(bytes.substr(0, size)));
+    CHECK_FALSE(piece_from_bytes("robot"));
 }

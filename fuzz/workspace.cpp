@@ -1,0 +1,12 @@
+// A piece of a workspace as a search keeps it: what is accepted is written and read again.
+#include <cstdlib>
+
+#include "input.hpp"
+#include "simulation/inverse/workspace_record.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace pliant::sim::inverse;
+    const auto piece = piece_from_bytes(as_text(data, size));
+    if (piece && piece_from_bytes(piece_bytes(*piece))->samples.size() != piece->samples.size()) std::abort();
+    return 0;
+}
