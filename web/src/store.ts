@@ -117,8 +117,8 @@ export function say(text: string) {
 }
 
 /// Shows where the robot is led, by whomever; not while an input of this page is on its way.
-function adopt({ wanted: to }: FrameHead) {
-  if (helm.value.you && sentAt.size > 0) return;
+function adopt({ wanted: to, lead }: FrameHead) {
+  if (helm.value.you && sentAt.size > 0 && !lead) return; // who leads a marker asks for no actuator
   wantedTime.value = to.time;
   following.value = to.actuators.length === 0;
   const known = wanted.peek();

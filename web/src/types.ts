@@ -59,6 +59,16 @@ export interface FrameHead {
   supports: [number, number, number][];
   obstacles: [number, number, number][];
   pull?: { vertex: number; force_N: [number, number, number] };
+  lead?: Lead; // a marker in somebody's hand, which the actuators follow
+}
+
+export interface Lead {
+  marker: string;
+  to_mm: [number, number, number];
+  settled: boolean; // it comes no nearer
+  reached: boolean;
+  error_mm: number;
+  limits: string[]; // what stops it
 }
 
 export type Scene = Packet<SceneHead>;

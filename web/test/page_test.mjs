@@ -79,9 +79,10 @@ test('the program plays to its end, and a body can be pulled', async (t) => {
   const view = await page.getByTestId('view').boundingBox();
   const tip = await page.locator('.labels span', { hasText: 'tip' }).boundingBox();
   const started = await tag(page);
-  await page.mouse.move(tip.x - 14, tip.y + 16);
+  const [x, y] = [tip.x - 32, tip.y + 16]; // beside the marker's dot
+  await page.mouse.move(x, y);
   await page.mouse.down();
-  for (let k = 1; k <= 6; ++k) await page.mouse.move(tip.x - 14, tip.y + 16 - 10 * k);
+  for (let k = 1; k <= 6; ++k) await page.mouse.move(x, y - 10 * k);
   await page.waitForFunction((t) => window.pliant.frame.value.head.tag > t && window.pliant.frame.value.head.pull, started);
   await settled(page);
   const pulled = await marker(page, 'tip');
@@ -89,6 +90,39 @@ test('the program plays to its end, and a body can be pulled', async (t) => {
   await page.mouse.up();
   await page.waitForFunction(() => !window.pliant.frame.value.head.pull && window.pliant.frame.value.head.arrived);
   near(await marker(page, 'tip'), before, 0.1, 'let go');
+  assert.deepEqual(wrong, []);
+});
+
+test('a marker that is dragged takes its cable along, stays where it is let go, and says what stops it', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await settled(page);
+  const dot = async () => {
+    const label = await page.locator('.labels span', { hasText: 'tip' }).boundingBox();
+    return [label.x - 9, label.y + 10];
+  };
+  const before = await marker(page, 'tip');
+  const [x, y] = await dot();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let k = 1; k <= 8; ++k) await page.mouse.move(x - k, y - 4 * k);
+  await page.waitForFunction(() => window.pliant.frame.value.head.lead?.settled);
+  const led = await page.evaluate(() => window.pliant.frame.value.head);
+  const moved = await marker(page, 'tip');
+  assert.ok(Math.hypot(...moved.map((v, k) => v - before[k])) > 3, `${moved} was ${before}`);
+  const value = Number(await page.getByTestId('number-flexor').inputValue());
+  assert.ok(value < 0.99, `the slider is at ${value}`);
+  near(moved, simulated(value), 0.1, 'where the slider is');
+  await page.mouse.move(x - 10, y - 300);
+  await page.getByTestId('lead-limits').waitFor();
+  assert.match(await page.getByTestId('lead-limits').textContent(), /flexor/);
+  assert.ok(led.lead.error_mm < (await page.evaluate(() => window.pliant.frame.value.head.lead.error_mm)));
+  await page.mouse.up();
+  await page.waitForFunction(() => !window.pliant.frame.value.head.lead);
+  const left = await marker(page, 'tip');
+  await settled(page);
+  near(await marker(page, 'tip'), left, 0.01, 'let go');
   assert.deepEqual(wrong, []);
 });
 

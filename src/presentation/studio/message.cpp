@@ -82,21 +82,35 @@ Message read_drive(Keys& keys) {
     return drive;
 }
 
-Message read_pull(Keys& keys) {
-    PullMessage pull;
-    pull.tag = keys.number("tag", 0);
-    const double vertex = keys.number("vertex");
-    if (vertex < 0 || vertex != std::floor(vertex)) keys.wrong("vertex", "a whole number");
-    pull.vertex = vertex >= 0 ? static_cast<int>(vertex) : 0;
+std::array<double, 3> read_point(Keys& keys) {
+    std::array<double, 3> point{};
     const Json& to = keys.list("to");
     for (std::size_t k = 0; k < 3; ++k) {
         if (to.size() != 3 || !to[k].is_number() || !(std::fabs(to[k].get<double>()) <= largest_number)) {
             keys.wrong("to", "three numbers");
             break;
         }
-        pull.to_mm[k] = to[k].get<double>();
+        point[k] = to[k].get<double>();
     }
+    return point;
+}
+
+Message read_pull(Keys& keys) {
+    PullMessage pull;
+    pull.tag = keys.number("tag", 0);
+    const double vertex = keys.number("vertex");
+    if (vertex < 0 || vertex != std::floor(vertex)) keys.wrong("vertex", "a whole number");
+    pull.vertex = vertex >= 0 ? static_cast<int>(vertex) : 0;
+    pull.to_mm = read_point(keys);
     return pull;
+}
+
+Message read_lead(Keys& keys) {
+    LeadMessage lead;
+    lead.tag = keys.number("tag", 0);
+    lead.marker = keys.text("marker");
+    lead.to_mm = read_point(keys);
+    return lead;
 }
 
 Message read_fields(Keys& keys) {
@@ -126,10 +140,12 @@ Message read(const std::string& type, Keys& keys) {
     if (type == "play") return Play{keys.boolean("on")};
     if (type == "rest") return Rest{};
     if (type == "pull") return read_pull(keys);
+    if (type == "lead") return read_lead(keys);
     if (type == "release") return Release{};
     if (type == "fields") return read_fields(keys);
     if (type == "steer") return read_steer(keys);
-    if (type != "ping") keys.wrong("type", "hello, drive, follow, play, rest, pull, release, fields, steer or ping");
+    if (type != "ping")
+        keys.wrong("type", "hello, drive, follow, play, rest, pull, lead, release, fields, steer or ping");
     return Ping{};
 }
 

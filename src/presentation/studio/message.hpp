@@ -5,6 +5,7 @@
 //     {"type": "follow", "tag": 8, "time": 0.5}                 all actuators where the program has them
 //     {"type": "play", "on": true}      {"type": "rest"}
 //     {"type": "pull", "vertex": 12, "to": [10, 0, 5]}          millimetres      {"type": "release"}
+//     {"type": "lead", "marker": "tip", "to": [10, 0, 5]}       millimetres; the actuators follow, until "release"
 //     {"type": "fields", "names": ["J"]}
 //     {"type": "steer", "action": "ask" | "give" | "leave"}
 //     {"type": "ping"}
@@ -49,6 +50,11 @@ struct PullMessage {
     int vertex = 0;
     std::array<double, 3> to_mm{};
 };
+struct LeadMessage {
+    double tag = 0;
+    std::string marker;
+    std::array<double, 3> to_mm{};
+};
 struct Release {};
 struct FieldsMessage {
     std::vector<std::string> names;
@@ -58,7 +64,8 @@ struct Steer {
 };
 struct Ping {};
 
-using Message = std::variant<Hello, DriveMessage, Follow, Play, Rest, PullMessage, Release, FieldsMessage, Steer, Ping>;
+using Message = std::variant<Hello, DriveMessage, Follow, Play, Rest, PullMessage, LeadMessage, Release, FieldsMessage,
+                             Steer, Ping>;
 
 /// Errors name the key. Numbers are finite and within +-1e9, lists at most 256 long, names at most 200 bytes.
 [[nodiscard]] Result<Message> parse_message(std::string_view text);

@@ -48,6 +48,8 @@ TEST_CASE("everything else is refused, with the key") {
         {R"({"type":"pull","vertex":1.5,"to":[0,0,0]})", "vertex"},
         {R"({"type":"pull","vertex":-1,"to":[0,0,0]})", "vertex"},
         {R"({"type":"pull","vertex":1,"to":[0,0]})", "to"},
+        {R"({"type":"lead","to":[0,0,1]})", "marker"},
+        {R"({"type":"lead","marker":"tip","to":[0,0,"a"]})", "to"},
         {R"({"type":"play"})", "on"},
         {R"({"type":"steer","action":"seize"})", "action"},
     };

@@ -96,6 +96,7 @@ void SimulationSession::open(RobotText source, After after) {
     built_once_ = false;
     if (after == After::from_rest) wanted_ = {};
     wanted_.pull.reset();
+    wanted_.lead.reset();
     wanted_.playing = wanted_.to_rest = false;
     wanted_.again = after == After::as_before;
     input_ = wanted_.again;
@@ -112,6 +113,8 @@ void SimulationSession::drive(const DriveMessage& message) {
         wanted_.actuators.push_back(value);
     }
     wanted_.playing = false;
+    wanted_.lead.reset();
+    wanted_.let_go = false;
     input_ = true;
     changed_.notify_all();
 }
@@ -123,6 +126,7 @@ void SimulationSession::follow(const Follow& message) {
     wanted_.actuators.clear();
     wanted_.follow = true;
     wanted_.playing = false;
+    wanted_.lead.reset();
     input_ = true;
     changed_.notify_all();
 }
@@ -131,6 +135,7 @@ void SimulationSession::play(bool on) {
     const std::lock_guard lock(mutex_);
     wanted_.playing = on;
     if (on) wanted_.actuators.clear();
+    if (on) wanted_.lead.reset();
     input_ = true;
     changed_.notify_all();
 }
@@ -151,9 +156,21 @@ void SimulationSession::pull(const PullMessage& message) {
     changed_.notify_all();
 }
 
+void SimulationSession::lead(const LeadMessage& message) {
+    const std::lock_guard lock(mutex_);
+    wanted_.lead = message;
+    wanted_.pull.reset();
+    wanted_.playing = false;
+    wanted_.tag = message.tag;
+    input_ = true;
+    changed_.notify_all();
+}
+
 void SimulationSession::release() {
     const std::lock_guard lock(mutex_);
     wanted_.pull.reset();
+    wanted_.let_go = wanted_.lead.has_value();
+    wanted_.lead.reset();
     input_ = true;
     changed_.notify_all();
 }
@@ -215,7 +232,7 @@ void SimulationSession::work() {
                 to_build_.reset();
             } else if (input_) {
                 wanted = wanted_;
-                wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = false;
+                wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = wanted_.let_go = false;
                 input_ = false;
             }
         }
@@ -252,6 +269,7 @@ void SimulationSession::build(RobotText source) {
     if (!scene) return refuse(scene.error());
     const std::shared_ptr<const Built> before = this->built();
     auto built = std::make_shared<const Built>(std::move(source), std::move(*scene), ++revision_);
+    led_.reset();
     live_.reset();
     live_.emplace(built->model, built->robot.program);
     target_ = live_->target_at(0);
@@ -290,6 +308,7 @@ void SimulationSession::want_as_before(const Built* before, const Built& now) {
 
 void SimulationSession::apply(const Wanted& wanted) {
     if (wanted.to_rest) {
+        led_.reset();
         live_->return_to_rest();
         target_ = live_->target_at(0);
         driven_.clear();
@@ -310,9 +329,42 @@ void SimulationSession::apply(const Wanted& wanted) {
         if (playing_ && target_.time >= end * (1 - 1e-9)) target_ = live_->target_at(0);
         if (!playing_) publish({false, settled_, 0, 0, ""});
     }
+    settled_ = false;
+    if (set_lead(wanted.lead)) return;
+    if (led_ && wanted.let_go) return let_go_of_marker();
+    led_.reset();
     set_target(wanted);
     set_pull(wanted.pull);
-    settled_ = false;
+}
+
+bool SimulationSession::set_lead(const std::optional<LeadMessage>& message) {
+    const auto& markers = built_->model.description().markers;
+    const auto named = [&](const sim::Marker& marker) { return message && marker.name == message->marker; };
+    const auto marker = static_cast<std::size_t>(std::ranges::find_if(markers, named) - markers.begin());
+    if (marker == markers.size()) return false;
+    if (!led_ || led_->marker() != marker) {
+        auto inputs = led_inputs(built_->robot, built_->model, live_->rest_measures());
+        if (inputs.empty()) return false;
+        led_.emplace(*live_, built_->model, std::move(inputs), marker);
+    }
+    led_to_m_ = 1 / mm * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]};
+    return true;
+}
+
+/// The sliders stay where the hand has led the actuators.
+void SimulationSession::let_go_of_marker() {
+    driven_ = led_->actuators();
+    led_.reset();
+    target_.time = live_->state().inputs.time;
+    target_.drives = live_->state().inputs.drives;
+    target_.pull.reset();
+    {
+        const std::lock_guard lock(mutex_);
+        wanted_.actuators = driven_;
+        wanted_.time = target_.time;
+    }
+    settled_ = true;
+    publish({false, true, 0, 0, ""});
 }
 
 void SimulationSession::set_target(const Wanted& wanted) {
@@ -406,7 +458,8 @@ void SimulationSession::go_on_playing() {
 
 void SimulationSession::advance() {
     Watch watch(*this);
-    const sim::LiveProgress progress = live_->advance(target_, watch);
+    const sim::LiveProgress progress = led_ ? led_->lead(led_to_m_, watch) : live_->advance(target_, watch);
+    if (led_) driven_ = led_->actuators();
     if (!progress.reason.empty()) playing_ = false;
     settled_ = progress.arrived || !progress.reason.empty();
     const bool due = Clock::now() - last_frame_at_ >= frame_gap;
@@ -472,6 +525,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
         const Vec3 force = live_->pull_force_N();
         json["pull"] = {{"vertex", pulled_vertex_}, {"force_N", Json::array({force.x, force.y, force.z})}};
     }
+    if (led_) json["lead"] = Json::parse(led_->json());
     std::string text = dumped(json);
     text.insert(text.size() - 1, fmt::format(R"(,"wanted":{},"obstacles":{})", wanted_json(),
                                              built_->scene.obstacle_offsets(step.time)));

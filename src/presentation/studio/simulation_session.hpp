@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "presentation/studio/led_marker.hpp"
 #include "presentation/studio/message.hpp"
 #include "presentation/studio/scene.hpp"
 #include "robot/description/robot.hpp"
@@ -71,6 +72,8 @@ public:
     void play(bool on);
     void rest();
     void pull(const PullMessage& message);
+    void lead(const LeadMessage& message);
+    /// Of what is pulled or led.
     void release();
     /// Sends the present state once more, as when a page wants to see another field.
     void show_again();
@@ -95,11 +98,13 @@ private:
         double followed = 0;  ///< time to which the program itself was followed; of actuators that are not listed
         std::vector<ActuatorValue> actuators;
         std::optional<PullMessage> pull;
+        std::optional<LeadMessage> lead;
         bool playing = false;
         bool to_rest = false;
         bool show_again = false;
         bool follow = false;
-        bool again = false;  ///< all of it, by a robot that has just been built
+        bool let_go = false;  ///< of a marker that was led: everything stays where it is
+        bool again = false;   ///< all of it, by a robot that has just been built
     };
 
     void work();
@@ -111,6 +116,9 @@ private:
     /// False for what cannot be: a length below nothing, an actuator that is not there.
     bool set_actuator(const ActuatorValue& value);
     void set_pull(const std::optional<PullMessage>& message);
+    /// True if a marker is led.
+    bool set_lead(const std::optional<LeadMessage>& message);
+    void let_go_of_marker();
     void go_on_playing();
     void publish(const sim::LiveProgress& progress);
     void remember(const sim::Step& step);
@@ -136,6 +144,8 @@ private:
     // Of the thread alone.
     std::optional<sim::Live> live_;
     sim::LiveTarget target_;
+    std::optional<LedMarker> led_;  ///< a marker in somebody's hand
+    Vec3 led_to_m_;
     double tag_ = 0;
     std::vector<ActuatorValue> driven_;  ///< what the target has by hand; empty: all of it follows the program
     int pulled_vertex_ = -1;

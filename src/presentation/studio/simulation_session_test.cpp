@@ -66,6 +66,7 @@ TEST_CASE("before a robot has been opened there is nothing, and input to nobody 
     CHECK(b.session.news().empty());
     b.drive(1, "flexor", "shortening_mm", 0.1);
     b.session.pull({2, 0, {1, 2, 3}});
+    b.session.lead({3, "tip", {1, 2, 3}});
     b.session.play(true);
     b.session.rest();
     b.session.release();
@@ -88,6 +89,43 @@ TEST_CASE("a robot is bent, its states are remembered, and rest forgets them") {
     b.session.rest();
     (void)b.frames.wait_for([](const Json& f) { return f["cables"][0]["length_mm"].get<double>() > 3.9999; });
     CHECK(b.session.history().steps.size() <= 1);
+}
+
+TEST_CASE("a marker that is led takes the cable along, and stays where it is let go") {
+    Bench b;
+    b.open(bar);
+    REQUIRE(b.session.wait_until_built());
+    b.drive(1, "flexor", "shortening_mm", 0.3);
+    const Json wanted = b.arrived(1)["markers"][0];
+    b.frames.clear();
+    b.session.rest();
+    (void)b.frames.wait_for([](const Json& f) { return f["cables"][0]["length_mm"].get<double>() > 3.9999; });
+    const auto at = [](const Json& p) { return std::array{p[0].get<double>(), p[1].get<double>(), p[2].get<double>()}; };
+    b.session.lead({2, "tip", at(wanted)});
+    const Json there = b.arrived(2);
+    CHECK(there["lead"]["reached"] == true);
+    CHECK(there["lead"]["error_mm"].get<double>() <= 0.1);
+    CHECK(there["wanted"]["actuators"][0]["name"] == "flexor");
+    const double pulled = there["wanted"]["actuators"][0]["value"].get<double>();
+    CHECK(there["cables"][0]["ratio"].get<double>() < 0.99);
+
+    b.frames.clear();
+    b.session.release();
+    const Json free = b.frames.wait_for([](const Json& f) { return !f.contains("lead"); });
+    CHECK(free["markers"] == there["markers"]);
+    CHECK(free["wanted"]["actuators"][0]["value"].get<double>() == near(pulled, {.relative = 1e-12}));
+
+    b.session.lead({3, "tip", {0, 0, 100}});
+    const Json far = b.arrived(3);
+    CHECK(far["lead"]["reached"] == false);
+    REQUIRE(far["lead"]["limits"].size() == 1);
+    CHECK(holds(far["lead"]["limits"][0].get<std::string>(), "flexor is at the"));
+    b.drive(4, "flexor", "shortening_mm", 0.1);  // a slider takes over
+    const Json driven = b.arrived(4);
+    CHECK_FALSE(driven.contains("lead"));
+    CHECK(driven["cables"][0]["length_mm"].get<double>() == near(3.9, {.relative = 1e-6}));
+    b.session.lead({5, "nose", {0, 0, 0}});
+    CHECK_FALSE(b.arrived(5).contains("lead"));
 }
 
 TEST_CASE("what cannot be is not wanted: strange actuators, kinds and values") {

@@ -238,6 +238,7 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
     if (const auto* play = std::get_if<Play>(&*message)) simulation_->play(play->on);
     if (std::holds_alternative<Rest>(*message)) simulation_->rest();
     if (const auto* pull = std::get_if<PullMessage>(&*message)) simulation_->pull(*pull);
+    if (const auto* lead = std::get_if<LeadMessage>(&*message)) simulation_->lead(*lead);
     if (std::holds_alternative<Release>(*message)) simulation_->release();
 }
 

@@ -26,6 +26,23 @@ Eigen::VectorXd InputSpace::rest() const {
     return shares;
 }
 
+Eigen::VectorXd InputSpace::shares(const RobotState& robot) const {
+    Eigen::VectorXd shares(size());
+    for (Eigen::Index i = 0; i < size(); ++i) {
+        const std::size_t a = input(i).actuator;
+        const Drive low = stepper_->system().drive(a, input(i).low), now = robot.inputs.drives[a];
+        const double value = now.kind == low.kind ? now.value : stepper_->hold(robot, a, low.kind).value;
+        shares[i] = std::clamp((value - low.value) / drive_factor(i), 0.0, 1.0);
+    }
+    return shares;
+}
+
+bool InputSpace::drives(const RobotState& robot) const {
+    return std::ranges::all_of(task_->inputs, [&](const Steered& in) {
+        return robot.inputs.drives[in.actuator].kind == stepper_->system().drive(in.actuator, in.low).kind;
+    });
+}
+
 Inputs InputSpace::inputs(const Eigen::VectorXd& shares, double time) const {
     Inputs inputs = stepper_->program(time);
     for (Eigen::Index i = 0; i < size(); ++i)

@@ -22,6 +22,10 @@ public:
     /// In what the targets name.
     [[nodiscard]] double value(Eigen::Index i, double share) const;
     [[nodiscard]] double share(Eigen::Index i, double value) const;
+    /// What drives the robot now, or would keep it as it is where it is driven otherwise; within the ranges.
+    [[nodiscard]] Eigen::VectorXd shares(const RobotState& robot) const;
+    /// The robot is driven by what the targets name.
+    [[nodiscard]] bool drives(const RobotState& robot) const;
     /// Of the whole robot: what is not steered follows the program.
     [[nodiscard]] Inputs inputs(const Eigen::VectorXd& shares, double time) const;
 

@@ -83,6 +83,16 @@ public:
         return {robot_.inputs.force_N[0], robot_.inputs.force_N[1], robot_.inputs.force_N[2]};
     }
 
+    [[nodiscard]] Stepper& stepper() { return stepper_; }
+    [[nodiscard]] const RobotState& state() const { return robot_; }
+    void set_state(RobotState state, double wall_s) {
+        robot_ = std::move(state);
+        spring_.let_go();
+        stale_ = false;
+        last_ = {};
+        wall_s_ = wall_s;
+    }
+
     [[nodiscard]] std::vector<double> rest_measures() const {
         std::vector<double> measures;
         for (std::size_t a = 0; a < steered(); ++a) measures.push_back(system().actuators()[a].rest_measure());
@@ -216,6 +226,15 @@ std::vector<std::string> Live::warnings(const Step& described) const {
 }
 Vec3 Live::pull_force_N() const {
     return walk_->pull_force_N();
+}
+Stepper& Live::stepper() {
+    return walk_->stepper();
+}
+const RobotState& Live::state() const {
+    return walk_->state();
+}
+void Live::set_state(RobotState state, double wall_s) {
+    walk_->set_state(std::move(state), wall_s);
 }
 std::vector<double> Live::rest_measures() const {
     return walk_->rest_measures();

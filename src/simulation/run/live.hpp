@@ -18,6 +18,7 @@
 #include "simulation/run/live_pull.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/trajectory.hpp"
+#include "simulation/stepper/stepper.hpp"
 
 namespace pliant::sim {
 
@@ -64,6 +65,11 @@ public:
     [[nodiscard]] std::vector<std::string> warnings(const Step& described) const;
     /// Force of the spring on the body; zero without one.
     [[nodiscard]] Vec3 pull_force_N() const;
+    /// Its engine and its state, for those who lead it otherwise. A state that is set takes the place of the one at
+    /// hand, nothing pulls at it, and it took `wall_s` to come there.
+    [[nodiscard]] Stepper& stepper();
+    [[nodiscard]] const RobotState& state() const;
+    void set_state(RobotState state, double wall_s);
     /// (cables, then chambers) length or volume at rest.
     [[nodiscard]] std::vector<double> rest_measures() const;
 

@@ -117,6 +117,7 @@ function Control({ actuator }: { actuator: Actuator }) {
       ? `${(head?.cables[index]?.tension_N ?? 0).toFixed(2)} N`
       : `${(head?.chambers[index - (head?.cables.length ?? 0)]?.pressure_kPa ?? 0).toFixed(2)} kPa`;
   const id = `actuator-${index}`;
+  const limit = head?.lead?.limits.find((l) => l.startsWith(`${actuator.name} `))?.slice(actuator.name.length + 1);
   return (
     <div class={`actuator ${actuator.type}`} data-testid={`actuator-${actuator.name}`}>
       <div class="row">
@@ -168,6 +169,11 @@ function Control({ actuator }: { actuator: Actuator }) {
           onValue={(v) => drive(actuator.name, want.kind, v)}
         />
       </div>
+      {limit && (
+        <p class="limit" data-testid={`limit-${actuator.name}`}>
+          {limit}
+        </p>
+      )}
     </div>
   );
 }

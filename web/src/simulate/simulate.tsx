@@ -71,7 +71,8 @@ function Canvas() {
         last = null;
         return send({ type: 'release' });
       }
-      last = { type: 'pull', vertex: grab.vertex, to: grab.to };
+      const marker = scene.value?.head.markers[grab.marker]?.name;
+      last = marker === undefined ? { type: 'pull', vertex: grab.vertex, to: grab.to } : { type: 'lead', marker, to: grab.to };
       pending ||= requestAnimationFrame(() => {
         pending = 0;
         if (last) sendInput(last);
@@ -417,6 +418,18 @@ function Readings() {
             <td class="unit">mm</td>
           </tr>
         ))}
+        {shown.lead && (
+          <tr data-testid="lead">
+            <th>{rough.value && '≈ '}distance to the target</th>
+            <td colSpan={3}>{shown.lead.error_mm.toFixed(2)}</td>
+            <td class="unit">mm</td>
+          </tr>
+        )}
+        {shown.lead && shown.lead.limits.length > 0 && (
+          <tr class="limits" data-testid="lead-limits">
+            <td colSpan={5}>Out of reach, this is the nearest point: {shown.lead.limits.join('; ')}</td>
+          </tr>
+        )}
         {pull && (
           <tr>
             <th>{rough.value && '≈ '}applied force</th>
@@ -454,7 +467,7 @@ function Pin() {
 
 const hints = [
   'Drag a slider to pull a cable or to inflate a chamber. Every frame shown is at equilibrium.',
-  'Drag the body with the mouse to apply a force. Drag the background to rotate the view, scroll to zoom.',
+  'Drag a marker: the actuators bring it there. Drag the body to apply a force. Drag the background to rotate the view, scroll to zoom.',
   'Change a material under File: the previous state stays visible as a ghost for comparison. Then continue under Prepare.',
 ];
 const hintsSeen = signal(Number(localStorage.getItem('pliant_hints') ?? 0));

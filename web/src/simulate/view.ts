@@ -22,10 +22,14 @@ export interface ViewOptions {
   beside: boolean;
 }
 
+/// What is held: a point of the surface, or a marker.
 export interface Grab {
   vertex: number;
+  marker: number; // -1: none
   to: [number, number, number];
 }
+
+const markerReach = 10; // pixels from its dot
 
 const cableColour = 0xcc1a24;
 
@@ -65,7 +69,7 @@ export class RobotView {
   private options: ViewOptions | null = null;
   private dirty = true;
   private stopped = false;
-  private grabbing: { vertex: number; plane: THREE.Plane } | null = null;
+  private grabbing: { vertex: number; marker: number; plane: THREE.Plane } | null = null;
   onGrab: (grab: Grab | null) => void = () => {};
   mayGrab = () => true;
   onRange: (low: number, high: number) => void = () => {};
@@ -387,12 +391,17 @@ export class RobotView {
     const grab = this.grabbing;
     this.arrow.visible = this.handle.visible = grab !== null;
     if (!grab || !this.body) return;
-    const p = this.body.getAttribute('position');
     const geometry = new LineGeometry();
-    geometry.setPositions([p.getX(grab.vertex), p.getY(grab.vertex), p.getZ(grab.vertex), ...this.handle.position.toArray()]);
+    geometry.setPositions([...this.placeOf(grab).toArray(), ...this.handle.position.toArray()]);
     this.arrow.geometry.dispose();
     this.arrow.geometry = geometry;
     this.handle.scale.setScalar(0.012 * this.size);
+  }
+
+  private placeOf(grab: { vertex: number; marker: number }) {
+    if (grab.marker >= 0) return this.markers[grab.marker].position.clone();
+    const p = this.body!.getAttribute('position');
+    return new THREE.Vector3(p.getX(grab.vertex), p.getY(grab.vertex), p.getZ(grab.vertex));
   }
 
   setOptions(options: ViewOptions) {
@@ -497,14 +506,32 @@ export class RobotView {
 
   private pointerDown(e: PointerEvent) {
     if (e.button !== 0 || e.shiftKey || !this.mayGrab() || !this.frame || this.options?.exploded) return;
+    const marker = this.markerAt(e);
+    if (marker >= 0) return this.hold(e, { vertex: -1, marker });
     const hit = this.ray(e).intersectObject(this.meshes[0], false)[0];
     if (!hit?.face || (this.options?.sectionAxis && this.plane.distanceToPoint(hit.point) < 0)) return;
     const p = this.body!.getAttribute('position');
     const distance = (v: number) => hit.point.distanceTo(new THREE.Vector3(p.getX(v), p.getY(v), p.getZ(v)));
     const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
+    this.hold(e, { vertex, marker: -1 });
+  }
+
+  /// The marker whose dot is under the pointer, or -1: dots are drawn over everything.
+  private markerAt(e: PointerEvent) {
+    const box = this.canvas.getBoundingClientRect();
+    let [best, least] = [-1, markerReach];
+    this.markers.forEach((marker, m) => {
+      const v = marker.position.clone().project(this.camera);
+      const away = Math.hypot(((v.x + 1) / 2) * box.width - (e.clientX - box.left), ((1 - v.y) / 2) * box.height - (e.clientY - box.top));
+      if (v.z < 1 && away < least) [best, least] = [m, away];
+    });
+    return best;
+  }
+
+  private hold(e: PointerEvent, what: { vertex: number; marker: number }) {
     const facing = this.camera.getWorldDirection(new THREE.Vector3());
-    const at = new THREE.Vector3(p.getX(vertex), p.getY(vertex), p.getZ(vertex));
-    this.grabbing = { vertex, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(facing, at) };
+    const at = this.placeOf(what);
+    this.grabbing = { ...what, plane: new THREE.Plane().setFromNormalAndCoplanarPoint(facing, at) };
     this.handle.position.copy(at);
     this.controls.enabled = false;
     this.canvas.setPointerCapture(e.pointerId);
@@ -519,7 +546,7 @@ export class RobotView {
     if (!at) return;
     this.handle.position.copy(at);
     this.updateArrow();
-    this.onGrab({ vertex: this.grabbing.vertex, to: at.toArray() });
+    this.onGrab({ vertex: this.grabbing.vertex, marker: this.grabbing.marker, to: at.toArray() });
     this.invalidate();
   }
 
