@@ -116,7 +116,7 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   near(moved, simulated(value), 0.1, 'where the slider is');
   await page.mouse.move(x - 10, y - 300);
   await page.getByTestId('lead-limits').waitFor();
-  assert.match(await page.getByTestId('lead-limits').textContent(), /flexor/);
+  assert.match(await page.getByTestId('lead-limits').textContent(), /nearest point/);
   assert.ok(led.lead.error_mm < (await page.evaluate(() => window.pliant.frame.value.head.lead.error_mm)));
   await page.mouse.up();
   await page.waitForFunction(() => !window.pliant.frame.value.head.lead);

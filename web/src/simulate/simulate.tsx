@@ -425,9 +425,12 @@ function Readings() {
             <td class="unit">mm</td>
           </tr>
         )}
-        {shown.lead && shown.lead.limits.length > 0 && (
+        {shown.lead?.settled && !shown.lead.reached && (
           <tr class="limits" data-testid="lead-limits">
-            <td colSpan={5}>Out of reach, this is the nearest point: {shown.lead.limits.join('; ')}</td>
+            <td colSpan={5}>
+              Out of reach, this is the nearest point:{' '}
+              {shown.lead.limits.join('; ') || 'the actuators move it in other directions only'}
+            </td>
           </tr>
         )}
         {pull && (
