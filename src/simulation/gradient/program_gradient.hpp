@@ -30,8 +30,8 @@ struct ProgramGradient {
 
 struct GradientOptions {
     By by{};
-    /// States that are kept on the way, where steps depend on those before: with 8 of them 165 steps are solved at most
-    /// three times in addition, 495 at most four times. Memory does not grow with the number of steps.
+    /// States that are kept on the way, where steps depend on those before: with 8 of them each of 220 steps is solved
+    /// at most four times, each of 715 at most five times. Memory does not grow with the number of steps.
     int kept = 8;
 };
 
