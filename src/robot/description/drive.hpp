@@ -13,7 +13,10 @@ struct CableTarget {
     Kind kind = Kind::length_ratio;
     double value = 1;
     std::optional<Curve> keys = std::nullopt;
-    [[nodiscard]] double at(double time) const;
+    /// From the first instant after rest the cable is so much longer than that, m, or is pulled by so much more, N.
+    double offset = 0;
+    [[nodiscard]] double at(double time) const;  ///< without the offset
+    [[nodiscard]] double offset_at(double time) const { return time > 0 ? offset : 0; }
 };
 
 /// What a chamber is driven by, likewise. gas_ratio: the chamber is sealed and holds this many times the gas that it
@@ -23,7 +26,10 @@ struct ChamberTarget {
     Kind kind = Kind::volume_ratio;
     double value = 1;
     std::optional<Curve> keys = std::nullopt;
-    [[nodiscard]] double at(double time) const;
+    /// From the first instant after rest there is so much more than that: Pa, or m^3. Gas has none.
+    double offset = 0;
+    [[nodiscard]] double at(double time) const;  ///< without the offset
+    [[nodiscard]] double offset_at(double time) const { return time > 0 ? offset : 0; }
 };
 
 /// How hard air is held to its volume and a gap to its width, beside the Young's modulus of the softest body (the

@@ -33,6 +33,8 @@ CableTarget read_target(Reader& cable) {
         reader.problem("", "must not be negative: a cable can only pull");
     }
     for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
+    const bool force = target.kind == Kind::tension_N;
+    target.offset = reader.quantity("offset", force ? Dimension::force : Dimension::length, 0);
     reader.finish();
     return target;
 }
@@ -145,6 +147,11 @@ ChamberTarget read_chamber_target(Reader& chamber) {
     if ((target.kind == Kind::volume_ratio || target.kind == Kind::gas_ratio) && !(target.value > 0))
         reader.problem("", fmt::format("a ratio of {} is not possible; it must be above zero", target.value));
     for (const auto kind : kinds) (void)reader.raw(kind);
+    const bool volume = target.kind == Kind::volume_ratio || target.kind == Kind::volume_change_m3;
+    if (target.kind != Kind::gas_ratio)
+        target.offset = reader.quantity("offset", volume ? Dimension::volume : Dimension::pressure, 0);
+    else if (reader.raw("offset") != nullptr)
+        reader.problem("offset", "goes with pressure, volume_change and volume_ratio, not with a sealed chamber");
     reader.finish();
     return target;
 }

@@ -245,7 +245,7 @@ private:
             }
             line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET=CABLE{}", d_.cables[c].name, c + 1);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
-            const double tension = uN_per_N * d_.cables[c].target.at(1);
+            const double tension = uN_per_N * (d_.cables[c].target.at(1) + d_.cables[c].target.offset);
             line("*SPRING,NONLINEAR,ELSET=CABLE{}", c + 1);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})
@@ -310,7 +310,7 @@ private:
         }
         line("*DLOAD");
         for (const Chamber& chamber : d_.chambers) {
-            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(1)); !done) return done;
+            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(1) + chamber.target.offset); !done) return done;
         }
         for (const PressureLoad& load : d_.pressures) {
             if (Status done = press(load.name, load.wall, load.pressure_Pa * load.share.at(1)); !done) return done;

@@ -87,7 +87,7 @@ public:
     explicit Equilibrium(const Model& model);
 
     [[nodiscard]] Controls controls(double time) const;
-    /// What drives a cable or chamber whose target has this value.
+    /// What drives a cable or chamber whose target has this value, with the error of its zero.
     [[nodiscard]] Drive drive(std::size_t actuator, double target) const;
     /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
     /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
@@ -181,6 +181,7 @@ private:
     void add_plates(double stiffness_Pa, double volume_m3);
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
     [[nodiscard]] std::optional<GapElements> gap_elements_of(std::size_t cable) const;
+    [[nodiscard]] Drive drive(std::size_t actuator, double target, double offset) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
     /// Energy of an actuator whose measure is not driven, at measure g > 0.
