@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/linalg/sparse.hpp"
@@ -64,6 +65,12 @@ public:
     /// times the velocity, both at a given x. dt_before is not filled in. The stiffness that damping takes stays.
     [[nodiscard]] History start_weights(const Eigen::VectorXd& force_weights,
                                         const Eigen::VectorXd& velocity_weights) const;
+
+    /// The same step from elsewhere, with the stiffness that damping takes here. Force and velocity are linear in x and
+    /// the history together: from a change of the history they are what changes.
+    [[nodiscard]] Inertia from(History history) const {
+        return {*elements_, *free_index_, std::move(history), dt_, damping_, stiffness_};
+    }
 
 private:
     [[nodiscard]] Eigen::VectorXd damping_force(const Eigen::VectorXd& motion) const;

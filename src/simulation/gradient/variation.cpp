@@ -119,7 +119,11 @@ Eigen::VectorXd wanted_by_rest(const Linearisation& at) {
     Eigen::VectorXd rates = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.system().actuators().size()));
     for (std::size_t a = 0; a < at.system().actuators().size(); ++a) {
         const Parameter& input = all[a];
-        const double share = input.value / at.system().actuators()[a].rest_measure();
+        const double offset = a < d.cables.size() ? d.cables[a].target.offset_at(at.controls().time)
+                              : input.kind == Parameter::Kind::volume
+                                  ? d.chambers[a - d.cables.size()].target.offset_at(at.controls().time)
+                                  : 0;
+        const double share = (input.value - offset) / at.system().actuators()[a].rest_measure();
         const bool changes = a < d.cables.size() ? d.cables[a].target.kind == CableTarget::Kind::shortening_m
                                                  : input.kind == Parameter::Kind::volume &&
                                                        d.chambers[a - d.cables.size()].target.kind ==
@@ -158,8 +162,7 @@ Variation gradient(Linearisation& at, const Adjoint& adjoint, const Slope& of, c
     return result;
 }
 
-Result<Eigen::VectorXd> changes(Linearisation& at, std::span<const Slope> of, const Variation& with) {
-    const std::vector<Parameter> all = parameters(at);
+Derivative derivative(Linearisation& at, const Variation& with) {
     const Eigen::VectorXd of_rest = rest_measures(at.system(), with.rest);
     Eigen::VectorXd wanted = with.inputs;
     if (with.rest.size() > 0) {
@@ -168,15 +171,27 @@ Result<Eigen::VectorXd> changes(Linearisation& at, std::span<const Slope> of, co
     }
     Derivative by = nothing(at);
     add_parameters(at, inputs(at), wanted, by);
-    add_parameters(at, all, with.parameters, by);
+    add_parameters(at, parameters(at), with.parameters, by);
     add_tets(at, with.tets, by);
     if (with.rest.size() > 0) add_to(derivative_by_rest(at, with.rest), 1, by);
+    return by;
+}
+
+Result<Eigen::VectorXd> changes(Linearisation& at, std::span<const Slope> of, const Variation& with) {
+    const Derivative by = derivative(at, with);
     const Result<Change> answer = at.response(by);
     if (!answer) return tl::unexpected(answer.error());
+    return changes(at, of, with, by, *answer);
+}
+
+Eigen::VectorXd changes(Linearisation& at, std::span<const Slope> of, const Variation& with, const Derivative& by,
+                        const Change& answer) {
+    const std::vector<Parameter> all = parameters(at);
+    const Eigen::VectorXd of_rest = rest_measures(at.system(), with.rest);
     Eigen::VectorXd result(static_cast<Eigen::Index>(of.size()));
     for (std::size_t k = 0; k < of.size(); ++k) {
         double& change = result[static_cast<Eigen::Index>(k)];
-        change = change_of(at, of[k], *answer, by);
+        change = change_of(at, of[k], answer, by);
         if (of[k].by_rest.size() > 0 && with.rest.size() > 0) change += of[k].by_rest.dot(with.rest);
         for (const Slope::ByMeasure& own : of[k].by_measures)
             change += own.at_rest * of_rest[static_cast<Eigen::Index>(own.actuator)];

@@ -61,6 +61,11 @@ void add(const Variation& change, Variation& sum);
 /// (measures) how they change with a change of everything but guide points, from one direct solution. With gradient()
 /// these are the products of the Jacobian and of its transpose that Gauss-Newton needs.
 [[nodiscard]] Result<Eigen::VectorXd> changes(Linearisation& at, std::span<const Slope> of, const Variation& with);
+/// How the equations change with it.
+[[nodiscard]] Derivative derivative(Linearisation& at, const Variation& with);
+/// The same, where the response to that derivative, or to one with more forces, is at hand.
+[[nodiscard]] Eigen::VectorXd changes(Linearisation& at, std::span<const Slope> of, const Variation& with,
+                                      const Derivative& by, const Change& answer);
 
 /// (actuators) how what an input wants of each actuator changes with its measure at rest: 0 where it does not.
 [[nodiscard]] Eigen::VectorXd wanted_by_rest(const Linearisation& at);
