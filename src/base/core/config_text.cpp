@@ -1,0 +1,95 @@
+#include "base/core/config_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/core/letters.hpp"
+
+namespace pliant::config {
+namespace {
+
+std::string toml_string(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out += {'\\', c};
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+std::string key_text(const std::string& key) {
+    const bool bare = !key.empty() && std::ranges::all_of(key, [](char c) {
+        return is_letter(c) || is_digit(c) || c == '_' || c == '-';
+    });
+    return bare ? key : toml_string(key);
+}
+
+/// With a point or an exponent, or it would be read as a whole number.
+std::string real_text(double value) {
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    const std::string text = fmt::format("{}", value);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string inline_text(const Value& value);
+
+template <class List, class Text>
+std::string joined(const List& list, const Text& text_of) {
+    std::string text;
+    for (const auto& entry : list) text += (text.empty() ? "" : ", ") + text_of(entry);
+    return text;
+}
+
+struct InlineText {
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(double value) const { return real_text(value); }
+    std::string operator()(const std::string& value) const { return toml_string(value); }
+    std::string operator()(const Array& list) const { return "[" + joined(list, inline_text) + "]"; }
+    std::string operator()(const Table& table) const {
+        const auto entry = [](const Entry& e) { return key_text(e.first) + " = " + inline_text(e.second); };
+        return table.empty() ? "{}" : "{ " + joined(table, entry) + " }";
+    }
+};
+
+std::string inline_text(const Value& value) {
+    return std::visit(InlineText{}, value.data);
+}
+
+bool is_list_of_tables(const Value& value) {
+    const auto* list = std::get_if<Array>(&value.data);
+    return list != nullptr && !list->empty() &&
+           std::ranges::all_of(*list, [](const Value& v) { return std::holds_alternative<Table>(v.data); });
+}
+
+std::string lines_of(const Table& table) {
+    std::string text;
+    for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", key_text(key), inline_text(value));
+    return text;
+}
+
+}  // namespace
+
+std::string toml_text(const Value& root) {
+    std::string plain, tables;
+    for (const auto& [key, value] : std::get<Table>(root.data)) {
+        if (const auto* table = std::get_if<Table>(&value.data)) {
+            tables += fmt::format("\n[{}]\n{}", key_text(key), lines_of(*table));
+        } else if (is_list_of_tables(value)) {
+            for (const Value& entry : std::get<Array>(value.data))
+                tables += fmt::format("\n[[{}]]\n{}", key_text(key), lines_of(std::get<Table>(entry.data)));
+        } else {
+            plain += fmt::format("{} = {}\n", key_text(key), inline_text(value));
+        }
+    }
+    return plain + tables;
+}
+
+}  // namespace pliant::config
