@@ -1,0 +1,251 @@
+#include "simulation/identify/identify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "base/core/text.hpp"
+#include "simulation/identify/confidence.hpp"
+#include "simulation/identify/least_squares.hpp"
+#include "simulation/identify/trial.hpp"
+
+namespace pliant::identify {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What counts as the scatter of a unit without one: this share of the spread of its values.
+constexpr double share_of_spread = 0.01;
+/// Effects on all residuals together below that are none, in scatters.
+constexpr double negligible = 1e-6;
+constexpr double longest_step = 1.5;  // of log(value): a factor of 4.5
+
+std::vector<double> times_of(const std::vector<MeasuredValue>& values) {
+    std::vector<double> times;
+    for (const MeasuredValue& value : values) times.push_back(value.time);
+    std::ranges::sort(times);
+    times.erase(std::ranges::unique(times).begin(), times.end());
+    return times;
+}
+
+/// The scatter of each value: its own, else that of its unit.
+VectorXd scatters_of(const Measurements& m) {
+    std::map<std::string, std::pair<double, double>> range;
+    for (const MeasuredValue& value : m.values) {
+        const auto [at, is_new] = range.try_emplace(m.channels[value.channel].unit, value.value, value.value);
+        at->second = {std::min(at->second.first, value.value), std::max(at->second.second, value.value)};
+    }
+    VectorXd scatters(static_cast<Index>(m.values.size()));
+    for (std::size_t k = 0; k < m.values.size(); ++k) {
+        const auto& [low, high] = range.at(m.channels[m.values[k].channel].unit);
+        const double size = high > low ? high - low : std::max({std::fabs(low), std::fabs(high)});
+        const double whole = size > 0 ? size : 1;
+        scatters[static_cast<Index>(k)] = m.values[k].scatter > 0 ? m.values[k].scatter : share_of_spread * whole;
+    }
+    return scatters;
+}
+
+class Search {
+public:
+    Search(const Source& source, const std::vector<Unknown>& unknowns, const Measurements& measurements,
+           Progress& progress)
+        : source_(source),
+          unknowns_(unknowns),
+          m_(measurements),
+          progress_(progress),
+          times_(times_of(m_.values)),
+          scatters_(scatters_of(m_)) {
+        for (std::size_t k = 0; k < m_.values.size(); ++k) {
+            if (!m_.values[k].judged) fitted_.push_back(k);
+        }
+    }
+
+    [[nodiscard]] Result<Identification> run() {
+        if (Status status = check(); !status) return tl::unexpected(status.error());
+        VectorXd start(static_cast<Index>(unknowns_.size())), low = start, high = start;
+        for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+            const auto j = static_cast<Index>(k);
+            start[j] = unknowns_[k].coordinate(unknowns_[k].value);
+            low[j] = unknowns_[k].coordinate(unknowns_[k].low);
+            high[j] = unknowns_[k].coordinate(unknowns_[k].high);
+        }
+        const LeastSquaresProblem problem{[&](const VectorXd& u) { return residuals(u); }, [&] { return jacobian(); },
+                                          low, high, longest_step};
+        const auto end = minimise(problem, start);
+        if (!end) return tl::unexpected(end.error());
+        return conclude(*end, low, high);
+    }
+
+private:
+    [[nodiscard]] Status check() const {
+        if (unknowns_.empty()) return input_error("there is nothing to find; name an unknown");
+        for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+            for (std::size_t other = 0; other < k; ++other) {
+                if (unknowns_[other].key == unknowns_[k].key)
+                    return input_error("--unknown {}: is named twice", unknowns_[k].key);
+            }
+        }
+        if (fitted_.size() < unknowns_.size())
+            return input_error("{}: {} measured values cannot give {} unknowns", m_.file, fitted_.size(),
+                               unknowns_.size());
+        return {};
+    }
+
+    [[nodiscard]] std::vector<double> values_at(const VectorXd& u) const {
+        std::vector<double> values;
+        for (std::size_t k = 0; k < unknowns_.size(); ++k)
+            values.push_back(unknowns_[k].value_at(u[static_cast<Index>(k)]));
+        return values;
+    }
+
+    [[nodiscard]] Index row_of(double time) const { return std::ranges::lower_bound(times_, time) - times_.begin(); }
+
+    /// A start that fails says why; a later trial is only one that does not count.
+    [[nodiscard]] Result<std::optional<VectorXd>> residuals(const VectorXd& u) {
+        auto variant = source_.with(unknowns_, values_at(u));
+        if (!variant) return tl::unexpected(variant.error());
+        auto trial = Trial::solve(std::move(*variant), m_.channels, times_, progress_);
+        if (!trial && (!best_ || trial.error().cause != Cause::failed)) return tl::unexpected(trial.error());
+        if (!trial) return std::nullopt;
+        VectorXd r(static_cast<Index>(fitted_.size()));
+        for (std::size_t k = 0; k < fitted_.size(); ++k) {
+            const MeasuredValue& value = m_.values[fitted_[k]];
+            const double simulated = (*trial)->values()(row_of(value.time), static_cast<Index>(value.channel));
+            r[static_cast<Index>(k)] = (simulated - value.value) / scatters_[static_cast<Index>(fitted_[k])];
+        }
+        if (!r.allFinite()) return std::nullopt;
+        if (!best_) before_ = (*trial)->values();
+        if (!best_ || r.squaredNorm() < least_) {
+            least_ = r.squaredNorm();
+            best_ = std::move(*trial);
+            best_u_ = u;
+        }
+        return r;
+    }
+
+    [[nodiscard]] Result<MatrixXd> jacobian() {
+        const auto slopes = best_->slopes(source_, unknowns_, values_at(best_u_), progress_);
+        if (!slopes) return tl::unexpected(slopes.error());
+        MatrixXd J(static_cast<Index>(fitted_.size()), static_cast<Index>(unknowns_.size()));
+        for (std::size_t k = 0; k < fitted_.size(); ++k) {
+            const MeasuredValue& value = m_.values[fitted_[k]];
+            J.row(static_cast<Index>(k)) =
+                (*slopes)[static_cast<std::size_t>(row_of(value.time))].row(static_cast<Index>(value.channel)) /
+                scatters_[static_cast<Index>(fitted_[k])];
+        }
+        return J;
+    }
+
+    [[nodiscard]] std::vector<Errors> errors(const std::vector<Compared>& values, bool judged) const {
+        std::vector<Errors> all;
+        for (const Compared& value : values) {
+            if (value.measured.judged != judged) continue;
+            const std::string& unit = m_.channels[value.measured.channel].unit;
+            auto of = std::ranges::find(all, unit, &Errors::unit);
+            if (of == all.end()) of = all.insert(all.end(), {unit});
+            ++of->values;
+            of->before += std::pow(value.before - value.measured.value, 2);
+            of->after += std::pow(value.after - value.measured.value, 2);
+        }
+        for (Errors& of : all) {
+            of.before = std::sqrt(of.before / static_cast<double>(of.values));
+            of.after = std::sqrt(of.after / static_cast<double>(of.values));
+        }
+        return all;
+    }
+
+    void find(const LeastSquaresEnd& end, const Confidence& known, const std::vector<bool>& held,
+              Identification& result) const {
+        for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+            const auto j = static_cast<Index>(k);
+            Found found{unknowns_[k], unknowns_[k].value_at(end.u[j]), {}, {}, held[k], known.matters[k]};
+            if (std::isfinite(known.half_width[j])) {
+                found.low = unknowns_[k].value_at(end.u[j] - known.half_width[j]);
+                found.high = unknowns_[k].value_at(end.u[j] + known.half_width[j]);
+            }
+            result.found.push_back(std::move(found));
+        }
+    }
+
+    void warn(const Confidence& known, Identification& result) const {
+        for (const Found& found : result.found) {
+            if (!found.matters)
+                result.warnings.push_back(fmt::format(
+                    "{}: nothing that was measured depends on it; its value means nothing", found.unknown.key));
+            else if (found.at_bound)
+                result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data would have it beyond",
+                                                      found.unknown.key, found.unknown.shown(found.value)));
+        }
+        for (const auto& group : known.mixed) {
+            std::vector<std::string> names;
+            for (const std::size_t k : group) names.push_back(unknowns_[k].key);
+            result.warnings.push_back(fmt::format(
+                "{} cannot be told apart with these data: a change of one looks like a change of the other{}; "
+                "fix {} or measure something else",
+                join_names(names), names.size() > 2 ? "s" : "", names.size() > 2 ? "some" : "one"));
+        }
+        if (fitted_.size() == unknowns_.size())
+            result.warnings.emplace_back(
+                "as many unknowns as measured values: there is no telling how well they are known");
+        if (!result.converged)
+            result.warnings.push_back(
+                fmt::format("the search ended after {} trials and could come nearer", result.trials));
+    }
+
+    [[nodiscard]] Identification conclude(const LeastSquaresEnd& end, const VectorXd& low, const VectorXd& high) const {
+        const VectorXd gradient = end.jacobian.transpose() * end.residuals;
+        std::vector<bool> held;
+        for (Index j = 0; j < end.u.size(); ++j)
+            held.push_back((end.u[j] <= low[j] && gradient[j] > 0) || (end.u[j] >= high[j] && gradient[j] < 0));
+        const Confidence known = confidence(end.jacobian, end.residuals, held, negligible);
+        Identification result;
+        result.trials = end.trials;
+        result.converged = end.converged;
+        result.correlation = known.correlation;
+        result.channels = m_.channels;
+        find(end, known, held, result);
+        for (const MeasuredValue& value : m_.values) {
+            const auto channel = static_cast<Index>(value.channel);
+            const Index row = row_of(value.time);
+            result.values.push_back({value, before_(row, channel), best_->values()(row, channel)});
+        }
+        result.fitted = errors(result.values, false);
+        result.judged = errors(result.values, true);
+        warn(known, result);
+        return result;
+    }
+
+    const Source& source_;
+    const std::vector<Unknown>& unknowns_;
+    const Measurements& m_;
+    Progress& progress_;
+    std::vector<double> times_;
+    VectorXd scatters_;
+    std::vector<std::size_t> fitted_;  ///< places in the values
+    std::unique_ptr<Trial> best_;
+    VectorXd best_u_;
+    double least_ = std::numeric_limits<double>::infinity();
+    MatrixXd before_;  ///< (times, channels)
+};
+
+}  // namespace
+
+Result<Identification> identify(const Source& source, const std::vector<Unknown>& unknowns,
+                                const Measurements& measurements, Progress& progress) {
+    return Search(source, unknowns, measurements, progress).run();
+}
+
+std::vector<std::string> assignments(const Identification& result) {
+    std::vector<std::string> all;
+    for (const Found& found : result.found) all.push_back(found.unknown.assignment(found.value));
+    return all;
+}
+
+}  // namespace pliant::identify

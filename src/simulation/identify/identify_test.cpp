@@ -1,0 +1,230 @@
+// Numbers that a simulation was made with, found again from what would have been measured on it.
+#include "simulation/identify/identify.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "simulation/identify/test_bars.hpp"
+
+using namespace pliant;
+using namespace pliant::identify;
+using namespace pliant::identify::testing;
+
+namespace {
+
+const std::string pulled = R"(
+    cable = [{ name = "flexor", points = [[0, 5, 9], [20, 5, 9], [40, 5, 9], [60, 5, 9]], target.tension = "3 N" }]
+    program = { steps = 4 }
+)";
+const std::string heavy = "program = { steps = 2, gravity = [0, 0, -9.81] }\n";
+
+/// Exact data give the values back that they were made with, from where the file begins.
+void check_found(const Bar& bar, const std::vector<std::string>& keys, const std::vector<double>& truth,
+                 const std::vector<std::string>& columns, const std::vector<double>& times) {
+    const auto unknowns = bar.unknowns(keys);
+    const auto data = bar.read(table_of(bar, unknowns, truth, columns, times, undisturbed));
+    const Identification result = find(bar, unknowns, data);
+    CHECK(result.converged);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        CAPTURE(keys[k]);
+        CHECK(std::fabs(result.found[k].unknown.value / truth[k] - 1) > 0.04);
+        CHECK(result.found[k].value == near(truth[k], {.relative = 1e-6}));
+    }
+    for (const Errors& errors : result.fitted) CHECK(errors.after < 1e-5 * errors.before);
+}
+
+/// Of normal distribution, always the same.
+class Noise {
+public:
+    double operator()(int) {
+        double sum = -6;
+        for (int k = 0; k < 12; ++k) {
+            state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+            sum += static_cast<double>(state_ >> 11U) / 9007199254740992.0;
+        }
+        return size_ * sum;
+    }
+    explicit Noise(double size, unsigned long long seed) : size_(size), state_(seed) {}
+
+private:
+    double size_;
+    unsigned long long state_;
+};
+
+bool has_warning(const Identification& result, const std::vector<std::string>& words) {
+    return std::ranges::any_of(result.warnings, [&](const std::string& warning) {
+        return std::ranges::all_of(words,
+                                   [&](const std::string& word) { return warning.find(word) != std::string::npos; });
+    });
+}
+
+}  // namespace
+
+TEST_CASE("two moduli from markers") {
+    check_found(Bar(pulled), {"material.firm.youngs_modulus", "material.soft.youngs_modulus"}, {1.1e6, 0.95e6},
+                {"middle_x_mm", "middle_z_mm", "tip_x_mm", "tip_z_mm"}, {0.5, 1});
+}
+
+TEST_CASE("constants of a law with a list of them") {
+    const Bar bar(pulled,
+                  {R"(material.soft={law="ogden", mu=["0.2 MPa", "20 kPa"], alpha=[1.5, 4], poisson_ratio=0.42})"});
+    check_found(bar, {"material.soft.mu.0", "material.soft.alpha.1"}, {0.24e6, 5.5},
+                {"tip_x_mm", "tip_z_mm", "flexor_length_mm"}, {0.25, 0.5, 0.75, 1});
+}
+
+TEST_CASE("Poisson's ratio from sides that draw in") {
+    const Bar bar(R"(
+        load = [{ name = "pull", box = [[60, 0, 0], [60, 10, 10]], force = ["12 N", "0 N", "0 N"] }]
+        program = { steps = 2 }
+    )");
+    check_found(bar, {"material.soft.poisson_ratio"}, {0.47}, {"tip_x_mm", "corner_y_mm", "corner_z_mm"}, {0.5, 1});
+}
+
+TEST_CASE("the offset of a gauge of pressure") {
+    const Bar bar(R"(
+        chamber = [{ name = "air", region = "air", target.pressure = "12 kPa" }]
+        program = { steps = 3 }
+    )");
+    check_found(bar, {"chamber.air.target.offset", "material.firm.youngs_modulus"}, {1.7e3, 1.7e6},
+                {"tip_x_mm", "air_volume_mm3", "air_pressure_kPa"}, {0.2, 0.6, 1});
+}
+
+TEST_CASE("the offset of a cable's zero length") {
+    const Bar bar(R"(
+        cable = [{ name = "flexor", points = [[0, 5, 9], [20, 5, 9], [40, 5, 9], [60, 5, 9]], target.length_ratio = 0.9 }]
+        program = { steps = 4 }
+    )");
+    check_found(bar, {"cable.flexor.target.offset", "material.soft.youngs_modulus"}, {0.8e-3, 0.9e6},
+                {"tip_x_mm", "tip_z_mm", "flexor_tension_N"}, {0.1, 0.5, 1});
+}
+
+TEST_CASE("modulus and damping of a bar that swings") {
+    const Bar bar(R"(
+        program = { duration = "120 ms", time_step = "6 ms", gravity = [0, 0, -9.81], stiffness_damping = 0.002 }
+    )");
+    check_found(bar, {"material.soft.youngs_modulus", "program.stiffness_damping"}, {0.8e6, 0.003},
+                {"tip_z_mm", "middle_z_mm"}, {0.02, 0.05, 0.08, 0.1, 0.12});
+}
+
+TEST_CASE("friction of a cable from its tension") {
+    const Bar bar(R"(
+        cable = [{ name = "flexor", points = [[0, 5, 9], [20, 5, 8], [40, 5, 9], [60, 5, 8]], friction = 0.1, target.shortening = "6 mm" }]
+        program = { steps = 4 }
+    )");
+    check_found(bar, {"cable.flexor.friction"}, {0.25}, {"tip_z_mm", "flexor_tension_N"}, {0.5, 1});
+}
+
+TEST_CASE("density from a bar under its own weight") {
+    check_found(Bar(heavy), {"material.soft.density"}, {1300}, {"tip_z_mm"}, {0.5, 1});
+}
+
+TEST_CASE("what a measured value depends on through the law of the softest material: contact") {
+    const Bar bar(R"(
+        obstacle = [{ name = "block", geometry = { box = [[40, -3, -4], [80, 13, -1]] }, move = [0, 0, 3] }]
+        program = { steps = 4 }
+    )");
+    check_found(bar, {"material.soft.youngs_modulus"}, {0.8e6}, {"block_force_z_N", "clamp_force_z_N"}, {0.5, 1});
+}
+
+TEST_CASE("two unknowns that only act together are named, and those that do nothing") {
+    const Bar bar(R"(
+        load = [{ name = "press", box = [[30, 0, 10], [60, 10, 10]], pressure = "5 kPa" }]
+        program = { steps = 2 }
+    )");
+    const auto both = bar.unknowns({"load.press.pressure", "material.firm.youngs_modulus"});
+    const auto all = bar.unknowns({"load.press.pressure", "material.firm.youngs_modulus",
+                                   "material.soft.youngs_modulus", "material.soft.density"});
+    const std::vector<std::string> columns = {"middle_z_mm", "tip_x_mm", "tip_z_mm"};
+    const auto data = bar.read(table_of(bar, both, {6e3, 2.2e6}, columns, {0.5, 1}, undisturbed));
+    const Identification result = find(bar, all, data);
+    CHECK(has_warning(result, {"load.press.pressure", "material.firm.youngs_modulus", "material.soft.youngs_modulus",
+                               "cannot be told apart"}));
+    CHECK(has_warning(result, {"material.soft.density", "nothing that was measured depends on it"}));
+    CHECK_FALSE(result.found[3].matters);
+    CHECK_FALSE(result.found[0].low);
+    CHECK(result.fitted[0].after < 1e-4 * result.fitted[0].before);
+    // With a force beside them each has its own effect.
+    const auto forces =
+        bar.read(table_of(bar, both, {6e3, 2.2e6}, {"tip_z_mm", "clamp_force_z_N"}, {0.5, 1}, undisturbed));
+    const Identification told = find(bar, both, forces);
+    CHECK(told.warnings.empty());
+    CHECK(told.found[0].value == near(6e3, {.relative = 1e-6}));
+}
+
+TEST_CASE("an unknown stays within its bounds and says so") {
+    const Bar bar(pulled);
+    const auto free = bar.unknowns({"material.soft.youngs_modulus"});
+    const auto data = bar.read(table_of(bar, free, {1.2e6}, {"tip_z_mm"}, {0.5, 1}, undisturbed));
+    const auto bound = bar.unknowns({"material.soft.youngs_modulus=0.5 MPa..1 MPa"});
+    const Identification result = find(bar, bound, data);
+    CHECK(result.found[0].value == near(1e6, {.relative = 1e-12}));
+    CHECK(result.found[0].at_bound);
+    CHECK_FALSE(result.found[0].low);
+    CHECK(has_warning(result, {"material.soft.youngs_modulus", "is at its bound, 1000 kPa"}));
+}
+
+TEST_CASE(
+    "intervals hold the truth about as often as they say, and what is fitted on one half is judged on the other") {
+    const Bar bar(pulled, {"program.steps=2"});
+    const auto unknowns = bar.unknowns({"material.firm.youngs_modulus", "material.soft.youngs_modulus"});
+    const std::array truth = {1.6e6, 0.8e6};
+    const std::vector<std::string> columns = {"middle_x_mm", "middle_z_mm", "tip_x_mm", "tip_z_mm"};
+    std::array<int, 2> held{};
+    constexpr int repeats = 20;
+    for (int k = 0; k < repeats; ++k) {
+        const auto data = bar.read(table_of(bar, unknowns, {truth.begin(), truth.end()}, columns, {0.5, 1},
+                                            Noise(0.1, 17 + static_cast<unsigned long long>(k))));
+        const Identification result = find(bar, unknowns, data);
+        for (std::size_t j = 0; j < 2; ++j)
+            held[j] += *result.found[j].low < truth[j] && truth[j] < *result.found[j].high ? 1 : 0;
+    }
+    // 16 or fewer of 20 would happen once in 60 times, if intervals were as wide as they say.
+    CHECK(held[0] >= 16);
+    CHECK(held[1] >= 16);
+
+    const auto halves = bar.read(table_of(bar, unknowns, {truth.begin(), truth.end()}, columns,
+                                          {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1}, Noise(0.05, 3)),
+                                 JudgeOn::every_second);
+    const Identification result = find(bar, unknowns, halves);
+    REQUIRE(result.judged.size() == 1);
+    CHECK(result.fitted[0].values == 16);
+    CHECK(result.judged[0].values == 16);
+    CHECK(result.judged[0].before > 0.2);
+    CHECK(result.judged[0].after == near(0.05, {.relative = 0.4}));
+    CHECK(result.fitted[0].after == near(0.05, {.relative = 0.4}));
+}
+
+TEST_CASE("a wide scatter makes a value count little") {
+    const Bar bar(pulled);
+    const auto unknowns = bar.unknowns({"material.soft.youngs_modulus"});
+    const auto channels = bar.channels({"tip_z_mm"});
+    const auto trial = solve(bar, unknowns, {0.9e6}, channels, {0.5, 1});
+    const auto data = bar.read(fmt::format("time,tip_z_mm,tip_z_mm_scatter\n0.5,{:.12g},1\n1,{:.12g},0.001\n",
+                                           trial->values()(0, 0) + 2, trial->values()(1, 0)));
+    CHECK(find(bar, unknowns, data).found[0].value == near(0.9e6, {.relative = 1e-5}));
+}
+
+TEST_CASE("what cannot be done is said in one line") {
+    const Bar bar(pulled);
+    const auto E = bar.unknowns({"material.soft.youngs_modulus"});
+    const auto data = bar.read("time,tip_z_mm\n1,8\n");
+    Progress silent;
+    const auto problem = [&](const std::vector<Unknown>& unknowns) {
+        const auto result = identify::identify(bar.source, unknowns, data, silent);
+        return result ? "" : result.error().message;
+    };
+    CHECK(problem({}) == "there is nothing to find; name an unknown");
+    CHECK(problem({E[0], E[0]}) == "--unknown material.soft.youngs_modulus: is named twice");
+    CHECK(problem({E[0], bar.unknowns({"material.firm.youngs_modulus"})[0]}) ==
+          "m.csv: 1 measured values cannot give 2 unknowns");
+    struct Stop : Progress {
+        [[nodiscard]] bool cancelled() const override { return true; }
+    } stop;
+    const auto result = identify::identify(bar.source, E, data, stop);
+    REQUIRE_FALSE(result);
+    CHECK(result.error().cause == Cause::cancelled);
+}

@@ -1,0 +1,117 @@
+// The search on functions whose least squares are known.
+#include "simulation/identify/least_squares.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "base/core/near.hpp"
+#include "simulation/identify/confidence.hpp"
+
+using namespace pliant;
+using namespace pliant::identify;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// Rosenbrock's: least at (1, 1), along a bent valley. Nothing where x[0] > `wall`.
+LeastSquaresProblem rosenbrock(VectorXd& best, double wall) {
+    LeastSquaresProblem problem;
+    problem.residuals = [&best, wall](const VectorXd& x) -> Result<std::optional<VectorXd>> {
+        if (x[0] > wall) return std::nullopt;
+        VectorXd r(2);
+        r << 10 * (x[1] - x[0] * x[0]), 1 - x[0];
+        const auto value = [](const VectorXd& at) {
+            return std::pow(10 * (at[1] - at[0] * at[0]), 2) + std::pow(1 - at[0], 2);
+        };
+        if (best.size() == 0 || value(x) < value(best)) best = x;
+        return r;
+    };
+    problem.jacobian = [&best]() -> Result<MatrixXd> {
+        MatrixXd J(2, 2);
+        J << -20 * best[0], 10, -1, 0;
+        return J;
+    };
+    problem.low = VectorXd::Constant(2, -unbounded);
+    problem.high = VectorXd::Constant(2, unbounded);
+    return problem;
+}
+
+VectorXd vector(double a, double b) {
+    return Eigen::Vector2d(a, b);
+}
+
+}  // namespace
+
+TEST_CASE("a bent valley is followed to its end, around places without a solution") {
+    for (const double wall : {unbounded, 1.02}) {
+        VectorXd best;
+        const auto end = minimise(rosenbrock(best, wall), vector(-1.2, 1));
+        REQUIRE(end);
+        CHECK(end->converged);
+        CHECK(end->u[0] == near(1, {.relative = 1e-8}));
+        CHECK(end->u[1] == near(1, {.relative = 1e-8}));
+        CHECK(end->trials < 60);
+    }
+}
+
+TEST_CASE("a bound holds one unknown, and the other goes to its best there") {
+    VectorXd best;
+    LeastSquaresProblem problem = rosenbrock(best, unbounded);
+    problem.high = vector(0.5, unbounded);
+    const auto end = minimise(problem, vector(-1.2, 1));
+    REQUIRE(end);
+    CHECK(end->u[0] == near(0.5, {.relative = 1e-14}));
+    CHECK(end->u[1] == near(0.25, {.relative = 1e-6}));  // as far as |r|^2 tells
+}
+
+TEST_CASE("too few trials are said, a start without a solution is an error") {
+    VectorXd best;
+    LeastSquaresProblem problem = rosenbrock(best, unbounded);
+    problem.most_trials = 3;
+    const auto end = minimise(problem, vector(-1.2, 1));
+    REQUIRE(end);
+    CHECK_FALSE(end->converged);
+    CHECK(end->trials == 3);
+    VectorXd other;
+    CHECK_FALSE(minimise(rosenbrock(other, -2), vector(-1.2, 1)));
+}
+
+TEST_CASE("intervals of a straight line are those of the formula") {
+    // y = a + b x at x = 0, 1, 2, 3, with residuals that are at right angles to both columns.
+    MatrixXd J(4, 2);
+    J << 1, 0, 1, 1, 1, 2, 1, 3;
+    VectorXd r(4);
+    r << 0.1, -0.1, -0.1, 0.1;
+    const Confidence known = confidence(J, r, {false, false}, 1e-9);
+    // s^2 = 0.04 / 2; var b = s^2 / sum (x - mean)^2 = 0.02 / 5; t(2) = 4.30265.
+    CHECK(known.half_width[1] == near(4.30265 * std::sqrt(0.02 / 5), {.relative = 1e-5}));
+    CHECK(known.half_width[0] == near(4.30265 * std::sqrt(0.02 * (0.25 + 2.25 / 5)), {.relative = 1e-5}));
+    CHECK(known.correlation(0, 1) == near(-1.5 / std::sqrt(3.5), {.relative = 1e-12}));
+    CHECK(known.mixed.empty());
+    const Confidence held = confidence(J, r, {true, false}, 1e-9);
+    CHECK(held.half_width[1] == near(3.18245 * std::sqrt(0.04 / 3 / 14), {.relative = 2e-3}));
+    CHECK(std::isnan(held.half_width[0]));
+}
+
+TEST_CASE("columns that are parallel, or nearly, are named; one of zeros does not matter") {
+    MatrixXd J(4, 4);
+    J << 1, 2, 1, 0, 1, 2, 0, 0, 2, 4, 1, 0, 3, 6, 5, 0;
+    const VectorXd r = VectorXd::Constant(4, 0.1);
+    const Confidence known = confidence(J, r, {false, false, false, false}, 1e-9);
+    REQUIRE(known.mixed.size() == 1);
+    CHECK(known.mixed[0] == std::vector<std::size_t>{0, 1});
+    CHECK_FALSE(known.matters[3]);
+    CHECK(std::isnan(known.half_width[0]));
+    J.col(1) += VectorXd::Constant(4, 0.02);
+    J(0, 1) += 0.03;
+    const Confidence nearly = confidence(J.leftCols(3), r, {false, false, false}, 1e-9);
+    REQUIRE(nearly.mixed.size() == 1);
+    CHECK(nearly.mixed[0] == std::vector<std::size_t>{0, 1});
+    CHECK(std::fabs(nearly.correlation(0, 1)) > 0.99);
+}

@@ -1,0 +1,30 @@
+#include "simulation/identify/source.hpp"
+
+#include <utility>
+
+#include "simulation/scene/build_model.hpp"
+
+namespace pliant::identify {
+namespace {
+
+/// Equations that hold to so much have derivatives that hold as well as they are solved; fewer digits would show as
+/// noise in what a search compares.
+constexpr double tolerance = 1e-8;
+
+}  // namespace
+
+Result<std::unique_ptr<Variant>> Source::with(std::span<const Unknown> unknowns, std::span<const double> values) const {
+    std::vector<std::string> assignments;
+    for (std::size_t k = 0; k < unknowns.size(); ++k) assignments.push_back(unknowns[k].assignment(values[k]));
+    Result<robot::Robot> robot = read_(assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    Result<sim::Model> model = robot::build_model(*robot, mesh_);
+    if (!model) return tl::unexpected(model.error());
+    robot::Program program = robot->program;
+    using robot::Solver;
+    if (program.solver == Solver::automatic || program.solver == Solver::newton)
+        program.tolerance = std::min(program.tolerance, tolerance);
+    return std::make_unique<Variant>(program, std::move(*model));
+}
+
+}  // namespace pliant::identify

@@ -1,0 +1,96 @@
+// Names, bounds and coordinates of unknowns.
+#include "simulation/identify/unknown.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "base/core/near.hpp"
+#include "simulation/identify/test_bars.hpp"
+
+using namespace pliant;
+using namespace pliant::identify;
+using namespace pliant::identify::testing;
+
+namespace {
+
+const std::string rich = R"(
+    cable = [{ name = "flexor", points = [[0, 5, 9], [60, 5, 9]], target.length_ratio = 0.9 },
+             { name = "rope", points = [[0, 5, 1], [60, 5, 1]], friction = 0.2, target.tension = "2 N" }]
+    spring = [{ name = "band", points = [[0, 1, 9], [60, 1, 9]], stiffness = "10 N/m", free_length = "40 mm" }]
+    chamber = [{ name = "air", region = "air", target.volume_change = "1 ml" }]
+    load = [{ name = "gust", box = [[0, 0, 10], [60, 10, 10]], pressure = "-1 kPa" },
+            { name = "weight", box = [[60, 0, 0], [60, 10, 10]], force = ["0 N", "0 N", "-1 N"] }]
+    obstacle = [{ name = "table", plane = { point = [0, 0, -1], normal = [0, 0, 1] }, friction = 0.3 }]
+    contact = { stiffness = "50 kPa", friction = 0.1 }
+    program = { duration = "100 ms", time_step = "10 ms", mass_damping = 2, stiffness_damping = 0.01 }
+)";
+
+std::string problem(const Bar& bar, const std::string& text) {
+    const auto found = find_unknown(bar.robot(), text);
+    return found ? "" : found.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("every number that a robot offers is one that --set takes, with its value or another") {
+    const Bar bar(rich);
+    const auto all = possible_unknowns(bar.robot());
+    CHECK(all.size() == 25);
+    for (const Unknown& unknown : all) {
+        CAPTURE(unknown.key);
+        const double value = unknown.value_at(unknown.coordinate(unknown.value > 0 ? unknown.value : 0.1) + 0.01);
+        const auto read = robot::parse_robot(bar.text, "bar.toml", {unknown.assignment(value)});
+        REQUIRE_MESSAGE(read, (read ? "" : read.error().message));
+        const auto again = possible_unknowns(*read);
+        const auto found = std::ranges::find(again, unknown.key, &Unknown::key);
+        REQUIRE(found != again.end());
+        CHECK(found->value == near(value, {.relative = 1e-14}));
+    }
+}
+
+TEST_CASE("coordinates and their rates") {
+    for (const Scale scale : {Scale::linear, Scale::log, Scale::poisson}) {
+        const Unknown unknown{"k", "", 0.3, 0, 1, scale, 0.2};
+        const double u = unknown.coordinate(0.3), h = 1e-5;
+        CHECK(unknown.value_at(u) == near(0.3, {.relative = 1e-14}));
+        CHECK(unknown.rate(0.3) ==
+              near((unknown.value_at(u + h) - unknown.value_at(u - h)) / (2 * h), {.relative = 1e-9}));
+    }
+}
+
+TEST_CASE("bounds, with units where the key has one") {
+    const Bar bar(rich);
+    const auto E = *find_unknown(bar.robot(), "material.soft.youngs_modulus=0.5 MPa..900kPa");
+    CHECK(E.low == near(0.5e6, {.relative = 1e-12}));
+    CHECK(E.high == near(0.9e6, {.relative = 1e-12}));
+    CHECK(E.value == near(0.7e6, {.relative = 1e-12}));
+    CHECK(E.shown(E.low) == "500 kPa");
+    const auto outside = *find_unknown(bar.robot(), "material.soft.youngs_modulus=1 MPa..4 MPa");
+    CHECK(outside.value == near(2e6, {.relative = 1e-12}));
+    const auto offset = *find_unknown(bar.robot(), "cable.flexor.target.offset=-1mm..1mm");
+    CHECK(offset.low == near(-1e-3, {.relative = 1e-12}));
+    const auto friction = *find_unknown(bar.robot(), "cable.flexor.friction=0.05..0.2");
+    CHECK(friction.value == near(0.1, {.relative = 1e-12}));
+}
+
+TEST_CASE("what is no unknown is said in one line") {
+    const Bar bar(rich);
+    CHECK(problem(bar, "material.sof.youngs_modulus") ==
+          "--unknown material.sof.youngs_modulus: the robot has no such number that could be found; did you mean "
+          "\"material.soft.youngs_modulus\"?");
+    CHECK(
+        problem(bar, "mesh.size").starts_with("--unknown mesh.size: the robot has no such number that could be found"));
+    CHECK(problem(bar, "material.soft.youngs_modulus=1 MPa") ==
+          "--unknown material.soft.youngs_modulus: \"1 MPa\" is no range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
+    CHECK(problem(bar, "material.soft.youngs_modulus=1..2")
+              .starts_with("--unknown material.soft.youngs_modulus: \"1\" has no unit"));
+    CHECK(problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==
+          "--unknown material.soft.youngs_modulus: the range from 2e+06 to 1e+06 is empty; LOW must be below HIGH");
+    CHECK(problem(bar, "material.soft.youngs_modulus=-2 MPa..1 MPa") ==
+          "--unknown material.soft.youngs_modulus: -2e+06 is not possible; it is above zero");
+    CHECK(problem(bar, "material.soft.poisson_ratio=0.4..0.5") ==
+          "--unknown material.soft.poisson_ratio: Poisson's ratio is above -1 and below 0.5");
+    CHECK(problem(bar, "cable.rope.friction=a..b") == "--unknown cable.rope.friction: \"a\" is not a number");
+    CHECK(problem(bar, "cable.flexor.friction").starts_with("--unknown cable.flexor.friction: is 0 in the robot file"));
+}
