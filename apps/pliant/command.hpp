@@ -38,6 +38,7 @@ void add_project(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_materials(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
+void add_identify(CLI::App& app, int& status);
 void add_studio(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
