@@ -123,7 +123,10 @@ Result<Identification> find(const Options& options, Progress& progress) {
     const auto measurements =
         identify::parse_measurements(*table, options.measured, (*start)->model.description(), robot->program, *judge);
     if (!measurements) return tl::unexpected(measurements.error());
-    return identify::identify(source, unknowns, *measurements, progress);
+    Result<Identification> result = identify::identify(source, unknowns, *measurements, progress);
+    if (!result && result.error().cause == Cause::failed)
+        return failure("{}: {}", options.robot, result.error().message);
+    return result;
 }
 
 Result<int> run(const Options& options) {

@@ -69,6 +69,12 @@ bool is_list_of_tables(const Value& value) {
            std::ranges::all_of(*list, [](const Value& v) { return std::holds_alternative<Table>(v.data); });
 }
 
+/// As the materials of a robot: each gets a heading of its own.
+bool is_table_of_tables(const Table& table) {
+    return !table.empty() &&
+           std::ranges::all_of(table, [](const Entry& e) { return std::holds_alternative<Table>(e.second.data); });
+}
+
 std::string lines_of(const Table& table) {
     std::string text;
     for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", key_text(key), inline_text(value));
@@ -80,7 +86,11 @@ std::string lines_of(const Table& table) {
 std::string toml_text(const Value& root) {
     std::string plain, tables;
     for (const auto& [key, value] : std::get<Table>(root.data)) {
-        if (const auto* table = std::get_if<Table>(&value.data)) {
+        if (const auto* table = std::get_if<Table>(&value.data); table != nullptr && is_table_of_tables(*table)) {
+            for (const auto& [name, entry] : *table)
+                tables +=
+                    fmt::format("\n[{}.{}]\n{}", key_text(key), key_text(name), lines_of(std::get<Table>(entry.data)));
+        } else if (table != nullptr) {
             tables += fmt::format("\n[{}]\n{}", key_text(key), lines_of(*table));
         } else if (is_list_of_tables(value)) {
             for (const Value& entry : std::get<Array>(value.data))

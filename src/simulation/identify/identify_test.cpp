@@ -164,7 +164,7 @@ TEST_CASE("an unknown stays within its bounds and says so") {
     CHECK(result.found[0].value == near(1e6, {.relative = 1e-12}));
     CHECK(result.found[0].at_bound);
     CHECK_FALSE(result.found[0].low);
-    CHECK(has_warning(result, {"material.soft.youngs_modulus", "is at its bound, 1000 kPa"}));
+    CHECK(has_warning(result, {"material.soft.youngs_modulus", "is at its bound, 1 MPa"}));
 }
 
 TEST_CASE(

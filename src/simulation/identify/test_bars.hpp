@@ -52,6 +52,9 @@ struct Bar {
 
     explicit Bar(const std::string& more, const std::vector<std::string>& set = {})
         : text(bar_text + more), source(reader(text, set), mesh_of(text)) {}
+    /// Another robot than that bar, on another mesh.
+    Bar(const std::string& whole, mesh::TetMesh mesh)
+        : text(whole), source(reader(text, {}), taken(text, std::move(mesh))) {}
 
     [[nodiscard]] robot::Robot robot() const {
         auto robot = source.robot();
@@ -96,10 +99,16 @@ private:
             return robot::parse_robot(text, "bar.toml", all);
         };
     }
-    static mesh::TetMesh mesh_of(const std::string& text) {
-        const auto robot = robot::parse_robot(text, "bar.toml");
+    static robot::Robot read_text(const std::string& text) {
+        auto robot = robot::parse_robot(text, "bar.toml");
         REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-        auto mesh = robot::take_mesh(*robot, bar_mesh(!robot->chambers.empty()));
+        return std::move(*robot);
+    }
+    static mesh::TetMesh mesh_of(const std::string& text) {
+        return taken(text, bar_mesh(!read_text(text).chambers.empty()));
+    }
+    static mesh::TetMesh taken(const std::string& text, mesh::TetMesh given) {
+        auto mesh = robot::take_mesh(read_text(text), std::move(given));
         REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
         return std::move(*mesh);
     }

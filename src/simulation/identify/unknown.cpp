@@ -155,10 +155,10 @@ Status take_bounds(Unknown& unknown, std::string_view text) {
     const Result<double> high = read_bound(unknown, text.substr(dots + 2));
     if (!high) return tl::unexpected(high.error());
     if (!(*low < *high))
-        return input_error("--unknown {}: the range from {:g} to {:g} is empty; LOW must be below HIGH", unknown.key,
-                           *low, *high);
+        return input_error("--unknown {}: the range from {} to {} is empty; LOW must be below HIGH", unknown.key,
+                           unknown.shown(*low), unknown.shown(*high));
     if (unknown.scale == Scale::log && !(*low >= 0))
-        return input_error("--unknown {}: {:g} is not possible; it is above zero", unknown.key, *low);
+        return input_error("--unknown {}: {} is not possible; it is above zero", unknown.key, unknown.shown(*low));
     if (unknown.scale == Scale::poisson && !(*low > -1 && *high < 0.5))
         return input_error("--unknown {}: Poisson's ratio is above -1 and below 0.5", unknown.key);
     unknown.low = unknown.scale == Scale::log ? std::max(*low, *high / widest_factor) : *low;
@@ -194,6 +194,8 @@ std::string Unknown::assignment(double of_value) const {
 std::string Unknown::shown(double of_value) const {
     const Unit* found = find_unit(unit);
     if (found == nullptr) return fmt::format("{:.5g}", of_value);
+    if (found->dimension == Dimension::pressure && std::fabs(of_value) > 999999.9)
+        return fmt::format("{:.5g} MPa", 1e-6 * of_value);
     return fmt::format("{:.5g} {}", found->factor * of_value, found->shown);
 }
 

@@ -377,6 +377,24 @@ TEST_CASE("a chamber takes one target of four") {
     check_problem(good + "[[chamber]]\nname = \"air\"\n" + room + "\n", "\"target\" is missing");
 }
 
+TEST_CASE("targets have an offset, in the unit of what they drive, from the first instant on") {
+    const auto robot = parse_robot(chamber(room, "pressure = \"40 kPa\", offset = \"-2 kPa\""), "bar.toml",
+                                   {"cable.flexor.target.offset=0.5 mm"});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(robot->cables[0].target.offset == near(0.5e-3, {.relative = 1e-12}));
+    CHECK(robot->chambers[0].target.offset == near(-2e3, {.relative = 1e-12}));
+    const Built built = testing::build(robot);
+    const sim::Equilibrium system(built.model);
+    const double length = system.actuators()[0].rest_measure();
+    CHECK(system.controls(0).drives[0].value == near(length, {.relative = 1e-12}));
+    CHECK(system.controls(1).drives[0].value == near(0.97 * length + 0.5e-3, {.relative = 1e-12}));
+    CHECK(system.controls(0).drives[1].value == 0);
+    CHECK(system.controls(0.5).drives[1].value == near(-18e3, {.relative = 1e-12}));
+    check_problem(chamber(room, "gas_ratio = 2, offset = \"1 kPa\""),
+                  "offset: goes with pressure, volume_change and volume_ratio, not with a sealed chamber");
+    check_problem(chamber(room, "volume_ratio = 1.2, offset = \"1 kPa\""), "unknown unit \"kPa\"");
+}
+
 TEST_CASE("air that is not there, or not shut in, is refused") {
     check_problem(chamber("", "volume_ratio = 1.2"), "chamber[0]: takes one of geometry");
     check_problem(chamber(room + "\nsurface = \"air.stl\"", "volume_ratio = 1.2"), "takes one of geometry");
