@@ -20,6 +20,21 @@ constexpr double high_correlation = 0.99;
 /// Entries of a singular vector of length 1 below this do not take part in it.
 constexpr double takes_part = 0.1;
 
+/// Rows that depend on some unknown: others, as a length that is driven, say nothing of how far the fit is off.
+struct Telling {
+    Index rows = 0;
+    double squares = 0;  ///< of their residuals
+};
+Telling telling_rows(const MatrixXd& J, const VectorXd& r, double negligible) {
+    Telling telling;
+    for (Index i = 0; i < J.rows(); ++i) {
+        if (!(J.row(i).norm() > negligible)) continue;
+        ++telling.rows;
+        telling.squares += r[i] * r[i];
+    }
+    return telling;
+}
+
 void add_group(std::vector<std::size_t> group, std::vector<std::vector<std::size_t>>& groups) {
     if (group.size() > 1 && std::ranges::find(groups, group) == groups.end()) groups.push_back(std::move(group));
 }
@@ -60,8 +75,9 @@ Confidence confidence(const MatrixXd& J, const VectorXd& r, const std::vector<bo
     if (singular) return result;
     const MatrixXd root = svd.matrixV() * inverse.asDiagonal();
     const MatrixXd C = root * root.transpose();
-    const auto freedom = static_cast<int>(J.rows() - size);
-    const double s = freedom > 0 ? std::sqrt(r.squaredNorm() / freedom) : none;
+    const Telling telling = telling_rows(unit * length.asDiagonal(), r, negligible);
+    const auto freedom = static_cast<int>(telling.rows - size);
+    const double s = freedom > 0 ? std::sqrt(telling.squares / freedom) : none;
     for (Index j = 0; j < size; ++j) {
         const auto a = static_cast<Index>(known[static_cast<std::size_t>(j)]);
         if (freedom > 0) result.half_width[a] = calibrate::student_t_95(freedom) * s * std::sqrt(C(j, j)) / length[j];

@@ -17,8 +17,8 @@ struct Confidence {
 
 /// Of residuals r and their derivative J (residuals, unknowns) at the solution. `held`: unknowns at their bounds, which
 /// count as known. An unknown does not matter where a change of 1 in u changes the residuals by less than `negligible`
-/// of their units. Beyond a correlation of 0.99, or where a singular value of J with columns of length 1 is below 1e-6
-/// of the largest, unknowns are mixed.
+/// of their units; nor does a residual that no unknown changes by so much, which does not count. Beyond a correlation
+/// of 0.99, or where a singular value of J with columns of length 1 is below 1e-6 of the largest, unknowns are mixed.
 [[nodiscard]] Confidence confidence(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const std::vector<bool>& held,
                                     double negligible);
 

@@ -94,8 +94,15 @@ TEST_CASE("intervals of a straight line are those of the formula") {
     CHECK(known.half_width[0] == near(4.30265 * std::sqrt(0.02 * (0.25 + 2.25 / 5)), {.relative = 1e-5}));
     CHECK(known.correlation(0, 1) == near(-1.5 / std::sqrt(3.5), {.relative = 1e-12}));
     CHECK(known.mixed.empty());
+    // A row that depends on nothing tells nothing.
+    MatrixXd more = MatrixXd::Zero(6, 2);
+    more.topRows(4) = J;
+    VectorXd of_more = VectorXd::Zero(6);
+    of_more.head(4) = r;
+    CHECK(confidence(more, of_more, {false, false}, 1e-9).half_width[1] ==
+          near(known.half_width[1], {.relative = 1e-12}));
     const Confidence held = confidence(J, r, {true, false}, 1e-9);
-    CHECK(held.half_width[1] == near(3.18245 * std::sqrt(0.04 / 3 / 14), {.relative = 2e-3}));
+    CHECK(held.half_width[1] == near(4.30265 * std::sqrt(0.03 / 2 / 14), {.relative = 2e-3}));
     CHECK(std::isnan(held.half_width[0]));
 }
 

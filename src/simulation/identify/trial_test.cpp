@@ -111,7 +111,7 @@ TEST_CASE("slopes by contact stiffness of a bar that a block lifts") {
 
 TEST_CASE("slopes through the steps before are those that going back over them gives, where contact rubs too") {
     for (const char* text : {R"(
-        obstacle = [{ name = "block", geometry = { box = [[40, -3, -4], [80, 13, -1]] }, friction = 0.3, move = [0, 0, 3] }]
+        obstacle = [{ name = "block", geometry.box = [[40, -3, -4], [80, 13, -1]], friction = 0.3, move = [0, 0, 3] }]
         contact = { stiffness = "60 kPa" }
         program = { steps = 3 }
     )",

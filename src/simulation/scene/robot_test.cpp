@@ -13,6 +13,7 @@
 #include "robot/file/robot_file.hpp"
 #include "simulation/scene/build_model.hpp"
 #include "simulation/scene/test_run.hpp"
+#include "simulation/solver/equilibrium.hpp"
 
 using namespace pliant;
 using namespace pliant::robot;
