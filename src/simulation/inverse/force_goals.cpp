@@ -4,6 +4,7 @@
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/contact/pairs.hpp"
+#include "simulation/linearisation/contact_forces.hpp"
 
 namespace pliant::sim::inverse {
 namespace {
@@ -78,10 +79,10 @@ std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goa
     const contact::Contact& contact = *system.model().contact(true);
     std::vector<Quantity> all;
     for (Eigen::Index axis = 0; axis < axes; ++axis) {
-        Eigen::VectorXd motion = Eigen::VectorXd::Zero(at.controls().obstacles.size());
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * Eigen::Index{contact.node_count()});
         for (int node = contact.first_node(goal.on); node < contact.first_node(goal.on + 1); ++node)
-            motion[3 * (node - contact.robot_node_count()) + axis] = 1;
-        all.push_back({system.obstacle_stiffness_times(at.state(), at.controls(), motion),
+            motion[3 * node + axis] = 1;
+        all.push_back({contact_stiffness_times(system, at.state(), at.controls(), motion).head(at.state().x.size()),
                        Eigen::VectorXd::Zero(at.state().multiplier.size())});
     }
     return all;

@@ -87,6 +87,7 @@ std::vector<Derivative> InputSpace::derivatives(Linearisation& at) const {
         by.equations *= factor;
         by.direct.positions *= factor;
         by.direct.multipliers *= factor;
+        by.forces *= factor;
         list.push_back(std::move(by));
     }
     return list;

@@ -51,7 +51,7 @@ Led MarkerDrag::lead(RobotState& robot, const Vec3& wanted_m, const Progress& pr
         bounds.lower[i] = std::max(0.0, start.inputs[i] - piece);
         bounds.upper[i] = std::min(1.0, start.inputs[i] + piece);
     }
-    Found found = seeker_.seek(start, 0, bounds, progress);
+    Found found = seeker_.seek(start, start, 0, bounds, progress);
     robot = std::move(found.point.robot);
     const auto goes_on = [](const Limit& limit) { return limit.kind == Limit::Kind::rate; };
     Led led{false, found.reached, found.goals.front().error, {}};
