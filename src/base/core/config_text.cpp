@@ -52,10 +52,10 @@ struct InlineText {
     std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
     std::string operator()(double value) const { return real_text(value); }
     std::string operator()(const std::string& value) const { return toml_string(value); }
-    std::string operator()(const Array& list) const { return "[" + joined(list, inline_text) + "]"; }
+    std::string operator()(const Array& list) const { return fmt::format("[{}]", joined(list, inline_text)); }
     std::string operator()(const Table& table) const {
         const auto entry = [](const Entry& e) { return key_text(e.first) + " = " + inline_text(e.second); };
-        return table.empty() ? "{}" : "{ " + joined(table, entry) + " }";
+        return table.empty() ? "{}" : fmt::format("{{ {} }}", joined(table, entry));
     }
 };
 

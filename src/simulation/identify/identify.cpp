@@ -31,7 +31,7 @@ std::vector<double> times_of(const std::vector<MeasuredValue>& values) {
     std::vector<double> times;
     for (const MeasuredValue& value : values) times.push_back(value.time);
     std::ranges::sort(times);
-    times.erase(std::ranges::unique(times).begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
 }
 

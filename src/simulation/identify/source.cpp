@@ -24,7 +24,7 @@ Result<std::unique_ptr<Variant>> Source::with(std::span<const Unknown> unknowns,
     using robot::Solver;
     if (program.solver == Solver::automatic || program.solver == Solver::newton)
         program.tolerance = std::min(program.tolerance, tolerance);
-    return std::make_unique<Variant>(program, std::move(*model));
+    return std::make_unique<Variant>(Variant{program, std::move(*model)});
 }
 
 }  // namespace pliant::identify
