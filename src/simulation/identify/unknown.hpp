@@ -10,9 +10,9 @@
 
 namespace pliant::identify {
 
-/// The coordinate u in which the search takes its steps; value = size * ...
+/// The coordinate u in which the search takes its steps; the value is
 enum class Scale {
-    linear,   ///< u
+    linear,   ///< size * u: offsets, loads
     log,      ///< exp(u): what is above zero
     poisson,  ///< (1 - exp(-u)) / 2: Poisson's ratio; exp(u) is proportional to the bulk modulus at a given E
 };
