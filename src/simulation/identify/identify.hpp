@@ -50,8 +50,8 @@ struct Identification {
 
 /// Least squares over the values that are not judged, each over its scatter. Without a scatter all values of one unit
 /// count alike, and different units by the spread of their values, so that neither drowns the other. Intervals are
-/// those of the linear theory at the solution, t s sqrt(C_jj) with C = (J^T J)^-1, s^2 = |r|^2 / (n - unknowns) over the
-/// n values that depend on one, and Student's t, in the coordinate of each unknown (Seber and Wild, Nonlinear
+/// those of the linear theory at the solution, t s sqrt(C_jj) with C = (J^T J)^-1, s^2 = |r|^2 / (n - unknowns) over
+/// the n values that depend on one, and Student's t, in the coordinate of each unknown (Seber and Wild, Nonlinear
 /// Regression, 1989, section 2.1.2): they tell of noise in the data, not of a model that does not fit. Errors: fewer
 /// values than unknowns; an unknown that is named twice; a start from which the program cannot be solved; of what it
 /// stands on; cancelled.

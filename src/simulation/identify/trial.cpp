@@ -43,6 +43,10 @@ void Trial::plan(std::span<const double> times) {
 
 Status Trial::run(Progress& progress) {
     const bool history = has_history();
+    const auto keep = [&](int stop, const sim::RobotState& at) {
+        pieces_.push_back({stop, at.now.state, at.controls,
+                           sim::known_pattern(stepper_->system(), stepper_->laplacian(), at.memory.get())});
+    };
     const double shortest = variant_->program.duration / variant_->program.steps / 64;
     sim::RobotState robot = stepper_->rest();
     pieces_.push_back({0, robot.now.state, stepper_->controls(robot, 0)});
@@ -52,12 +56,11 @@ Status Trial::run(Progress& progress) {
         if (progress.cancelled()) return cancelled();
         progress.advance("trial", static_cast<double>(k) / static_cast<double>(stops_.size()));
         sim::Way way{stops_[k], [&](double time) { return stepper_->controls(robot, time); }, shortest};
-        if (history)
-            way.after_piece = [&](const sim::RobotState& at) { pieces_.push_back({-1, at.now.state, at.controls}); };
+        if (history) way.after_piece = [&](const sim::RobotState& at) { keep(-1, at); };
         const sim::StepReport report = stepper_->step(robot, way, progress);
         if (progress.cancelled()) return cancelled();
         if (!report.arrived) return failure("stopped at time {:.4g}: {}", stops_[k], report.reason);
-        if (!history && needed[k]) pieces_.push_back({0, robot.now.state, robot.controls});
+        if (!history && needed[k]) keep(0, robot);
         if (needed[k]) pieces_.back().stop = static_cast<int>(k);
     }
     return {};

@@ -9,6 +9,7 @@
 #include "base/core/progress.hpp"
 #include "simulation/identify/channel.hpp"
 #include "simulation/identify/source.hpp"
+#include "simulation/linearisation/linearisation.hpp"
 #include "simulation/stepper/stepper.hpp"
 
 namespace pliant::identify {
@@ -43,6 +44,7 @@ private:
         int stop = -1;
         sim::State state;
         sim::Controls controls;
+        sim::KnownPattern pattern{};
     };
     /// A time between two stops.
     struct Place {

@@ -59,23 +59,84 @@ Result<Numbers> numbers_of(const Variant& variant, const std::vector<const sim::
     return numbers;
 }
 
-/// The rates of inputs() from those of the drives. Pressure loads are among the parameters.
-VectorXd input_rates(const std::vector<sim::Parameter>& inputs, const sim::Description& d, const VectorXd& drives) {
-    VectorXd rates = VectorXd::Zero(static_cast<Index>(inputs.size()));
-    const auto steered = static_cast<Index>(d.cables.size() + d.chambers.size());
-    for (Index a = 0; a < steered; ++a)
-        rates[a] = inputs[static_cast<std::size_t>(a)].kind == Kind::pressure ? -drives[a] : drives[a];
-    return rates;
+/// What each unknown varies at a piece. Pressure loads are among the parameters, and not taken twice.
+std::vector<sim::Variation> variations(const sim::Linearisation& at, const Rates& rates, std::size_t piece) {
+    const sim::Description& d = at.system().model().description();
+    const std::vector<sim::Parameter> inputs = sim::inputs(at);
+    std::vector<sim::Variation> all(static_cast<std::size_t>(rates.parameters.cols()));
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const auto column = static_cast<Index>(j);
+        all[j].parameters = rates.parameters.col(column);
+        all[j].inputs = VectorXd::Zero(static_cast<Index>(inputs.size()));
+        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+            const double rate = rates.drives[piece](static_cast<Index>(a), column);
+            all[j].inputs[static_cast<Index>(a)] = inputs[a].kind == Kind::pressure ? -rate : rate;
+        }
+    }
+    return all;
+}
+
+std::vector<sim::Slope> measure_slopes(const sim::Linearisation& at, std::span<const Channel> channels) {
+    std::vector<sim::Slope> slopes;
+    for (const Channel& channel : channels) {
+        for (const sim::Measure& measure : channel.measures) slopes.push_back(sim::slope(at, measure));
+    }
+    return slopes;
+}
+
+/// (measures, unknowns) by one solution for each unknown.
+Result<MatrixXd> direct(sim::Linearisation& at, std::span<const sim::Slope> slopes,
+                        std::span<const sim::Variation> unknowns) {
+    MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
+    for (std::size_t j = 0; j < unknowns.size(); ++j) {
+        const auto changes = sim::changes(at, slopes, unknowns[j]);
+        if (!changes) return tl::unexpected(changes.error());
+        result.col(static_cast<Index>(j)) = *changes;
+    }
+    return result;
+}
+
+/// The same by one transposed solution for each measure.
+Result<MatrixXd> transposed(sim::Linearisation& at, std::span<const sim::Slope> slopes,
+                            std::span<const sim::Variation> unknowns) {
+    MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
+    for (std::size_t m = 0; m < slopes.size(); ++m) {
+        const auto by = sim::gradient(at, slopes[m], {});
+        if (!by) return tl::unexpected(by.error());
+        for (std::size_t j = 0; j < unknowns.size(); ++j)
+            result(static_cast<Index>(m), static_cast<Index>(j)) =
+                by->inputs.dot(unknowns[j].inputs) + by->parameters.dot(unknowns[j].parameters);
+    }
+    return result;
 }
 
 }  // namespace
 
-/// What the state before a piece does with each unknown, where there is a history.
+/// Where there is a history: what the state before a piece does with each unknown.
 struct Trial::Forward {
     std::vector<sim::History> by;  ///< (unknowns)
 
-    /// The change of the forces of the piece, with what it begins at.
-    [[nodiscard]] VectorXd force(const sim::Linearisation& at, std::size_t unknown) const {
+    /// Over a piece: (measures, unknowns) at its end.
+    [[nodiscard]] Result<MatrixXd> go_on(sim::Linearisation& at, std::span<const sim::Slope> slopes,
+                                         std::span<const sim::Variation> unknowns) {
+        MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
+        for (std::size_t j = 0; j < unknowns.size(); ++j) {
+            sim::Derivative derivative = sim::derivative(at, unknowns[j]);
+            const VectorXd force = start_force(at, j);
+            const VectorXd free = at.system().restrict_to_free(force.head(by[j].x.size()));
+            derivative.equations.head(free.size()) += free;
+            derivative.forces.head(force.size()) += force;
+            const auto answer = at.response(derivative);
+            if (!answer) return tl::unexpected(answer.error());
+            result.col(static_cast<Index>(j)) = sim::changes(at, slopes, unknowns[j], derivative, *answer);
+            keep(at, j, answer->positions);
+        }
+        return result;
+    }
+
+private:
+    /// How the forces of a piece change with where it begins.
+    [[nodiscard]] VectorXd start_force(const sim::Linearisation& at, std::size_t unknown) const {
         const sim::History& h = by[unknown];
         VectorXd force = VectorXd::Zero(h.x.size() + at.controls().obstacles.size());
         if (at.controls().inertia) {
@@ -88,7 +149,7 @@ struct Trial::Forward {
         return force - sim::friction_stiffness_times(at.system(), at.state(), at.controls(), motion);
     }
 
-    void go_on(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
+    void keep(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
         sim::History& h = by[unknown];
         VectorXd v = h.v;
         if (at.controls().inertia) v = from(at, unknown).velocity(x);
@@ -96,7 +157,6 @@ struct Trial::Forward {
         h.v_before = std::exchange(h.v, std::move(v));
     }
 
-private:
     [[nodiscard]] sim::Inertia from(const sim::Linearisation& at, std::size_t unknown) const {
         sim::History history = by[unknown];
         history.dt_before = at.controls().inertia->start().dt_before;
@@ -138,46 +198,18 @@ Result<Rates> Trial::rates(const Source& source, std::span<const Unknown> unknow
 }
 
 Result<MatrixXd> Trial::piece_slopes(const Piece& piece, const Rates& rates, std::size_t k, Forward& forward) const {
-    auto at = sim::Linearisation::create(stepper_->system(), piece.state, piece.controls);
+    auto at = sim::Linearisation::create(stepper_->system(), piece.state, piece.controls, piece.pattern);
     if (!at) return tl::unexpected(at.error());
-    const std::vector<sim::Parameter> inputs = sim::inputs(*at);
-    std::vector<sim::Slope> slopes;
-    for (const Channel& channel : channels_) {
-        for (const sim::Measure& measure : channel.measures) slopes.push_back(sim::slope(*at, measure));
-    }
-    const Index count = rates.parameters.cols();
-    MatrixXd of_measures(static_cast<Index>(slopes.size()), count);
-    const auto with = [&](Index j) {
-        sim::Variation variation;
-        variation.inputs = input_rates(inputs, variant_->model.description(), rates.drives[k].col(j));
-        variation.parameters = rates.parameters.col(j);
-        return variation;
-    };
-    if (!has_history() && count > of_measures.rows()) {
-        for (Index m = 0; m < of_measures.rows(); ++m) {
-            const auto by = sim::gradient(*at, slopes[static_cast<std::size_t>(m)], {});
-            if (!by) return tl::unexpected(by.error());
-            for (Index j = 0; j < count; ++j) {
-                const sim::Variation variation = with(j);
-                of_measures(m, j) = by->inputs.dot(variation.inputs) + by->parameters.dot(variation.parameters);
-            }
-        }
-    }
-    for (Index j = 0; j < count && (has_history() || count <= of_measures.rows()); ++j) {
-        const sim::Variation variation = with(j);
-        sim::Derivative by = sim::derivative(*at, variation);
-        if (has_history()) {
-            const VectorXd force = forward.force(*at, static_cast<std::size_t>(j));
-            const VectorXd free = at->system().restrict_to_free(force.head(piece.state.x.size()));
-            by.equations.head(free.size()) += free;
-            by.forces.head(force.size()) += force;
-        }
-        const auto answer = at->response(by);
-        if (!answer) return tl::unexpected(answer.error());
-        of_measures.col(j) = sim::changes(*at, slopes, variation, by, *answer);
-        if (has_history()) forward.go_on(*at, static_cast<std::size_t>(j), answer->positions);
-    }
-    MatrixXd result(static_cast<Index>(channels_.size()), count);
+    const std::vector<sim::Slope> slopes = measure_slopes(*at, channels_);
+    const std::vector<sim::Variation> unknowns = variations(*at, rates, k);
+    Result<MatrixXd> of_measures = MatrixXd(0, 0);
+    if (has_history())
+        of_measures = forward.go_on(*at, slopes, unknowns);
+    else
+        of_measures =
+            unknowns.size() > slopes.size() ? transposed(*at, slopes, unknowns) : direct(*at, slopes, unknowns);
+    if (!of_measures) return of_measures;
+    MatrixXd result(static_cast<Index>(channels_.size()), of_measures->cols());
     Index first = 0;
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         const auto size = static_cast<Index>(channels_[c].measures.size());
@@ -185,7 +217,7 @@ Result<MatrixXd> Trial::piece_slopes(const Piece& piece, const Rates& rates, std
         for (Index m = 0; m < size; ++m) values.push_back(slopes[static_cast<std::size_t>(first + m)].value);
         const std::vector<double> by = channels_[c].slopes(values);
         const Eigen::Map<const Eigen::RowVectorXd> row(by.data(), size);
-        result.row(static_cast<Index>(c)) = row * of_measures.middleRows(first, size);
+        result.row(static_cast<Index>(c)) = row * of_measures->middleRows(first, size);
         first += size;
     }
     return result;
