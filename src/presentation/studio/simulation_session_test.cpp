@@ -100,7 +100,9 @@ TEST_CASE("a marker that is led takes the cable along, and stays where it is let
     b.frames.clear();
     b.session.rest();
     (void)b.frames.wait_for([](const Json& f) { return f["cables"][0]["length_mm"].get<double>() > 3.9999; });
-    const auto at = [](const Json& p) { return std::array{p[0].get<double>(), p[1].get<double>(), p[2].get<double>()}; };
+    const auto at = [](const Json& p) {
+        return std::array{p[0].get<double>(), p[1].get<double>(), p[2].get<double>()};
+    };
     b.session.lead({2, "tip", at(wanted)});
     const Json there = b.arrived(2);
     CHECK(there["lead"]["reached"] == true);

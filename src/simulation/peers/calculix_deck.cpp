@@ -310,7 +310,8 @@ private:
         }
         line("*DLOAD");
         for (const Chamber& chamber : d_.chambers) {
-            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(1) + chamber.target.offset); !done) return done;
+            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(1) + chamber.target.offset); !done)
+                return done;
         }
         for (const PressureLoad& load : d_.pressures) {
             if (Status done = press(load.name, load.wall, load.pressure_Pa * load.share.at(1)); !done) return done;
