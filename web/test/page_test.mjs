@@ -97,7 +97,9 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
   await settled(page);
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
   const dot = async () => {
     const label = await page.locator('.labels span', { hasText: 'tip' }).boundingBox();
     return [label.x - 9, label.y + 10];
