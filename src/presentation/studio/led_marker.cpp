@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/stopwatch.hpp"
+#include "presentation/studio/actuator_kind.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/scene/build_goals.hpp"
 
@@ -38,32 +39,6 @@ std::pair<double, double> usual_range(const ChamberTarget& target, double rest_m
             break;
     }
     return {std::min(0.9, target.value), std::max(1.5, 1 + 1.5 * (target.value - 1))};
-}
-
-const char* kind_name(const CableTarget& target) {
-    if (target.kind == CableTarget::Kind::shortening_m) return "shortening_mm";
-    return target.kind == CableTarget::Kind::tension_N ? "tension_N" : "length_ratio";
-}
-
-const char* kind_name(const ChamberTarget& target) {
-    switch (target.kind) {
-        case ChamberTarget::Kind::volume_change_m3:
-            return "volume_change_mm3";
-        case ChamberTarget::Kind::pressure_Pa:
-            return "pressure_kPa";
-        case ChamberTarget::Kind::gas_ratio:
-            return "gas_ratio";
-        case ChamberTarget::Kind::volume_ratio:
-            break;
-    }
-    return "volume_ratio";
-}
-
-/// Of a page's unit of that kind in SI.
-double unit_of(std::string_view kind) {
-    if (kind == "shortening_mm") return 1e-3;
-    if (kind == "volume_change_mm3") return 1e-9;
-    return kind == "pressure_kPa" ? 1e3 : 1;
 }
 
 }  // namespace
@@ -112,10 +87,9 @@ std::vector<ActuatorValue> LedMarker::actuators() const {
     std::vector<ActuatorValue> out;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const sim::Steered& input = drag_.inputs()[i];
-        const std::string kind = input.actuator < d.cables.size()
-                                     ? kind_name(d.cables[input.actuator].target)
-                                     : kind_name(d.chambers[input.actuator - d.cables.size()].target);
-        out.push_back({input.name, kind, values[i] / unit_of(kind)});
+        const std::size_t a = input.actuator, cables = d.cables.size();
+        const ActuatorKind kind = a < cables ? kind_of(d.cables[a].target) : kind_of(d.chambers[a - cables].target);
+        out.push_back({input.name, kind.name, kind.per_unit * values[i]});
     }
     return out;
 }

@@ -7,6 +7,7 @@
 
 #include "base/core/share.hpp"
 #include "presentation/draw/colour.hpp"
+#include "presentation/studio/actuator_kind.hpp"
 #include "simulation/run/fields.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -34,33 +35,13 @@ Json actuator_json(std::string_view type, const std::string& name, std::string_v
 }
 
 Json cable_json(const sim::Cable& cable, double rest_m) {
-    using Kind = sim::CableTarget::Kind;
-    const double value = cable.target.value;
-    switch (cable.target.kind) {
-        case Kind::shortening_m:
-            return actuator_json("cable", cable.name, "shortening_mm", mm * value, mm * rest_m);
-        case Kind::tension_N:
-            return actuator_json("cable", cable.name, "tension_N", value, mm * rest_m);
-        case Kind::length_ratio:
-            break;
-    }
-    return actuator_json("cable", cable.name, "length_ratio", value, mm * rest_m);
+    const ActuatorKind kind = kind_of(cable.target);
+    return actuator_json("cable", cable.name, kind.name, kind.per_unit * cable.target.value, mm * rest_m);
 }
 
 Json chamber_json(const sim::Chamber& chamber, double rest_m3) {
-    using Kind = sim::ChamberTarget::Kind;
-    const double value = chamber.target.value, rest = 1e9 * rest_m3;
-    switch (chamber.target.kind) {
-        case Kind::volume_change_m3:
-            return actuator_json("chamber", chamber.name, "volume_change_mm3", 1e9 * value, rest);
-        case Kind::pressure_Pa:
-            return actuator_json("chamber", chamber.name, "pressure_kPa", 1e-3 * value, rest);
-        case Kind::gas_ratio:
-            return actuator_json("chamber", chamber.name, "gas_ratio", value, rest);
-        case Kind::volume_ratio:
-            break;
-    }
-    return actuator_json("chamber", chamber.name, "volume_ratio", value, rest);
+    const ActuatorKind kind = kind_of(chamber.target);
+    return actuator_json("chamber", chamber.name, kind.name, kind.per_unit * chamber.target.value, 1e9 * rest_m3);
 }
 
 double cable_length_m(const sim::Model& model, std::size_t c) {

@@ -1,0 +1,16 @@
+// How the page names what drives an actuator, and in which unit it counts it.
+#pragma once
+
+#include "simulation/parts/description.hpp"
+
+namespace pliant::studio {
+
+struct ActuatorKind {
+    const char* name;     ///< as in messages: length_ratio, shortening_mm, ...
+    double per_unit = 1;  ///< what the page shows for one SI unit
+};
+
+[[nodiscard]] ActuatorKind kind_of(const sim::CableTarget& target);
+[[nodiscard]] ActuatorKind kind_of(const sim::ChamberTarget& target);
+
+}  // namespace pliant::studio
