@@ -48,16 +48,20 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     return {};
 }
 
+bool may_replace_folder(const fs::path& folder, std::string_view marker) {
+    std::error_code code;
+    if (!fs::exists(folder, code)) return true;
+    return fs::is_directory(folder, code) && (fs::is_empty(folder, code) || fs::exists(folder / marker, code));
+}
+
 Status write_folder(const fs::path& folder, std::string_view marker,
                     const std::function<Status(const fs::path&)>& fill) {
     std::error_code code;
     fs::path target = fs::absolute(folder, code).lexically_normal();
     if (!target.has_filename()) target = target.parent_path();
-    if (fs::exists(target, code)) {
+    if (!may_replace_folder(target, marker)) {
         if (!fs::is_directory(target, code)) return input_error("{}: is a file, a folder is needed", folder.string());
-        if (!fs::is_empty(target, code) && !fs::exists(target / marker, code)) {
-            return input_error("{}: holds other files (no {}); name an empty or new folder", folder.string(), marker);
-        }
+        return input_error("{}: holds other files (no {}); name an empty or new folder", folder.string(), marker);
     }
     const fs::path aside = target.string() + ".partial";
     fs::remove_all(aside, code);

@@ -18,8 +18,12 @@ namespace pliant {
 /// Writes `PATH.partial`, then renames it to PATH.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Calls `fill` on a fresh folder `DIR.partial` and, if it succeeds, puts that folder in the place of DIR. An existing
-/// DIR is replaced only if it is empty or holds a file `marker` (so that no foreign folder is ever deleted).
+/// True where `folder` is not there yet, is an empty folder, or one that holds a file `marker`: so that no foreign
+/// folder is ever deleted.
+[[nodiscard]] bool may_replace_folder(const std::filesystem::path& folder, std::string_view marker);
+
+/// Calls `fill` on a fresh folder `DIR.partial` and, if it succeeds, puts that folder in the place of DIR. DIR is
+/// replaced as may_replace_folder() allows.
 [[nodiscard]] Status write_folder(const std::filesystem::path& folder, std::string_view marker,
                                   const std::function<Status(const std::filesystem::path&)>& fill);
 

@@ -30,13 +30,6 @@ std::string length_bytes(std::uint64_t length) {
     return bytes;
 }
 
-/// True for a folder of ours, or one that holds nothing.
-bool may_replace(const fs::path& folder) {
-    std::error_code code;
-    if (fs::is_empty(folder, code)) return fs::is_directory(folder, code);
-    return fs::is_directory(folder, code) && fs::exists(folder / steps_name, code);
-}
-
 Json json_of(const ChecksState& checks) {
     return {{"reported_along", checks.reported.along},
             {"reported_x", cbor::packed(checks.reported.state.x)},
@@ -123,7 +116,7 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
 
 Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin, int every) {
     std::error_code code;
-    if (fs::exists(folder, code) && !may_replace(folder))
+    if (!may_replace_folder(folder, steps_name))
         return input_error("{}: is there already, and is no checkpoint; move it away", folder.string());
     fs::remove_all(folder, code);
     if (!fs::create_directories(folder, code))
