@@ -12,6 +12,7 @@
 #include "robot/file/goal_file.hpp"
 #include "robot/file/place_file.hpp"
 #include "robot/file/program_file.hpp"
+#include "robot/file/robot_document.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -30,59 +31,6 @@ mesh::NamedShapes read_shapes(Reader& root) {
         root.problem("shape", "write [shape.NAME] for each shape");
     }
     return shapes;
-}
-
-/// The values of `from` in place of those of `into`, and beside them; as `--set` would bring them in, without lines.
-void put_over(config::Table& into, config::Table from) {
-    for (auto& [key, value] : from) {
-        const auto is_it = [&key = key](const config::Entry& entry) { return entry.first == key; };
-        const auto there = std::find_if(into.begin(), into.end(), is_it);
-        if (there == into.end())
-            into.emplace_back(key, std::move(value));
-        else
-            there->second = std::move(value);
-    }
-}
-
-void forget_lines(config::Value& value) {
-    value.line = 0;
-    if (auto* list = std::get_if<config::Array>(&value.data)) {
-        for (config::Value& entry : *list) forget_lines(entry);
-    }
-    if (auto* table = std::get_if<config::Table>(&value.data)) {
-        for (auto& [key, entry] : *table) forget_lines(entry);
-    }
-}
-
-/// robot = "FILE.toml": that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of what
-/// it says there. Without that key the document as it is.
-Result<config::Document> on_base(config::Document document) {
-    Problems problems(document.file.string());
-    Reader root(document.root, problems);
-    if (!root.has("robot")) return document;
-    const fs::path file = (document.file.parent_path() / root.text("robot")).lexically_normal();
-    const std::vector<std::string> changes = root.texts("set");
-    const config::Value* program = root.raw("program");
-    if (program != nullptr && !std::holds_alternative<config::Table>(program->data))
-        root.problem("program", "must be a table");
-    root.finish();
-    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
-    Result<config::Document> base = config::load(file);
-    if (!base) return tl::unexpected(base.error());
-    for (const std::string& change : changes) {
-        if (Status status = config::set(*base, change); !status) return tl::unexpected(status.error());
-    }
-    auto& table = std::get<config::Table>(base->root.data);
-    if (program == nullptr) return base;
-    config::Value own = *program;
-    forget_lines(own);
-    const auto there =
-        std::find_if(table.begin(), table.end(), [](const config::Entry& entry) { return entry.first == "program"; });
-    if (there == table.end())
-        table.emplace_back("program", std::move(own));
-    else if (auto* theirs = std::get_if<config::Table>(&there->second.data))
-        put_over(*theirs, std::get<config::Table>(std::move(own.data)));
-    return base;
 }
 
 Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {

@@ -1,0 +1,103 @@
+#include "robot/file/robot_document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "base/core/config_text.hpp"
+
+namespace pliant::robot {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Problems;
+using config::Reader;
+
+/// The values of `from` in place of those of `into`, and beside them; as `--set` would bring them in, without lines.
+void put_over(config::Table& into, config::Table from) {
+    for (auto& [key, value] : from) {
+        const auto is_it = [&key = key](const config::Entry& entry) { return entry.first == key; };
+        const auto there = std::find_if(into.begin(), into.end(), is_it);
+        if (there == into.end())
+            into.emplace_back(key, std::move(value));
+        else
+            there->second = std::move(value);
+    }
+}
+
+void forget_lines(config::Value& value) {
+    value.line = 0;
+    if (auto* list = std::get_if<config::Array>(&value.data)) {
+        for (config::Value& entry : *list) forget_lines(entry);
+    }
+    if (auto* table = std::get_if<config::Table>(&value.data)) {
+        for (auto& [key, entry] : *table) forget_lines(entry);
+    }
+}
+
+/// Keys that name files, wherever they stand.
+constexpr std::array<std::string_view, 4> path_keys = {"geometry", "surface", "file", "path"};
+
+void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) {
+    if (auto* list = std::get_if<config::Array>(&value.data)) {
+        for (config::Value& entry : *list) lead_paths(entry, from, to);
+        return;
+    }
+    auto* table = std::get_if<config::Table>(&value.data);
+    if (table == nullptr) return;
+    for (auto& [key, entry] : *table) {
+        auto* text = std::get_if<std::string>(&entry.data);
+        const bool path = text != nullptr && std::ranges::find(path_keys, key) != path_keys.end();
+        std::error_code ignored;
+        if (path && fs::path(*text).is_relative() && fs::exists(from / *text, ignored))
+            *text = fs::relative(from / *text, to).generic_string();
+        else
+            lead_paths(entry, from, to);
+    }
+}
+
+}  // namespace
+
+Result<config::Document> on_base(config::Document document) {
+    Problems problems(document.file.string());
+    Reader root(document.root, problems);
+    if (!root.has("robot")) return document;
+    const fs::path file = (document.file.parent_path() / root.text("robot")).lexically_normal();
+    const std::vector<std::string> changes = root.texts("set");
+    const config::Value* program = root.raw("program");
+    if (program != nullptr && !std::holds_alternative<config::Table>(program->data))
+        root.problem("program", "must be a table");
+    root.finish();
+    if (Status status = problems.status(); !status) return tl::unexpected(status.error());
+    Result<config::Document> base = config::load(file);
+    if (!base) return tl::unexpected(base.error());
+    for (const std::string& change : changes) {
+        if (Status status = config::set(*base, change); !status) return tl::unexpected(status.error());
+    }
+    auto& table = std::get<config::Table>(base->root.data);
+    if (program == nullptr) return base;
+    config::Value own = *program;
+    forget_lines(own);
+    const auto there =
+        std::find_if(table.begin(), table.end(), [](const config::Entry& entry) { return entry.first == "program"; });
+    if (there == table.end())
+        table.emplace_back("program", std::move(own));
+    else if (auto* theirs = std::get_if<config::Table>(&there->second.data))
+        put_over(*theirs, std::get<config::Table>(std::move(own.data)));
+    return base;
+}
+
+Result<std::string> robot_text(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments,
+                               const fs::path& folder) {
+    Result<config::Document> document = config::parse(text, file);
+    if (document) document = on_base(std::move(*document));
+    if (!document) return tl::unexpected(document.error());
+    for (const std::string& assignment : assignments) {
+        if (Status status = config::set(*document, assignment); !status) return tl::unexpected(status.error());
+    }
+    lead_paths(document->root, fs::absolute(document->file).parent_path(), fs::absolute(folder));
+    return config::toml_text(document->root);
+}
+
+}  // namespace pliant::robot

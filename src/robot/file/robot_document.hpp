@@ -1,0 +1,24 @@
+// A robot file as a tree of values: what it stands on, and what changes it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/config.hpp"
+#include "base/core/error.hpp"
+
+namespace pliant::robot {
+
+/// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
+/// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
+[[nodiscard]] Result<config::Document> on_base(config::Document document);
+
+/// `text` is that of `file`. Text of a robot file in `folder` that says the same with these assignments, without
+/// comments; files that are there are named from `folder`. Errors: of the text and what it stands on, of an assignment.
+[[nodiscard]] Result<std::string> robot_text(std::string_view text, const std::filesystem::path& file,
+                                             const std::vector<std::string>& assignments,
+                                             const std::filesystem::path& folder);
+
+}  // namespace pliant::robot
