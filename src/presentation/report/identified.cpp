@@ -9,8 +9,8 @@
 namespace pliant::report {
 namespace {
 
-using identify::Compared;
-using identify::Identification;
+using sim::identify::Compared;
+using sim::identify::Identification;
 
 constexpr std::size_t most_over_time = 3;
 

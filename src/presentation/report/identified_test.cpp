@@ -9,16 +9,16 @@ using namespace pliant::report;
 
 namespace {
 
-identify::Channel channel(const char* column, const char* unit) {
-    identify::Channel result;
+sim::identify::Channel channel(const char* column, const char* unit) {
+    sim::identify::Channel result;
     result.column = column;
     result.unit = unit;
     return result;
 }
 
 /// Values that begin at 100 and are met to 2 before and to 0.5 after.
-identify::Identification found(const std::vector<identify::Channel>& channels) {
-    identify::Identification result;
+sim::identify::Identification found(const std::vector<sim::identify::Channel>& channels) {
+    sim::identify::Identification result;
     result.channels = channels;
     for (const double time : {0.5, 0.25, 1.0}) {
         for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -50,7 +50,7 @@ TEST_CASE("few columns over time, in its order, a plot for each unit") {
 }
 
 TEST_CASE("many columns over what was measured, beside the diagonal") {
-    const std::vector<identify::Channel> ratios(5, channel("c_length_ratio", ""));
+    const std::vector<sim::identify::Channel> ratios(5, channel("c_length_ratio", ""));
     const auto plots = identified_plots(found(ratios));
     REQUIRE(plots.size() == 1);
     CHECK(plots[0].file == "measured_ratio.png");

@@ -11,7 +11,7 @@
 
 #include "simulation/gradient/objective.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 using Kind = sim::Measure::Kind;
@@ -180,4 +180,4 @@ std::optional<Channel> find_channel(const sim::Description& robot, std::string_v
     return find_angle(robot, column);
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -10,7 +10,7 @@
 #include "simulation/gradient/measure.hpp"
 #include "simulation/parts/description.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 struct Channel {
     enum class Kind {
@@ -37,4 +37,4 @@ struct Channel {
 /// Nothing: the column is none of them.
 [[nodiscard]] std::optional<Channel> find_channel(const sim::Description& robot, std::string_view column);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

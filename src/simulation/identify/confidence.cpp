@@ -7,7 +7,7 @@
 
 #include "simulation/calibrate/fit.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 using Eigen::Index;
@@ -91,4 +91,4 @@ Confidence confidence(const MatrixXd& J, const VectorXd& r, const std::vector<bo
     return result;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

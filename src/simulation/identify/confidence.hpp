@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 struct Confidence {
     Eigen::VectorXd half_width;   ///< (unknowns) 95 %, in u; not a number where there is none
@@ -22,4 +22,4 @@ struct Confidence {
 [[nodiscard]] Confidence confidence(const Eigen::MatrixXd& J, const Eigen::VectorXd& r, const std::vector<bool>& held,
                                     double negligible);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -14,7 +14,7 @@
 #include "simulation/identify/least_squares.hpp"
 #include "simulation/identify/trial.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 using Eigen::Index;
@@ -248,4 +248,4 @@ std::vector<std::string> assignments(const Identification& result) {
     return all;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

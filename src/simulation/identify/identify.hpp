@@ -12,7 +12,7 @@
 #include "simulation/identify/source.hpp"
 #include "simulation/identify/unknown.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 struct Found {
     Unknown unknown;  ///< `value`: where the search began
@@ -67,4 +67,4 @@ struct Identification {
 /// One row for each measured value: line, time, quantity, unit, use, measured, scatter, before, after.
 [[nodiscard]] std::string comparison_csv(const Identification& result);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -12,8 +12,8 @@
 #include "simulation/identify/test_bars.hpp"
 
 using namespace pliant;
-using namespace pliant::identify;
-using namespace pliant::identify::testing;
+using namespace pliant::sim::identify;
+using namespace pliant::sim::identify::testing;
 
 namespace {
 
@@ -233,7 +233,7 @@ TEST_CASE("what cannot be done is said in one line") {
     const auto data = bar.read("time,tip_z_mm\n1,8\n");
     Progress silent;
     const auto problem = [&](const std::vector<Unknown>& unknowns) {
-        const auto result = identify::identify(bar.source, unknowns, data, silent);
+        const auto result = sim::identify::identify(bar.source, unknowns, data, silent);
         return result ? "" : result.error().message;
     };
     CHECK(problem({}) == "there is nothing to find; name an unknown");
@@ -243,7 +243,7 @@ TEST_CASE("what cannot be done is said in one line") {
     struct Stop : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } stop;
-    const auto result = identify::identify(bar.source, E, data, stop);
+    const auto result = sim::identify::identify(bar.source, E, data, stop);
     REQUIRE_FALSE(result);
     CHECK(result.error().cause == Cause::cancelled);
 }

@@ -7,7 +7,7 @@
 
 #include "simulation/identify/identify.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 std::string unit_or_ratio(const std::string& unit) {
@@ -101,4 +101,4 @@ std::string comparison_csv(const Identification& result) {
     return text;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

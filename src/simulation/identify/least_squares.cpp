@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 using Eigen::Index;
@@ -143,4 +143,4 @@ Result<LeastSquaresEnd> minimise(const LeastSquaresProblem& problem, const Vecto
     return Search(problem, start).run();
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

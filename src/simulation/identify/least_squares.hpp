@@ -8,7 +8,7 @@
 
 #include "base/core/error.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 struct LeastSquaresProblem {
     /// Residuals at u; nothing where there is no solution, which makes the next step shorter. An error ends the search.
@@ -33,4 +33,4 @@ struct LeastSquaresEnd {
 /// 1944, Marquardt 1963; More 1978 for D. Errors: none at the start; those of the problem.
 [[nodiscard]] Result<LeastSquaresEnd> minimise(const LeastSquaresProblem& problem, const Eigen::VectorXd& start);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -11,7 +11,7 @@
 #include "simulation/identify/confidence.hpp"
 
 using namespace pliant;
-using namespace pliant::identify;
+using namespace pliant::sim::identify;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 

@@ -9,7 +9,7 @@
 #include "base/core/csv.hpp"
 #include "base/core/text.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 constexpr std::string_view scatter_ending = "_scatter";
@@ -188,4 +188,4 @@ Result<Measurements> parse_measurements(std::string_view text, const std::string
     return result;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

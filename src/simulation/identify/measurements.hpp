@@ -9,7 +9,7 @@
 #include "robot/description/program.hpp"
 #include "simulation/identify/channel.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 /// Which rows are kept out of the fit, to judge it on.
 enum class JudgeOn {
@@ -41,4 +41,4 @@ struct Measurements {
                                                       const sim::Description& robot, const robot::Program& program,
                                                       JudgeOn judge);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -4,7 +4,7 @@
 
 #include "simulation/scene/build_model.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 /// Equations that hold to so much have derivatives that hold as well as they are solved; fewer digits would show as
@@ -27,4 +27,4 @@ Result<std::unique_ptr<Variant>> Source::with(std::span<const Unknown> unknowns,
     return std::make_unique<Variant>(Variant{program, std::move(*model)});
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

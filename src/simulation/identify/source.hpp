@@ -13,7 +13,7 @@
 #include "simulation/identify/unknown.hpp"
 #include "simulation/model/model.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 /// Reads the robot with these assignments in addition to its own, as of `--set`.
 using ReadRobot = std::function<Result<robot::Robot>(const std::vector<std::string>& assignments)>;
@@ -37,4 +37,4 @@ private:
     mesh::TetMesh mesh_;
 };
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -15,7 +15,7 @@
 #include "simulation/identify/trial.hpp"
 #include "simulation/peers/reference_problems.hpp"
 
-namespace pliant::identify::testing {
+namespace pliant::sim::identify::testing {
 
 /// A bar of 60 x 10 x 10 mm, clamped at x = 0, of a firm half and a soft one.
 inline const std::string bar_text = R"(
@@ -152,4 +152,4 @@ inline Identification find(const Bar& bar, const std::vector<Unknown>& unknowns,
     return std::move(*result);
 }
 
-}  // namespace pliant::identify::testing
+}  // namespace pliant::sim::identify::testing

@@ -6,7 +6,7 @@
 
 #include "simulation/run/simulate.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 Trial::Trial(std::unique_ptr<Variant> variant, std::span<const Channel> channels)
     : variant_(std::move(variant)),
@@ -107,4 +107,4 @@ Result<std::unique_ptr<Trial>> Trial::solve(std::unique_ptr<Variant> variant, st
     return trial;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

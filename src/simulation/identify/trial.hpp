@@ -12,7 +12,7 @@
 #include "simulation/linearisation/linearisation.hpp"
 #include "simulation/stepper/stepper.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 /// How the numbers that a state is a function of change with the unknowns, each by a change of 1 in its coordinate.
 struct Rates {
@@ -73,4 +73,4 @@ private:
     Eigen::MatrixXd values_;
 };
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

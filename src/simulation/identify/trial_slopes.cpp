@@ -8,7 +8,7 @@
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/material/law_parameters.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 using Eigen::Index;
@@ -248,4 +248,4 @@ Result<std::vector<MatrixXd>> Trial::slopes(const Source& source, std::span<cons
     return result;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -12,8 +12,8 @@
 #include "simulation/linearisation/parameters.hpp"
 
 using namespace pliant;
-using namespace pliant::identify;
-using namespace pliant::identify::testing;
+using namespace pliant::sim::identify;
+using namespace pliant::sim::identify::testing;
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "base/core/units.hpp"
 #include "simulation/material/law_parameters.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
@@ -252,4 +252,4 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
     return unknown;
 }
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

@@ -8,7 +8,7 @@
 #include "base/core/error.hpp"
 #include "robot/description/robot.hpp"
 
-namespace pliant::identify {
+namespace pliant::sim::identify {
 
 /// The coordinate u in which the search takes its steps; the value is
 enum class Scale {
@@ -43,4 +43,4 @@ struct Unknown {
 /// found from above 0.
 [[nodiscard]] Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text);
 
-}  // namespace pliant::identify
+}  // namespace pliant::sim::identify

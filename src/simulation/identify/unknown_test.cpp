@@ -9,8 +9,8 @@
 #include "simulation/identify/test_bars.hpp"
 
 using namespace pliant;
-using namespace pliant::identify;
-using namespace pliant::identify::testing;
+using namespace pliant::sim::identify;
+using namespace pliant::sim::identify::testing;
 
 namespace {
 
