@@ -35,6 +35,28 @@ struct Quantity {
     std::vector<double> by_pressures;  ///< (chambers)
 };
 
+/// Something that can be measured on a robot: one number, SI.
+struct Measure {
+    /// What is measured.
+    enum class Of {
+        marker,         ///< its coordinate along `direction`, m
+        tension,        ///< of a cable, N
+        pressure,       ///< of a chamber or a load that presses, Pa
+        length,         ///< of a cable, m
+        length_ratio,   ///< of a cable, over that at rest
+        volume,         ///< of a chamber, m^3
+        volume_ratio,   ///< of a chamber, over that at rest
+        spring_length,  ///< m
+        spring_force,   ///< N, positive where it pulls
+        reaction,       ///< force of a support on the robot along `direction`, N
+        contact_force,  ///< force of an obstacle on the robot along `direction`, with friction, N
+        self_contact,   ///< sum of the sizes of the robot's normal forces on itself, N; has no name
+    };
+    Of of = Of::marker;  ///< what is measured
+    std::string name;    ///< on which, as in the robot file
+    Point direction{};   ///< of any length
+};
+
 /// The equations of a state of equilibrium, F(z) = 0 in its unknowns z, linearised: elements, cables and chambers,
 /// pressure that follows its wall, contact, friction as it was found, inertia. The unknowns are the positions of the
 /// nodes that nothing holds, three by three, then the multipliers that are not given: tensions of cables and minus the
@@ -92,6 +114,14 @@ public:
     /// Coordinate of a marker along a direction; m for a direction of length 1.
     /// @throws Failure where there is no such marker.
     [[nodiscard]] Quantity marker_coordinate(std::size_t marker, const Point& direction) const;
+
+    /// The number at this state.
+    /// @throws Failure where the robot has nothing of that name.
+    [[nodiscard]] double value(const Measure& measure) const;
+    /// By one transposed solution. Unlike that of a Quantity it knows what the measure itself has of a parameter, and
+    /// with the rest shape lengths and volumes that are wanted as a share of what they are at rest follow.
+    /// @throws Failure as of solve() and value().
+    [[nodiscard]] Gradient gradient(const Measure& measure);
 
 private:
     struct Work;

@@ -3,7 +3,11 @@
 #pragma once
 
 #include "pliant/base.hpp"           // IWYU pragma: export
+#include "pliant/gradient.hpp"       // IWYU pragma: export
+#include "pliant/identify.hpp"       // IWYU pragma: export
+#include "pliant/inverse.hpp"        // IWYU pragma: export
 #include "pliant/linearisation.hpp"  // IWYU pragma: export
 #include "pliant/printing.hpp"       // IWYU pragma: export
 #include "pliant/program.hpp"        // IWYU pragma: export
 #include "pliant/simulation.hpp"     // IWYU pragma: export
+#include "pliant/workspace.hpp"      // IWYU pragma: export

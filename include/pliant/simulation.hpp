@@ -41,6 +41,7 @@ public:
     struct Data;
     explicit Robot(std::shared_ptr<const Data> data);
     [[nodiscard]] const Data& data() const { return *data_; }
+    [[nodiscard]] const std::shared_ptr<const Data>& shared() const { return data_; }
 
 private:
     std::shared_ptr<const Data> data_;

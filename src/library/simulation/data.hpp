@@ -1,9 +1,14 @@
 // What stands behind the values of the library.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "geometry/mesh/tet_mesh.hpp"
 #include "pliant/simulation.hpp"
 #include "robot/description/robot.hpp"
 #include "simulation/model/model.hpp"
@@ -15,12 +20,19 @@ namespace pliant {
 
 struct Robot::Data {
     robot::Robot robot;
-    std::string origin;  ///< the text, and everything that changes it: of what a checkpoint is
+    std::string text;                  ///< of the robot file
+    std::filesystem::path file;        ///< that it is of, or, of a text, that it would be of
+    std::vector<std::string> changes;  ///< of the text
+    bool has_file = false;             ///< the text is that of the file
+
+    /// Everything that says what it is: of what a checkpoint is.
+    [[nodiscard]] std::string origin() const;
 };
 
 struct Model::Data {
     robot::Scene scene;
-    std::string origin;  ///< the robot's
+    std::shared_ptr<const Robot::Data> robot;
+    std::optional<mesh::TetMesh> given_mesh{};  ///< m, where a program has made it
 };
 
 struct State::Data {
@@ -36,6 +48,9 @@ namespace library {
 /// Throws where the drives are not those of the model, or not finite.
 [[nodiscard]] sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs);
 [[nodiscard]] Observation observation_of(const sim::Step& step);
+[[nodiscard]] StepResult result_of(const sim::Step& step);
+/// In metres. Throws where it is no mesh.
+[[nodiscard]] mesh::TetMesh tet_mesh(const Mesh& given);
 
 }  // namespace library
 }  // namespace pliant

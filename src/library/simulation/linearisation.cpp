@@ -7,6 +7,8 @@
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
+#include "library/simulation/measures.hpp"
+#include "simulation/gradient/variation.hpp"
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/linearisation/rest_positions.hpp"
 
@@ -142,6 +144,16 @@ Linearisation::Gradient Linearisation::gradient(const Quantity& quantity) {
     out.parameters = numbers(sim::derivatives(work_->at, adjoint, work_->parameters));
     out.rest_positions = library::points_of(linalg::points_of(sim::rest_gradient(work_->at, adjoint)));
     return out;
+}
+
+double Linearisation::value(const Measure& measure) const {
+    return sim::slope(work_->at, library::measure_for(work_->model->scene.model, measure)).value;
+}
+
+Linearisation::Gradient Linearisation::gradient(const Measure& measure) {
+    const sim::Slope slope = sim::slope(work_->at, library::measure_for(work_->model->scene.model, measure));
+    const sim::Variation by = library::value_of(sim::gradient(work_->at, slope, {.rest = true}));
+    return {numbers(by.inputs), numbers(by.parameters), library::points_of(linalg::points_of(by.rest))};
 }
 
 Quantity Linearisation::marker_coordinate(std::size_t marker, const Point& direction) const {

@@ -24,7 +24,9 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
     throw Failure(Failure::Kind::input, "the mesh: " + why);
 }
 
-mesh::TetMesh tet_mesh(const Mesh& given) {
+}  // namespace
+
+mesh::TetMesh library::tet_mesh(const Mesh& given) {
     if (given.nodes_per_tet != 4 && given.nodes_per_tet != 10)
         refuse(fmt::format("{} nodes for each tetrahedron; it has 4 or 10", given.nodes_per_tet));
     const auto width = static_cast<std::size_t>(given.nodes_per_tet);
@@ -54,17 +56,17 @@ mesh::TetMesh tet_mesh(const Mesh& given) {
     return std::move(*mesh);
 }
 
-}  // namespace
-
-Model::Model(const Robot& robot, const Mesh& mesh)
-    : data_(std::make_shared<const Data>(
-          Data{library::value_of(robot::build_scene(robot.data().robot, tet_mesh(mesh))), robot.data().origin})) {}
+Model::Model(const Robot& robot, const Mesh& mesh) {
+    mesh::TetMesh given = library::tet_mesh(mesh);
+    robot::Scene scene = library::value_of(robot::build_scene(robot.data().robot, given));
+    data_ = std::make_shared<const Data>(Data{std::move(scene), robot.shared(), std::move(given)});
+}
 
 Model::Model(const Robot& robot, const Watch& watch) {
     library::WatchedProgress progress(watch);
     auto scene = robot::build_scene(robot.data().robot, progress);
     progress.rethrow();
-    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), robot.data().origin});
+    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), robot.shared()});
 }
 
 std::size_t Model::node_count() const {

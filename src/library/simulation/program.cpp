@@ -62,18 +62,19 @@ Kept open_checkpoint(const Model::Data& model, const RunOptions& options) {
     }
     if (!options.resume) {
         const int every = std::max(options.checkpoint_every, 1);
-        return {library::value_of(sim::Checkpoint::create(options.checkpoint, model.origin, every)), std::nullopt};
+        return {library::value_of(sim::Checkpoint::create(options.checkpoint, model.robot->origin(), every)),
+                std::nullopt};
     }
     auto resumed = library::value_of(
-        sim::Checkpoint::open(options.checkpoint, model.origin, model.scene.model, model.scene.robot.program));
+        sim::Checkpoint::open(options.checkpoint, model.robot->origin(), model.scene.model, model.scene.robot.program));
     if (options.checkpoint_every > 0) resumed.checkpoint.set_every(options.checkpoint_every);
     if (options.on_resume) options.on_resume(resumed.run.step);
     return {std::move(resumed.checkpoint), std::move(resumed.run)};
 }
 
 ProgramStep program_step(const sim::Step& step) {
-    const StepResult result{true, !step.converged, step.reason, step.iterations, step.substeps, step.residual};
-    return {step.index, step.time, result, library::observation_of(step), library::points_of(step.positions)};
+    return {step.index, step.time, library::result_of(step), library::observation_of(step),
+            library::points_of(step.positions)};
 }
 
 report::PictureChoice choice_of(const ResultsOptions& options) {

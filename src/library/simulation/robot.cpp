@@ -12,24 +12,21 @@ namespace pliant {
 
 Robot::Robot(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
-namespace {
-
-std::string origin_of(std::string_view toml, const std::vector<std::string>& changes) {
-    return fmt::format("{}\n{}", fmt::join(changes, "\n"), toml);
+std::string Robot::Data::origin() const {
+    return fmt::format("{}\n{}", fmt::join(changes, "\n"), text);
 }
-
-}  // namespace
 
 Robot Robot::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
     auto robot = library::value_of(robot::load_robot(file, changes));
-    const std::string text = library::value_of(read_file(file));
-    return Robot(std::make_shared<const Data>(Data{std::move(robot), origin_of(text, changes)}));
+    std::string text = library::value_of(read_file(file));
+    return Robot(std::make_shared<const Data>(Data{std::move(robot), std::move(text), file, changes, true}));
 }
 
 Robot Robot::parse(std::string_view toml, const std::filesystem::path& folder,
                    const std::vector<std::string>& changes) {
-    return Robot(std::make_shared<const Data>(
-        Data{library::value_of(robot::parse_robot(toml, folder / "robot text", changes)), origin_of(toml, changes)}));
+    const std::filesystem::path file = folder / "robot text";
+    auto robot = library::value_of(robot::parse_robot(toml, file, changes));
+    return Robot(std::make_shared<const Data>(Data{std::move(robot), std::string(toml), file, changes, false}));
 }
 
 const std::string& Robot::name() const {

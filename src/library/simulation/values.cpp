@@ -78,6 +78,10 @@ sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs) {
     return out;
 }
 
+StepResult result_of(const sim::Step& step) {
+    return {true, !step.converged, step.reason, step.iterations, step.substeps, step.residual};
+}
+
 Observation observation_of(const sim::Step& step) {
     const auto point = [](const Vec3& v) { return Point{v.x, v.y, v.z}; };
     Observation seen;

@@ -1,0 +1,143 @@
+#include "pliant/gradient.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "base/linalg/vectors.hpp"
+#include "library/base/calls.hpp"
+#include "library/simulation/data.hpp"
+#include "library/simulation/measures.hpp"
+#include "simulation/gradient/program_gradient.hpp"
+#include "simulation/material/law_parameters.hpp"
+#include "simulation/run/simulate.hpp"
+
+namespace pliant {
+namespace {
+
+std::vector<double> numbers(const Eigen::VectorXd& v) {
+    return {v.begin(), v.end()};
+}
+
+/// The objective with its measures by index. What `judge` throws is kept and thrown again where no engine is between.
+class Judge {
+public:
+    Judge(const sim::Model& model, const Objective& asked) : asked_(asked) {
+        if (!asked.judge) throw Failure(Failure::Kind::input, "the objective has no function that judges");
+        for (const Measure& measure : asked.measures)
+            objective_.measures.push_back(library::measure_for(model, measure));
+        objective_.judge = [this](int step, std::span<const double> values) { return judged(step, values); };
+    }
+    Judge(const Judge&) = delete;
+    Judge& operator=(const Judge&) = delete;
+    [[nodiscard]] const sim::Objective& objective() const { return objective_; }
+    void rethrow() const {
+        if (thrown_) std::rethrow_exception(thrown_);
+    }
+    [[nodiscard]] bool failed() const { return thrown_ != nullptr; }
+
+private:
+    sim::Judgement judged(int step, std::span<const double> values) {
+        if (thrown_) return {};
+        try {
+            Judgement judgement = asked_.judge(step, values);
+            if (!judgement.slopes.empty() && judgement.slopes.size() != values.size())
+                throw Failure(Failure::Kind::input, fmt::format("the objective gives {} slopes of {} measures",
+                                                                judgement.slopes.size(), values.size()));
+            return {judgement.value, std::move(judgement.slopes)};
+        } catch (...) {
+            thrown_ = std::current_exception();
+        }
+        return {};
+    }
+
+    const Objective& asked_;
+    sim::Objective objective_;
+    std::exception_ptr thrown_;
+};
+
+/// Asks for an end once the objective has thrown.
+class JudgedProgress final : public Progress {
+public:
+    JudgedProgress(Progress& shown, const Judge& judge) : shown_(shown), judge_(judge) {}
+    void advance(std::string_view stage, double fraction) override { shown_.advance(stage, fraction); }
+    [[nodiscard]] bool cancelled() const override { return judge_.failed() || shown_.cancelled(); }
+
+private:
+    Progress& shown_;
+    const Judge& judge_;
+};
+
+std::vector<Parameter> shown(const std::vector<sim::Parameter>& all) {
+    std::vector<Parameter> out;
+    for (const sim::Parameter& one : all) out.push_back({one.name, one.unit, one.value});
+    return out;
+}
+
+/// What the gradient is by: at rest, where names and numbers are those of the whole program.
+void add_names(const sim::Model& model, const sim::Program& program, ProgramGradient& out) {
+    const sim::Stepper stepper(model, sim::stepper_options(program));
+    const sim::RobotState rest = stepper.rest();
+    const auto at = library::value_of(sim::Linearisation::create(stepper.system(), rest.now.state, rest.controls));
+    out.inputs = shown(sim::inputs(at));
+    out.parameters = shown(sim::parameters(at));
+}
+
+/// By the numbers of each tet's law, under the names of robot files.
+std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivatives& of) {
+    const sim::Description& d = model.description();
+    std::vector<std::vector<material::LawParameter>> laws;
+    for (const sim::Material& one : d.materials) laws.push_back(material::parameters(one.law));
+    const std::size_t tets = d.mesh.tet_count();
+    std::vector<TetGradient> out;
+    const auto entry = [&](const std::string& name, const std::string& unit) -> std::vector<double>& {
+        const auto there = std::ranges::find(out, name, &TetGradient::name);
+        if (there != out.end()) return there->values;
+        out.push_back({name, unit, std::vector<double>(tets, 0.0)});
+        return out.back().values;
+    };
+    for (std::size_t t = 0; t < tets; ++t) {
+        const int material = d.material_of_tet.empty()
+                                 ? d.material_of_region[static_cast<std::size_t>(d.mesh.region[t])]
+                                 : d.material_of_tet[t];
+        for (const material::LawParameter& number : laws[static_cast<std::size_t>(material)]) {
+            double slope = 0;
+            for (std::size_t c = 0; c < number.direction.size(); ++c)
+                slope += number.direction[c] * of.constants(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(t));
+            entry(number.name, number.unit)[t] = slope;
+        }
+    }
+    if (of.density.size() > 0) entry("density", "kg/m^3") = numbers(of.density);
+    return out;
+}
+
+}  // namespace
+
+ProgramGradient gradient(const Model& model, const Objective& objective, const GradientOptions& options,
+                         const Watch& watch) {
+    const robot::Scene& scene = model.data()->scene;
+    if (options.kept < 1) throw Failure(Failure::Kind::input, "at least one state has to be kept");
+    Judge judge(scene.model, objective);
+    library::WatchedProgress watched(watch);
+    JudgedProgress progress(watched, judge);
+    const sim::By by{.tets = options.tets, .rest = options.rest_positions};
+    auto found =
+        sim::program_gradient(scene.model, scene.robot.program, judge.objective(), {by, options.kept}, progress);
+    watched.rethrow();
+    judge.rethrow();
+    const sim::ProgramGradient of = library::value_of(std::move(found));
+    ProgramGradient out;
+    out.value = of.value;
+    out.values = of.values;
+    add_names(scene.model, scene.robot.program, out);
+    out.by_parameters = numbers(of.by.parameters);
+    if (options.rest_positions) out.by_rest_positions = library::points_of(linalg::points_of(of.by.rest));
+    if (options.tets) out.by_tets = by_tets(scene.model, of.by.tets);
+    for (const auto& instant : of.instants)
+        out.instants.push_back({instant.step, instant.time, numbers(instant.by_inputs)});
+    return out;
+}
+
+}  // namespace pliant

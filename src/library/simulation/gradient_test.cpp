@@ -1,0 +1,103 @@
+// Gradients of a state and of a program, as users of the library see them.
+#include "pliant/gradient.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "library/simulation/test_bar.hpp"
+#include "pliant/program.hpp"
+
+using namespace pliant;
+using test::bar;
+
+namespace {
+
+const char* const short_program = "program = { steps = 4, tolerance = 1e-10 }\n";
+
+std::size_t index_of(const std::vector<Parameter>& all, const std::string& name) {
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (all[k].name.find(name) != std::string::npos) return k;
+    FAIL("there is no parameter " << name);
+    return 0;
+}
+
+/// Height of the tip and tension at the end, both squared.
+Objective at_end() {
+    Objective objective;
+    objective.measures = {{Measure::Of::marker, "tip", {0, 0, 1}}, {Measure::Of::tension, "flexor", {}}};
+    objective.judge = [](int step, std::span<const double> at) {
+        return step < 4 ? Judgement{} : Judgement{1e4 * at[0] * at[0] + at[1] * at[1], {2e4 * at[0], 2 * at[1]}};
+    };
+    return objective;
+}
+
+double value_with(const std::string& change) {
+    const Robot given = bar(short_program);
+    return gradient(Model(change.empty() ? given : Robot::parse(test::bar_text(short_program), {}, {change})), at_end())
+        .value;
+}
+
+}  // namespace
+
+TEST_CASE("the gradient of a program is that of programs with a little of everything changed") {
+    const ProgramGradient of = gradient(Model(bar(short_program)), at_end(), {.rest_positions = true, .tets = true});
+    REQUIRE(of.values.size() == 4);
+    CHECK(of.value == near(value_with(""), {.relative = 1e-12}));
+    const std::size_t E = index_of(of.parameters, "youngs_modulus");
+    const double by_E =
+        (value_with("material.soft.youngs_modulus=1.001MPa") - value_with("material.soft.youngs_modulus=0.999MPa")) /
+        2e3;
+    CHECK(of.by_parameters[E] == near(by_E, {.relative = 1e-5}));
+    double sum = 0;
+    for (const TetGradient& one : of.by_tets)
+        if (one.name == "youngs_modulus")
+            for (const double by_tet : one.values) sum += by_tet;
+    CHECK(sum == near(of.by_parameters[E], {.relative = 1e-9}));
+    REQUIRE(of.instants.size() >= 4);
+    const std::size_t length = index_of(of.inputs, "length");
+    const double by_length =
+        (value_with("cable.flexor.target.shortening=4.002mm") - value_with("cable.flexor.target.shortening=3.998mm")) /
+        -4e-6;
+    CHECK(of.instants.back().by_inputs[length] == near(by_length, {.relative = 1e-5}));
+    CHECK(of.by_rest_positions.size() == Model(bar(short_program)).node_count());
+}
+
+TEST_CASE("a measure at a state has the value that is observed and the gradient of its own") {
+    const Model model(bar(short_program));
+    Stepper stepper(model, {.tolerance = 1e-11});
+    State state = stepper.rest();
+    Inputs inputs = stepper.program(1);
+    REQUIRE(stepper.step(state, inputs).arrived);
+    Linearisation at(state);
+    const Measure tension{Measure::Of::tension, "flexor", {}};
+    CHECK(at.value(tension) == near(stepper.observe(state).cables[0].tension_N, {.relative = 1e-12}));
+    const std::vector<double> by = at.gradient(tension).inputs;
+    const std::size_t length = index_of(at.inputs(), "length");
+    const auto with = [&](double change) {
+        State moved = state;
+        Inputs other = inputs;
+        other.cables[0].value += change;
+        REQUIRE(stepper.step(moved, other).arrived);
+        return stepper.observe(moved).cables[0].tension_N;
+    };
+    CHECK(by[length] == near((with(1e-6) - with(-1e-6)) / 2e-6, {.relative = 1e-6}));
+    CHECK_THROWS_WITH_AS((void)at.value({Measure::Of::tension, "flexr", {}}),
+                         "there is no cable \"flexr\"; did you mean \"flexor\"?", Failure);
+    CHECK_THROWS_WITH_AS((void)at.value({Measure::Of::spring_force, "s", {}}),
+                         "there is no spring \"s\": the robot has none", Failure);
+    CHECK_THROWS_AS((void)at.value({Measure::Of::marker, "tip", {std::nan(""), 0, 0}}), Failure);
+}
+
+TEST_CASE("what an objective throws is passed on, and slopes that do not fit are refused") {
+    const Model model(bar(short_program));
+    Objective objective = at_end();
+    objective.judge = [](int, std::span<const double>) -> Judgement { throw std::out_of_range("mine"); };
+    CHECK_THROWS_WITH_AS((void)gradient(model, objective), "mine", std::out_of_range);
+    objective.judge = [](int, std::span<const double>) { return Judgement{1, {1}}; };
+    CHECK_THROWS_WITH_AS((void)gradient(model, objective), "the objective gives 1 slopes of 2 measures", Failure);
+    objective.judge = nullptr;
+    CHECK_THROWS_AS((void)gradient(model, objective), Failure);
+    CHECK_THROWS_AS((void)gradient(model, at_end(), {}, [](std::string_view, double) { return false; }), Failure);
+}

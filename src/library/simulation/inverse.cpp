@@ -1,0 +1,119 @@
+#include "pliant/inverse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "library/base/calls.hpp"
+#include "library/simulation/inverse_data.hpp"
+#include "library/simulation/steering.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_goals.hpp"
+
+namespace pliant {
+namespace {
+
+const char* unit_of(const sim::Goal& goal) {
+    switch (goal.kind) {
+        case sim::GoalKind::direction:
+            return "rad";
+        case sim::GoalKind::contact_force:
+        case sim::GoalKind::support_force:
+            return "N";
+        default:
+            return "m";
+    }
+}
+
+GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& state, std::size_t waypoint) {
+    return {goal.name,
+            state.reached,
+            state.error,
+            unit_of(goal),
+            library::points_of(goal.at(waypoint)),
+            library::points_of(state.got)};
+}
+
+}  // namespace
+
+double library::inverse_tolerance(const robot::Robot& robot) {
+    constexpr double tightest_needed = 1e-5;
+    return std::min(robot.program.tolerance, tightest_needed);
+}
+
+InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
+    if (options.starts < 0) throw Failure(Failure::Kind::input, "the number of starts is negative");
+    const robot::Scene& scene = model.data()->scene;
+    sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model));
+    sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);
+    stepping.tolerance = library::inverse_tolerance(scene.robot);
+    sim::Stepper stepper(scene.model, stepping);
+    library::WatchedProgress progress(watch);
+    sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {options.starts}, progress);
+    progress.rethrow();
+    if (found.cancelled && found.waypoints.empty()) library::check(cancelled());
+    std::vector<SteeredInput> inputs = library::steered_inputs(scene.model, task);
+    return InverseResult(std::make_shared<const InverseResult::Data>(
+        InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs)}));
+}
+
+InverseResult::InverseResult(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+bool InverseResult::reached() const {
+    return data_->result.reached;
+}
+const std::string& InverseResult::message() const {
+    return data_->result.message;
+}
+const std::vector<std::string>& InverseResult::notes() const {
+    return data_->result.notes;
+}
+const std::vector<SteeredInput>& InverseResult::inputs() const {
+    return data_->inputs;
+}
+std::size_t InverseResult::waypoints_wanted() const {
+    return data_->task.waypoints();
+}
+std::size_t InverseResult::waypoint_count() const {
+    return data_->result.waypoints.size();
+}
+
+Waypoint InverseResult::waypoint(std::size_t index) const {
+    if (index >= waypoint_count())
+        throw Failure(Failure::Kind::input,
+                      fmt::format("there is no waypoint {}; there are {}", index, waypoint_count()));
+    const sim::inverse::Waypoint& at = data_->result.waypoints[index];
+    Waypoint out;
+    out.reached = at.reached;
+    out.time = at.state.time;
+    for (std::size_t g = 0; g < at.goals.size(); ++g)
+        out.goals.push_back(goal_result(data_->task.goals[g], at.goals[g], index));
+    out.inputs = at.values;
+    for (const sim::inverse::Limit& limit : at.limits) out.limits.push_back(sim::inverse::text(limit));
+    out.result = library::result_of(at.state);
+    out.observed = library::observation_of(at.state);
+    out.positions = library::points_of(at.state.positions);
+    out.forward_solutions = at.work.forward;
+    out.wall_s = at.wall_s;
+    return out;
+}
+
+std::string InverseResult::text() const {
+    std::string lines;
+    for (std::size_t k = 0; k < waypoint_count(); ++k) {
+        const sim::inverse::Waypoint& at = data_->result.waypoints[k];
+        lines += report::waypoint_line(data_->report(), k) + "\n";
+        for (const sim::inverse::Limit& limit : at.limits)
+            fmt::format_to(std::back_inserter(lines), "  {}\n", sim::inverse::text(limit));
+        if (!at.reached && at.limits.empty()) lines += "  the actuators move the robot in other directions only\n";
+    }
+    return lines;
+}
+
+std::string InverseResult::json() const {
+    return report::inverse_json(data_->report());
+}
+
+}  // namespace pliant

@@ -1,0 +1,30 @@
+// What stands behind an InverseResult.
+#pragma once
+
+#include <memory>
+
+#include "library/simulation/data.hpp"
+#include "pliant/inverse.hpp"
+#include "presentation/report/inverse_tables.hpp"
+#include "simulation/inverse/follow.hpp"
+
+namespace pliant {
+
+struct InverseResult::Data {
+    std::shared_ptr<const Model::Data> model;
+    sim::InverseTask task;
+    sim::inverse::InverseResult result;
+    std::vector<SteeredInput> inputs;
+
+    [[nodiscard]] report::InverseReport report() const {
+        return {model->scene.robot.name, model->scene.model, task, result};
+    }
+};
+
+namespace library {
+
+/// Equilibria that are compared with a goal have to be nearer to it than its tolerance is wide.
+[[nodiscard]] double inverse_tolerance(const robot::Robot& robot);
+
+}  // namespace library
+}  // namespace pliant

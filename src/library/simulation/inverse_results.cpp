@@ -1,0 +1,133 @@
+// The folder of an InverseResult: the program that was found is written, read back and run, as its users will.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "base/core/files.hpp"
+#include "library/base/calls.hpp"
+#include "library/simulation/inverse_data.hpp"
+#include "presentation/report/results.hpp"
+#include "robot/file/program_writer.hpp"
+#include "robot/file/robot_document.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/run/simulate.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a robot that was given as text becomes in the folder, so that its program stands on something.
+constexpr const char* robot_name = "robot.toml";
+
+/// With friction the way matters: what was found in one step is repeated in one step.
+int steps_per_waypoint(const InverseResult::Data& found) {
+    const robot::Robot& robot = found.model->scene.robot;
+    const bool has_friction = std::ranges::any_of(robot.cables, [](const auto& c) { return c.friction > 0; }) ||
+                              (robot.contact && robot.contact->friction > 0) ||
+                              std::ranges::any_of(robot.obstacles, [](const auto& o) { return o.friction > 0; });
+    constexpr std::size_t fewest = 10;
+    const std::size_t waypoints = found.task.waypoints();
+    return has_friction ? 1 : static_cast<int>((fewest + waypoints - 1) / waypoints);
+}
+
+/// A program, and what it stands on where that is no file.
+struct ProgramFiles {
+    std::string program;
+    std::string robot{};  ///< empty: a file
+};
+
+ProgramFiles program_files(const InverseResult::Data& found, const fs::path& folder, int steps_each) {
+    std::vector<robot::ProgramPoint> points;
+    for (const sim::inverse::Waypoint& at : found.result.waypoints) {
+        robot::ProgramPoint point{at.state.time, {}};
+        for (std::size_t i = 0; i < at.values.size(); ++i)
+            point.values.emplace_back(found.task.inputs[i].name, at.values[i]);
+        points.push_back(std::move(point));
+    }
+    const robot::Robot& robot = found.model->scene.robot;
+    const Robot::Data& given = *found.model->robot;
+    const auto program = [&](const fs::path& file, const std::vector<std::string>& changes) {
+        return library::value_of(
+            robot::program_text(robot, file, changes, folder, points, steps_each, library::inverse_tolerance(robot)));
+    };
+    if (given.has_file) return {program(given.file, given.changes)};
+    return {program(folder / robot_name, {}),
+            library::value_of(robot::robot_text(given.text, given.file, given.changes, folder))};
+}
+
+/// The robot of the program, on the mesh that was given or on one that is made anew.
+robot::Scene scene_of(const InverseResult::Data& found, robot::Robot robot, Progress& progress) {
+    const std::optional<mesh::TetMesh>& mesh = found.model->given_mesh;
+    return library::value_of(mesh ? robot::build_scene(std::move(robot), *mesh)
+                                  : robot::build_scene(std::move(robot), progress));
+}
+
+/// Where the program led elsewhere than the waypoints were found, by more than their goals allow.
+std::vector<std::string> departures(const InverseResult::Data& found, const sim::Trajectory& run, int steps_each) {
+    std::vector<std::string> lines;
+    if (!run.converged) lines.push_back("the program that was found does not run to its end: " + run.message);
+    for (std::size_t k = 0; k < found.result.waypoints.size(); ++k) {
+        const std::size_t step = (k + 1) * static_cast<std::size_t>(steps_each);
+        if (step >= run.steps.size()) break;
+        for (const sim::Goal& goal : found.task.goals) {
+            for (const std::size_t marker : goal.markers) {
+                const Vec3 there = run.steps[step].markers[marker].position_m;
+                const double off = norm(there - found.result.waypoints[k].state.markers[marker].position_m);
+                if (goal.kind != sim::GoalKind::position || !(off > goal.tolerance)) continue;
+                lines.push_back(
+                    fmt::format("at waypoint {} the program leads marker \"{}\" {:.3g} mm from where it was "
+                                "found: there is more than one equilibrium",
+                                k + 1, run.steps[step].markers[marker].name, 1e3 * off));
+            }
+        }
+    }
+    return lines;
+}
+
+/// Writes the program, runs it as its file says, and writes all that came of it. Gives what departures() says.
+std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
+                              Progress& progress) {
+    const int steps_each = steps_per_waypoint(found);
+    const ProgramFiles files = program_files(found, final_folder, steps_each);
+    if (!files.robot.empty()) library::check(write_file(folder / robot_name, files.robot));
+    library::check(write_file(folder / "program.toml", files.program));
+    const robot::Scene scene = scene_of(found, library::value_of(robot::load_robot(folder / "program.toml")), progress);
+    const sim::Trajectory run = sim::run(scene.model, scene.robot.program, progress);
+    if (progress.cancelled()) library::check(cancelled());
+    report::Simulation simulation = report::simulation_of(scene.robot, scene.model, run);
+    simulation.measured = report::wanted_paths(found.report());
+    simulation.measured_as = "wanted";
+    const auto written = library::value_of(report::write_results(folder, simulation, {}, progress, progress));
+    if (written.drawing_stopped) library::check(cancelled());
+    library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
+    library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
+    return departures(found, run, steps_each);
+}
+
+}  // namespace
+
+std::vector<std::string> InverseResult::write(const fs::path& folder, const Watch& watch) const {
+    if (data_->result.waypoints.empty())
+        throw Failure(Failure::Kind::failed, "there is nothing to write: " + message());
+    library::WatchedProgress progress(watch);
+    std::vector<std::string> warnings;
+    std::exception_ptr thrown;
+    const Status status = write_folder(folder, "summary.json", [&](const fs::path& aside) -> Status {
+        try {
+            warnings = fill(*data_, aside, folder, progress);
+        } catch (...) {
+            thrown = std::current_exception();
+            return cancelled();
+        }
+        return {};
+    });
+    progress.rethrow();
+    if (thrown) std::rethrow_exception(thrown);
+    library::check(status);
+    return warnings;
+}
+
+}  // namespace pliant

@@ -1,0 +1,128 @@
+// Goals, workspaces and gradients of programs, as users of the library see them.
+#include "pliant/inverse.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/core/files.hpp"
+#include "base/core/near.hpp"
+#include "base/core/test_folder.hpp"
+#include "library/simulation/test_bar.hpp"
+#include "pliant/program.hpp"
+#include "pliant/workspace.hpp"
+
+using namespace pliant;
+using test::bar;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A bar whose tip has a goal and whose cable may be shortened by up to 8 mm.
+Robot with_goal(const std::string& wanted) {
+    return bar("goal = [{ name = \"reach\", marker = \"tip\", " + wanted + " }]\n");
+}
+
+const char* const reachable = "plane = { point = [0, 0, 8], normal = [0, 0, 1] }, tolerance = \"0.01 mm\"";
+const char* const too_high = "plane = { point = [0, 0, 80], normal = [0, 0, 1] }, tolerance = \"0.01 mm\"";
+
+}  // namespace
+
+TEST_CASE("a goal is met, and a step to the inputs that were found leads there") {
+    const Model model(with_goal(reachable));
+    const InverseResult result = inverse(model);
+    REQUIRE(result.reached());
+    CHECK(result.message().empty());
+    REQUIRE(result.inputs().size() == 1);
+    CHECK(result.inputs()[0].name == "flexor");
+    CHECK(result.inputs()[0].unit == "m");
+    CHECK(result.inputs()[0].high == near(0.008, {.relative = 1e-12}));
+    CHECK(result.waypoints_wanted() == 1);
+    REQUIRE(result.waypoint_count() == 1);
+    const Waypoint at = result.waypoint(0);
+    CHECK(at.reached);
+    CHECK(at.limits.empty());
+    REQUIRE(at.goals.size() == 1);
+    CHECK(at.goals[0].unit == "m");
+    CHECK(at.goals[0].error < 1e-5);
+    CHECK(at.forward_solutions > 0);
+    CHECK(at.positions.size() == model.node_count());
+    CHECK(at.observed.markers[0].position_m[2] == near(0.008, {.absolute = 1e-5}));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = stepper.program(at.time);
+    inputs.cables[0] = {Drive::By::length, 0.06 - at.inputs[0]};
+    REQUIRE(stepper.step(state, inputs).arrived);
+    CHECK(stepper.observe(state).markers[0].position_m[2] == near(0.008, {.absolute = 2e-5}));
+    CHECK_THROWS_WITH_AS((void)result.waypoint(1), "there is no waypoint 1; there are 1", Failure);
+}
+
+TEST_CASE("what cannot be reached ends as near as it gets and says what stops it") {
+    const InverseResult result = inverse(Model(with_goal(too_high)));
+    CHECK_FALSE(result.reached());
+    REQUIRE(result.waypoint_count() == 1);
+    const Waypoint at = result.waypoint(0);
+    CHECK_FALSE(at.reached);
+    CHECK(at.inputs[0] == near(0.008, {.relative = 1e-9}));
+    REQUIRE(at.limits.size() == 1);
+    CHECK(at.limits[0] == "flexor is at the upper end of its range");
+    CHECK(result.text().find("waypoint 1 of 1: not reached") != std::string::npos);
+    CHECK(result.json().find("\"reached\": false") != std::string::npos);
+}
+
+TEST_CASE("robots that cannot be asked for a motion are refused in one line") {
+    CHECK_THROWS_AS((void)inverse(Model(bar())), Failure);
+    CHECK_THROWS_AS((void)inverse(Model(with_goal(reachable)), {.starts = -1}), Failure);
+    const Model model(with_goal(reachable));
+    CHECK_THROWS_AS((void)inverse(model, {}, [](std::string_view, double) { return false; }), Failure);
+}
+
+TEST_CASE("the folder of a robot that was given as text holds what its program stands on") {
+    const test::Folder folder;
+    const InverseResult result = inverse(Model(with_goal(reachable)));
+    CHECK(result.write(folder / "out").empty());
+    for (const char* file : {"program.toml", "robot.toml", "inverse.json", "waypoints.csv", "summary.json"})
+        CHECK_MESSAGE(fs::exists(folder / "out" / file), file);
+    const ProgramResult again = run(Model(Robot::load(folder / "out/program.toml")));
+    REQUIRE(again.converged());
+    CHECK(again.step(again.step_count() - 1).observed.markers[0].position_m[2] == near(0.008, {.absolute = 2e-5}));
+    CHECK_THROWS_AS((void)result.write(folder / "none", [](std::string_view, double) { return false; }), Failure);
+    CHECK_FALSE(fs::exists(folder / "none"));
+}
+
+TEST_CASE("a workspace that was cancelled goes on from its checkpoint to the same samples") {
+    const test::Folder folder;
+    const Model model(with_goal(reachable));
+    const WorkspaceOptions small{.side = 4, .between = 0};
+    const Workspace whole = workspace(model, small);
+    REQUIRE(whole.sample_count() == 4);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const WorkspaceSample sample = whole.sample(k);
+        CHECK(sample.found);
+        CHECK((sample.tensions_N[0] > 0) == (sample.inputs[0] > 0));
+        CHECK((sample.markers[0][2] > 0.0051) == (sample.inputs[0] > 0));
+    }
+    WorkspaceOptions kept = small;
+    kept.checkpoint = folder / "kept";
+    CHECK_THROWS_AS((void)workspace(model, kept, [](std::string_view, double share) { return share < 0.5; }), Failure);
+    kept.resume = true;
+    const Workspace resumed = workspace(model, kept);
+    for (std::size_t k = 0; k < 4; ++k) CHECK(resumed.sample(k).markers == whole.sample(k).markers);
+    resumed.write(folder / "out");
+    CHECK(fs::exists(folder / "out/workspace.csv"));
+    CHECK(fs::exists(folder / "out/workspace.png"));
+    resumed.remove_checkpoint();
+    CHECK_FALSE(fs::exists(folder / "kept"));
+    CHECK_THROWS_AS((void)whole.sample(4), Failure);
+    CHECK_THROWS_AS((void)whole.sheets(1), Failure);
+}
+
+TEST_CASE("a checkpoint never takes the place of a foreign folder") {
+    const test::Folder folder;
+    fs::create_directories(folder / "kept");
+    REQUIRE(write_file(folder / "kept/mine", "mine"));
+    const Model model(with_goal(reachable));
+    CHECK_THROWS_AS((void)workspace(model, {.side = 2, .between = 0, .checkpoint = folder / "kept"}), Failure);
+    CHECK(fs::exists(folder / "kept/mine"));
+}

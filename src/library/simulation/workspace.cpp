@@ -1,0 +1,175 @@
+#include "pliant/workspace.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "base/core/files.hpp"
+#include "library/base/calls.hpp"
+#include "library/simulation/data.hpp"
+#include "library/simulation/steering.hpp"
+#include "presentation/report/workspace_results.hpp"
+#include "simulation/inverse/workspace_record.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_goals.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The pieces that are done, in a folder with what they belong to.
+class KeptPieces {
+public:
+    static KeptPieces create(const fs::path& folder, const std::string& origin) {
+        if (!may_replace_folder(folder, origin_name))
+            throw Failure(Failure::Kind::input,
+                          folder.string() + ": is there already, and is no checkpoint; move it away");
+        std::error_code code;
+        fs::remove_all(folder, code);
+        fs::create_directories(folder, code);
+        if (code)
+            throw Failure(Failure::Kind::failed,
+                          fmt::format("{}: cannot be made: {}", folder.string(), code.message()));
+        library::check(write_file(folder / origin_name, origin));
+        return KeptPieces(folder);
+    }
+    static KeptPieces open(const fs::path& folder, const std::string& origin) {
+        const Result<std::string> known = read_file(folder / origin_name);
+        if (!known) throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with");
+        if (*known != origin)
+            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options");
+        return KeptPieces(folder);
+    }
+
+    [[nodiscard]] std::optional<sim::inverse::WorkspacePiece> read(std::size_t k) const {
+        const Result<std::string> bytes = read_file(file_of(k));
+        if (!bytes) return std::nullopt;
+        auto piece = sim::inverse::piece_from_bytes(*bytes);
+        return piece ? std::optional(std::move(*piece)) : std::nullopt;
+    }
+    [[nodiscard]] Status write(std::size_t k, const sim::inverse::WorkspacePiece& piece) const {
+        return write_file(file_of(k), sim::inverse::piece_bytes(piece));
+    }
+    [[nodiscard]] const fs::path& folder() const { return folder_; }
+
+private:
+    static constexpr const char* origin_name = "origin";
+    explicit KeptPieces(fs::path folder) : folder_(std::move(folder)) {}
+    [[nodiscard]] fs::path file_of(std::size_t k) const { return folder_ / fmt::format("piece_{:04}", k); }
+    fs::path folder_;
+};
+
+std::optional<KeptPieces> open_checkpoint(const Model::Data& model, const WorkspaceOptions& options) {
+    if (options.checkpoint.empty()) {
+        if (options.resume)
+            throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
+        return std::nullopt;
+    }
+    const std::string origin = fmt::format("{} {}\n{}", options.side, options.between, model.robot->origin());
+    return options.resume ? KeptPieces::open(options.checkpoint, origin)
+                          : KeptPieces::create(options.checkpoint, origin);
+}
+
+void check_options(const WorkspaceOptions& options) {
+    constexpr int most_places = 1000, most_between = 1000000;
+    if (options.side < 2 || options.side > most_places)
+        throw Failure(Failure::Kind::input, fmt::format("{} places along each input are not possible; 2 to {} are",
+                                                        options.side, most_places));
+    if (options.between < 0 || options.between > most_between)
+        throw Failure(Failure::Kind::input, fmt::format("{} inputs between the sheets are not possible; 0 to {} are",
+                                                        options.between, most_between));
+}
+
+}  // namespace
+
+struct Workspace::Data {
+    std::shared_ptr<const Model::Data> model;
+    sim::InverseTask task;
+    sim::inverse::Workspace found;
+    std::vector<SteeredInput> inputs;
+    std::vector<std::pair<std::size_t, const sim::inverse::WorkspaceSample*>> samples;  ///< with their piece
+    fs::path checkpoint;
+
+    [[nodiscard]] report::WorkspaceReport report() const {
+        return {model->scene.robot.name, model->scene.model, task, found};
+    }
+};
+
+Workspace workspace(const Model& model, const WorkspaceOptions& options, const Watch& watch) {
+    check_options(options);
+    const robot::Scene& scene = model.data()->scene;
+    sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
+    const std::optional<KeptPieces> kept = open_checkpoint(*model.data(), options);
+    library::WatchedProgress progress(watch);
+    auto found = sim::inverse::find_workspace(
+        scene.model, sim::stepper_options(scene.robot.program), task, {options.side, options.between},
+        [&](std::size_t k) { return kept ? kept->read(k) : std::nullopt; },
+        [&](std::size_t k, const auto& piece) { return kept ? kept->write(k, piece) : Status(); }, progress);
+    progress.rethrow();
+    auto data = std::make_shared<Workspace::Data>();
+    data->found = library::value_of(std::move(found));
+    if (data->found.cancelled) library::check(cancelled());
+    data->model = model.data();
+    data->task = std::move(task);
+    data->inputs = library::steered_inputs(scene.model, data->task);
+    data->checkpoint = options.checkpoint;
+    for (std::size_t p = 0; p < data->found.pieces.size(); ++p) {
+        for (const sim::inverse::WorkspaceSample& sample : data->found.pieces[p].samples)
+            data->samples.emplace_back(p, &sample);
+    }
+    return Workspace(std::move(data));
+}
+
+Workspace::Workspace(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+const std::vector<SteeredInput>& Workspace::inputs() const {
+    return data_->inputs;
+}
+std::size_t Workspace::sample_count() const {
+    return data_->samples.size();
+}
+
+WorkspaceSample Workspace::sample(std::size_t index) const {
+    if (index >= sample_count())
+        throw Failure(Failure::Kind::input, fmt::format("there is no sample {}; there are {}", index, sample_count()));
+    const auto& [piece, sample] = data_->samples[index];
+    return {piece,
+            sample->values,
+            sample->found,
+            library::points_of(sample->markers),
+            sample->tensions_N,
+            sample->pressures_Pa};
+}
+
+Surface Workspace::sheets(std::size_t marker) const {
+    const std::size_t markers = data_->model->scene.model.description().markers.size();
+    if (marker >= markers)
+        throw Failure(Failure::Kind::input, fmt::format("there is no marker {}; there are {}", marker, markers));
+    const mesh::TriMesh surface = report::workspace_surface(data_->found, marker);
+    return {library::points_of(surface.points), surface.triangles};
+}
+
+std::string Workspace::json() const {
+    return report::workspace_json(data_->report());
+}
+
+void Workspace::write(const fs::path& folder, const Watch& watch) const {
+    library::WatchedProgress progress(watch);
+    const Status written = report::write_workspace(folder, data_->model->scene.robot, data_->report(), progress);
+    progress.rethrow();
+    library::check(written);
+}
+
+void Workspace::remove_checkpoint() const {
+    if (data_->checkpoint.empty()) return;
+    std::error_code code;
+    fs::remove_all(data_->checkpoint, code);
+    if (code)
+        throw Failure(Failure::Kind::failed,
+                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()));
+}
+
+}  // namespace pliant
