@@ -1,10 +1,13 @@
-// What a page asks of the slicer.
+// What a page asks of the slicer, and of searches.
 #include "input.hpp"
+#include "presentation/studio/search_order.hpp"
 #include "presentation/studio/slice_order.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = as_text(data, size);
     (void)pliant::studio::read_slice_order(text);
     (void)pliant::studio::printer_name_of(text);
+    (void)pliant::studio::parse_goal_order(text);
+    (void)pliant::studio::parse_identify_order(text);
     return 0;
 }

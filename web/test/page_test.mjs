@@ -138,6 +138,75 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   assert.deepEqual(wrong, []);
 });
 
+test('a goal is found without editing the file: reached or the nearest point, gone to, and used as a program', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  // A place that the tip has with a cable of 0.88 is one that it can get to.
+  const want = simulated(0.88);
+  await page.getByTestId('tab-goal').click();
+  await page.getByTestId('goal-here').click();
+  await page.getByTestId('goal-add').click();
+  const set = async (id, value) => {
+    await page.getByTestId(id).fill(String(value));
+    await page.getByTestId(id).press('Enter');
+  };
+  for (const [k, axis] of ['x', 'y', 'z'].entries()) await set(`goal-0-${axis}`, want[k].toFixed(2));
+  await set('goal-1-z', 300);
+  await page.getByTestId('find-goal').click();
+  await page.waitForSelector('[data-testid=waypoint-2]', { timeout: 60_000 });
+  assert.equal(await page.getByTestId('waypoint-1').getAttribute('data-reached'), 'true');
+  assert.equal(await page.getByTestId('waypoint-2').getAttribute('data-reached'), 'false');
+  assert.match(await page.getByTestId('waypoint-2').textContent(), /nearest point.*flexor/);
+  const started = await tag(page);
+  await page.getByTestId('go-1').click();
+  await answered(page, started);
+  await page.getByTestId('tab-move').click();
+  assert.ok(Math.abs(Number(await page.getByTestId('number-flexor').inputValue()) - 0.88) < 2e-3);
+  near(await marker(page, 'tip'), want, 0.12, 'tip');
+  await page.getByTestId('tab-goal').click();
+  await page.getByTestId('goal-program').click();
+  await page.getByTestId('tab-file').click();
+  await page.waitForFunction(() => document.querySelector('[data-testid=robot-file]').value.includes('[[program.key]]'));
+  assert.match(await page.getByTestId('robot-file').inputValue(), /time = "1\.00 s"\nflexor = 0\.[89]/);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => !document.querySelector('[data-testid=robot-file]').value.includes('[[program.key]]'));
+  await page.getByTestId('tab-goal').click();
+  await set('goal-low-flexor', 2);
+  await page.getByTestId('find-goal').click();
+  assert.match(await page.getByTestId('refused-goal').textContent(), /flexor: the range from 2 to 1 is empty/);
+  assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
+});
+
+test('numbers are found from a table of measurements and put into the file', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  const rows = [0.85, 0.9, 0.95].map((ratio) => {
+    const text = execFileSync(program, ['simulate', robot, '--json', '--set', 'mesh.order=1', '--set', 'material.soft.youngs_modulus=9MPa', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
+    const step = JSON.parse(text).steps.at(-1);
+    return `${((1 - ratio) / 0.15).toFixed(6)},${step.markers.tip[2]}`;
+  });
+  await page.getByTestId('tab-identify').click();
+  assert.ok(await page.getByTestId('find-identify').isDisabled());
+  await page.getByTestId('unknown-material.soft.youngs_modulus').check();
+  await page.getByTestId('bounds-material.soft.youngs_modulus').fill('1 MPa..40 MPa');
+  await page.getByTestId('measured').setInputFiles({ name: 'hole.csv', mimeType: 'text/csv', buffer: Buffer.from('time,nothing\n1,2\n') });
+  await page.getByTestId('find-identify').click();
+  assert.match(await page.getByTestId('refused-identify').textContent(), /hole\.csv:1: the robot has nothing that column "nothing" could be/);
+  await page.getByTestId('measured').setInputFiles({ name: 'tip.csv', mimeType: 'text/csv', buffer: Buffer.from(`time,tip_z_mm\n${rows.join('\n')}\n`) });
+  await page.getByTestId('find-identify').click();
+  await page.waitForSelector('[data-testid="found-material.soft.youngs_modulus"]', { timeout: 60_000 });
+  assert.match(await page.getByTestId('found-material.soft.youngs_modulus').textContent(), /12 MPa(9|8\.99\d*|9\.00\d*) MPa/);
+  await page.waitForFunction(() => document.querySelector('.found-plot')?.naturalWidth > 100);
+  await page.getByTestId('identify-use').click();
+  await page.getByTestId('tab-file').click();
+  await page.waitForFunction(() => Math.abs(Number(document.querySelector('[data-testid=modulus-soft]')?.value) - 9) < 0.02);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => document.querySelector('[data-testid=modulus-soft]')?.value === '12');
+  assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
+});
+
 test('a mistake in the robot file shows at its line', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);

@@ -100,6 +100,16 @@ test('tables in one line, and names in quotes', () => {
   assert.equal(page.setKey('[material."soft"]\na = 1', 'material.soft', 'a', '2'), '[material."soft"]\na = 2');
 });
 
+test('a number is set by the path that --set has, in tables and in entries of lists by their name', () => {
+  const file = '[material.soft]\nyoungs_modulus = "1 MPa"\n\n[[cable]]\nname = "left"\nfriction = 0.1\n\n[[cable]]\nname = "right" # the other\nfriction = 0.2\n[contact]\nfriction = 0.3\n';
+  assert.equal(page.assign(file, 'material.soft.youngs_modulus', '"2 MPa"'), file.replace('1 MPa', '2 MPa'));
+  assert.equal(page.assign(file, 'cable.right.friction', '0.5'), file.replace('0.2', '0.5'));
+  assert.equal(page.assign(file, 'cable.left.target.offset', '"1 mm"'), file.replace('name = "left"\n', 'name = "left"\ntarget.offset = "1 mm"\n'));
+  assert.equal(page.assign(file, 'contact.friction', '0'), file.replace('0.3', '0'));
+  assert.equal(page.assign(file, 'cable.middle.friction', '0'), null);
+  assert.equal(page.assign(file, 'chamber.left.friction', '0'), null);
+});
+
 test('the colours of a field are those of the pictures, and stop at the ends', () => {
   assert.deepEqual(page.fieldColour(0), [0.267, 0.004, 0.329]);
   assert.deepEqual(page.fieldColour(1), [0.992, 0.906, 0.145]);

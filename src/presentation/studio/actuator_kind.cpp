@@ -30,4 +30,10 @@ ActuatorKind kind_of(const sim::ChamberTarget& target) {
     return {"volume_ratio"};
 }
 
+ActuatorKind kind_of(const sim::Description& robot, std::size_t actuator) {
+    const std::size_t cables = robot.cables.size();
+    return actuator < cables ? kind_of(robot.cables[actuator].target)
+                             : kind_of(robot.chambers[actuator - cables].target);
+}
+
 }  // namespace pliant::studio

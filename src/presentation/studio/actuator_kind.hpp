@@ -1,6 +1,8 @@
 // How the page names what drives an actuator, and in which unit it counts it.
 #pragma once
 
+#include <cstddef>
+
 #include "simulation/parts/description.hpp"
 
 namespace pliant::studio {
@@ -12,5 +14,7 @@ struct ActuatorKind {
 
 [[nodiscard]] ActuatorKind kind_of(const sim::CableTarget& target);
 [[nodiscard]] ActuatorKind kind_of(const sim::ChamberTarget& target);
+/// `actuator`: first the cables, then the chambers.
+[[nodiscard]] ActuatorKind kind_of(const sim::Description& robot, std::size_t actuator);
 
 }  // namespace pliant::studio

@@ -87,8 +87,7 @@ std::vector<ActuatorValue> LedMarker::actuators() const {
     std::vector<ActuatorValue> out;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const sim::Steered& input = drag_.inputs()[i];
-        const std::size_t a = input.actuator, cables = d.cables.size();
-        const ActuatorKind kind = a < cables ? kind_of(d.cables[a].target) : kind_of(d.chambers[a - cables].target);
+        const ActuatorKind kind = kind_of(d, input.actuator);
         out.push_back({input.name, kind.name, kind.per_unit * values[i]});
     }
     return out;

@@ -24,6 +24,7 @@ std::vector<Route> all_routes() {
     std::vector<Route> routes;
     add_project_routes(routes);
     add_simulation_routes(routes);
+    add_search_routes(routes);
     add_make_routes(routes);
     add_print_routes(routes);
     routes.push_back(

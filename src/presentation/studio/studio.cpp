@@ -47,6 +47,7 @@ Studio::Studio(ProjectFolder folder, std::string version)
     const auto send = [this](const std::string& json) { hub_.send_text(json); };
     simulation_ = std::make_unique<SimulationSession>(
         SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
+    search_ = std::make_unique<SearchSession>(send);
     make_ = std::make_unique<MakeSession>(send, version_);
     print_ = std::make_unique<PrintSession>(send);
 }
@@ -202,6 +203,7 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
         send(document_event(document_));
     }
     for (const std::string& news : simulation_->news()) send(news);
+    for (const std::string& news : search_->news()) send(news);
     for (const std::string& news : make_->news()) send(news);
     for (const std::string& news : print_->news()) send(news);
     if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);

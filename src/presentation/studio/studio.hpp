@@ -13,6 +13,7 @@
 #include "presentation/studio/print_session.hpp"
 #include "presentation/studio/project_folder.hpp"
 #include "presentation/studio/routes.hpp"
+#include "presentation/studio/search_session.hpp"
 #include "presentation/studio/simulation_session.hpp"
 
 namespace pliant::studio {
@@ -43,6 +44,7 @@ public:
     [[nodiscard]] Hub& hub() { return hub_; }
     [[nodiscard]] ProjectFolder& folder() { return folder_; }
     [[nodiscard]] SimulationSession& simulation() { return *simulation_; }
+    [[nodiscard]] SearchSession& search() { return *search_; }
     [[nodiscard]] MakeSession& make() { return *make_; }
     [[nodiscard]] PrintSession& print() { return *print_; }
     [[nodiscard]] const std::string& version() const { return version_; }
@@ -80,6 +82,7 @@ private:
     std::string version_;
     Hub hub_;
     std::unique_ptr<SimulationSession> simulation_;
+    std::unique_ptr<SearchSession> search_;
     std::unique_ptr<MakeSession> make_;
     std::unique_ptr<PrintSession> print_;
     std::vector<Route> routes_;

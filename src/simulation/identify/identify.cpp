@@ -89,7 +89,7 @@ private:
         for (std::size_t k = 0; k < unknowns_.size(); ++k) {
             for (std::size_t other = 0; other < k; ++other) {
                 if (unknowns_[other].key == unknowns_[k].key)
-                    return input_error("--unknown {}: is named twice", unknowns_[k].key);
+                    return input_error("{}: is named twice", unknowns_[k].key);
             }
         }
         if (fitted_.size() < unknowns_.size())

@@ -237,7 +237,7 @@ TEST_CASE("what cannot be done is said in one line") {
         return result ? "" : result.error().message;
     };
     CHECK(problem({}) == "there is nothing to find; name an unknown");
-    CHECK(problem({E[0], E[0]}) == "--unknown material.soft.youngs_modulus: is named twice");
+    CHECK(problem({E[0], E[0]}) == "material.soft.youngs_modulus: is named twice");
     CHECK(problem({E[0], bar.unknowns({"material.firm.youngs_modulus"})[0]}) ==
           "m.csv: 1 measured values cannot give 2 unknowns");
     struct Stop : Progress {

@@ -134,20 +134,20 @@ Result<double> read_bound(const Unknown& unknown, std::string_view text) {
     const Unit* unit = find_unit(unknown.unit);
     if (unit != nullptr) {
         Result<double> value = parse_quantity(text, unit->dimension);
-        if (!value) return input_error("--unknown {}: {}", unknown.key, value.error().message);
+        if (!value) return input_error("{}: {}", unknown.key, value.error().message);
         return value;
     }
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code == std::errc() && end == text.data() + text.size() && std::isfinite(value)) return value;
-    return input_error("--unknown {}: \"{}\" is not a number", unknown.key, text.substr(0, 40));
+    return input_error("{}: \"{}\" is not a number", unknown.key, text.substr(0, 40));
 }
 
 Status take_bounds(Unknown& unknown, std::string_view text) {
     const std::size_t dots = text.find("..");
     if (dots == std::string_view::npos)
         return input_error(
-            "--unknown {}: \"{}\" is no range; write LOW..HIGH, as in {}", unknown.key, text.substr(0, 40),
+            "{}: \"{}\" is no range; write LOW..HIGH, as in {}", unknown.key, text.substr(0, 40),
             find_unit(unknown.unit) != nullptr ? fmt::format("\"1 {0}..2 {0}\"", find_unit(unknown.unit)->shown)
                                                : "0.1..0.4");
     const Result<double> low = read_bound(unknown, text.substr(0, dots));
@@ -155,12 +155,12 @@ Status take_bounds(Unknown& unknown, std::string_view text) {
     const Result<double> high = read_bound(unknown, text.substr(dots + 2));
     if (!high) return tl::unexpected(high.error());
     if (!(*low < *high))
-        return input_error("--unknown {}: the range from {} to {} is empty; LOW must be below HIGH", unknown.key,
+        return input_error("{}: the range from {} to {} is empty; LOW must be below HIGH", unknown.key,
                            unknown.shown(*low), unknown.shown(*high));
     if (unknown.scale == Scale::log && !(*low >= 0))
-        return input_error("--unknown {}: {} is not possible; it is above zero", unknown.key, unknown.shown(*low));
+        return input_error("{}: {} is not possible; it is above zero", unknown.key, unknown.shown(*low));
     if (unknown.scale == Scale::poisson && !(*low > -1 && *high < 0.5))
-        return input_error("--unknown {}: Poisson's ratio is above -1 and below 0.5", unknown.key);
+        return input_error("{}: Poisson's ratio is above -1 and below 0.5", unknown.key);
     unknown.low = unknown.scale == Scale::log ? std::max(*low, *high / widest_factor) : *low;
     unknown.high = *high;
     if (unknown.value >= *low && unknown.value <= *high && (unknown.scale != Scale::log || unknown.value > 0))
@@ -235,7 +235,7 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
         std::vector<std::string> names;
         for (const Unknown& one : all) names.push_back(one.key);
         const std::string nearest = nearest_name(key, names);
-        return input_error("--unknown {}: the robot has no such number that could be found; {}", key,
+        return input_error("{}: the robot has no such number that could be found; {}", key,
                            nearest.empty() ? "it has " + join_names(names) : "did you mean \"" + nearest + "\"?");
     }
     Unknown unknown = *found;
@@ -245,9 +245,8 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
     }
     if (unknown.scale == Scale::log && !(unknown.value > 0))
         return input_error(
-            "--unknown {0}: is 0 in the robot file, where nothing tells how to change it; let the search begin "
-            "elsewhere "
-            "with --set {0}=VALUE, or give a range, --unknown {0}=LOW..HIGH",
+            "{0}: is 0 in the robot file, where nothing tells how to change it; set another value there to begin "
+            "with, or give a range, {0}=LOW..HIGH",
             unknown.key);
     return unknown;
 }

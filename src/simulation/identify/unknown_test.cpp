@@ -77,20 +77,20 @@ TEST_CASE("bounds, with units where the key has one") {
 TEST_CASE("what is no unknown is said in one line") {
     const Bar bar(rich);
     CHECK(problem(bar, "material.sof.youngs_modulus") ==
-          "--unknown material.sof.youngs_modulus: the robot has no such number that could be found; did you mean "
+          "material.sof.youngs_modulus: the robot has no such number that could be found; did you mean "
           "\"material.soft.youngs_modulus\"?");
     CHECK(
-        problem(bar, "mesh.size").starts_with("--unknown mesh.size: the robot has no such number that could be found"));
+        problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such number that could be found"));
     CHECK(problem(bar, "material.soft.youngs_modulus=1 MPa") ==
-          "--unknown material.soft.youngs_modulus: \"1 MPa\" is no range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
+          "material.soft.youngs_modulus: \"1 MPa\" is no range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
     CHECK(problem(bar, "material.soft.youngs_modulus=1..2")
-              .starts_with("--unknown material.soft.youngs_modulus: \"1\" has no unit"));
+              .starts_with("material.soft.youngs_modulus: \"1\" has no unit"));
     CHECK(problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==
-          "--unknown material.soft.youngs_modulus: the range from 2 MPa to 1 MPa is empty; LOW must be below HIGH");
+          "material.soft.youngs_modulus: the range from 2 MPa to 1 MPa is empty; LOW must be below HIGH");
     CHECK(problem(bar, "material.soft.youngs_modulus=-2 MPa..1 MPa") ==
-          "--unknown material.soft.youngs_modulus: -2 MPa is not possible; it is above zero");
+          "material.soft.youngs_modulus: -2 MPa is not possible; it is above zero");
     CHECK(problem(bar, "material.soft.poisson_ratio=0.4..0.5") ==
-          "--unknown material.soft.poisson_ratio: Poisson's ratio is above -1 and below 0.5");
-    CHECK(problem(bar, "cable.rope.friction=a..b") == "--unknown cable.rope.friction: \"a\" is not a number");
-    CHECK(problem(bar, "cable.flexor.friction").starts_with("--unknown cable.flexor.friction: is 0 in the robot file"));
+          "material.soft.poisson_ratio: Poisson's ratio is above -1 and below 0.5");
+    CHECK(problem(bar, "cable.rope.friction=a..b") == "cable.rope.friction: \"a\" is not a number");
+    CHECK(problem(bar, "cable.flexor.friction").starts_with("cable.flexor.friction: is 0 in the robot file"));
 }

@@ -14,6 +14,8 @@ const kinds: Record<string, { label: string; unit: string; step: number }> = {
   pressure_kPa: { label: 'Pressure', unit: 'kPa', step: 0.1 },
   gas_ratio: { label: 'Gas ratio', unit: '', step: 0.005 },
 };
+/// Of each kind the unit, '' of a ratio.
+export const units: Record<string, string> = Object.fromEntries(Object.entries(kinds).map(([kind, { unit }]) => [kind, unit]));
 const kindsOf = {
   cable: ['length_ratio', 'shortening_mm', 'tension_N'],
   chamber: ['volume_ratio', 'volume_change_mm3', 'pressure_kPa', 'gas_ratio'],
@@ -82,23 +84,28 @@ function niceAbove(x: number): number {
 }
 
 export function drive(name: string, kind: string, value: number) {
+  driveTo({ [name]: { kind, value } });
+}
+
+/// Several at once.
+export function driveTo(values: Record<string, { kind: string; value: number }>) {
   batch(() => {
-    if (following.value) holdOthers(name);
+    if (following.value) holdOthers(Object.keys(values));
     following.value = false;
     shownFrame.value = null;
-    wanted.value = { ...wanted.value, [name]: { kind, value } };
+    wanted.value = { ...wanted.value, ...values };
   });
   driveAll();
 }
 
 /// From the program to the hand: everything else stays where it is.
-function holdOthers(name: string) {
+function holdOthers(names: string[]) {
   const all = scene.value?.head.actuators ?? [];
   wanted.value = Object.fromEntries(
     all.map((a) => {
       const kind = wanted.value[a.name]?.kind ?? a.kind;
       const now = reading(a, kind);
-      return [a.name, { kind, value: a.name === name || !Number.isFinite(now) ? (wanted.value[a.name]?.value ?? 1) : now }];
+      return [a.name, { kind, value: names.includes(a.name) || !Number.isFinite(now) ? (wanted.value[a.name]?.value ?? 1) : now }];
     }),
   );
 }

@@ -2,8 +2,9 @@
 import { signal } from '@preact/signals';
 import { scene } from '../store';
 import { reading } from './actuators';
+import { apply } from './editor';
 
-interface Key {
+export interface Key {
   time: number;
   values: Record<string, { kind: string; value: number }>;
 }
@@ -60,6 +61,24 @@ function corners(keys: Key[], names: string[]): Key[] {
   return keys.length > 1 ? [...kept, keys[keys.length - 1]] : kept;
 }
 
+/// [[program.key]] for each, from what actuators are driven by.
+export function programKeys(keys: Key[]): string {
+  const bare = (n: string) => (/^[A-Za-z0-9_-]+$/.test(n) ? n : JSON.stringify(n));
+  const text = ({ kind, value }: { kind: string; value: number }) => {
+    const u = unit[kind];
+    return u ? `"${+value.toPrecision(5)} ${u}"` : `${+value.toPrecision(5)}`;
+  };
+  return keys
+    .map((k) => ['[[program.key]]', `time = "${k.time.toFixed(2)} s"`, ...Object.entries(k.values).map(([n, v]) => `${bare(n)} = ${text(v)}`)].join('\n'))
+    .join('\n\n');
+}
+
+/// The file with these keys in place of those that it has.
+export function insertKeys(file: string, keys: string): Promise<boolean> {
+  const without = file.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
+  return apply(`${without.trimEnd()}\n\n${keys}\n`);
+}
+
 /// Of each actuator only what it was driven by at the end, and of keys in a straight line only the ends.
 export function asProgram(): string {
   const keys = recorded.value;
@@ -67,14 +86,5 @@ export function asProgram(): string {
   if (keys.length < 2) return '';
   const kinds = Object.fromEntries(names.map((n) => [n, keys[keys.length - 1].values[n]?.kind]));
   const usable = keys.filter((k) => names.every((n) => k.values[n]?.kind === kinds[n]));
-  const kept = corners(usable, names);
-  const bare = (n: string) => (/^[A-Za-z0-9_-]+$/.test(n) ? n : JSON.stringify(n));
-  const text = (n: string, v: number) => {
-    const u = unit[kinds[n] ?? ''];
-    return u ? `"${+v.toPrecision(5)} ${u}"` : `${+v.toPrecision(5)}`;
-  };
-  return kept
-    .filter((k) => k.time > 0)
-    .map((k) => ['[[program.key]]', `time = "${k.time.toFixed(2)} s"`, ...names.map((n) => `${bare(n)} = ${text(n, k.values[n].value)}`)].join('\n'))
-    .join('\n\n');
+  return programKeys(corners(usable, names).filter((k) => k.time > 0));
 }

@@ -27,15 +27,17 @@ import {
 } from '../store';
 import { Actuators } from './actuators';
 import { gradientCss } from './colormap';
-import { apply, Editor, Materials, pinNow, text } from './editor';
+import { Editor, Materials, pinNow, text } from './editor';
+import { Goal, path } from './goal';
+import { Identify } from './identify';
 import { Plots } from './plots';
-import { asProgram, recorded, recording, startRecording, stopRecording } from './recorder';
+import { asProgram, insertKeys, recorded, recording, startRecording, stopRecording } from './recorder';
 import { clearTracks, frames, tracksCsv, tracksVersion } from './tracks';
 import { RobotView } from './view';
 import * as look from './view_state';
 
 let view: RobotView | null = null;
-const panel = signal<'move' | 'plots' | 'file'>('move');
+const panel = signal<'move' | 'goal' | 'identify' | 'plots' | 'file'>('move');
 
 function options() {
   return {
@@ -97,6 +99,7 @@ function Canvas() {
         if (shown) made.setFrame(shown);
       }),
       effect(() => made.setOptions(options())),
+      effect(() => made.setPath(panel.value === 'goal' ? path.value : [])),
       effect(() => {
         const shown = look.shownFrame.value ?? frame.value;
         if (shown) made.setFrame(shown);
@@ -280,8 +283,7 @@ function Timeline() {
           const keys = asProgram();
           if (!keys) return;
           panel.value = 'file';
-          const without = text.value.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
-          void apply(`${without.trimEnd()}\n\n${keys}\n`).then((done) => done && (recorded.value = []));
+          void insertKeys(text.value, keys).then((done) => done && (recorded.value = []));
         }}>
           Insert {recorded.value.length} samples as program
         </button>
@@ -517,6 +519,8 @@ function Accuracy() {
 export function Simulate() {
   const tabs: [typeof panel.value, string][] = [
     ['move', 'Move'],
+    ['goal', 'Goal'],
+    ['identify', 'Identify'],
     ['plots', 'Plots'],
     ['file', 'File'],
   ];
@@ -555,6 +559,8 @@ export function Simulate() {
               <Plots />
             </>
           )}
+          {panel.value === 'goal' && <Goal />}
+          {panel.value === 'identify' && <Identify />}
           {panel.value === 'plots' && <Plots />}
           {panel.value === 'file' && (
             <>

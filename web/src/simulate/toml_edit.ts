@@ -30,3 +30,34 @@ export function setKey(text: string, table: string, key: string, value: string):
   });
   return lines.join('\n');
 }
+
+/// `text` with "material.soft.youngs_modulus" or "cable.flexor.friction" = value, as the program's --set has it: of tables,
+/// inline tables and entries of [[cable]] by their name. Null where it has no place yet.
+export function assign(text: string, path: string, value: string): string | null {
+  const parts = path.split('.');
+  for (let k = parts.length - 1; k > 0; --k) {
+    const next = setKey(text, parts.slice(0, k).join('.'), parts.slice(k).join('.'), value);
+    if (next !== null) return next;
+  }
+  return parts.length > 2 ? setInEntry(text, parts[0], parts[1], parts.slice(2).join('.'), value) : null;
+}
+
+/// In the entry of [[list]] that has this name.
+function setInEntry(text: string, list: string, name: string, key: string, value: string): string | null {
+  const lines = text.split('\n');
+  const header = new RegExp(`^\\s*\\[\\[\\s*${escaped(list)}\\s*\\]\\]`);
+  const named = new RegExp(`^\\s*name\\s*=\\s*["']${escaped(name)}["']`);
+  for (let begin = 0; begin < lines.length; ++begin) {
+    if (!header.test(lines[begin])) continue;
+    const found = lines.findIndex((l, i) => i > begin && /^\s*\[/.test(l));
+    const end = found < 0 ? lines.length : found;
+    const at = lines.findIndex((l, i) => i > begin && i < end && named.test(l));
+    if (at < 0) continue;
+    const own = new RegExp(`^(\\s*${escaped(key)}\\s*=\\s*)("[^"]*"|'[^']*'|[^#\\s]+)`);
+    const there = lines.findIndex((l, i) => i > begin && i < end && own.test(l));
+    if (there >= 0) lines[there] = lines[there].replace(own, `$1${value}`);
+    else lines.splice(at + 1, 0, `${key} = ${value}`);
+    return lines.join('\n');
+  }
+  return null;
+}

@@ -60,6 +60,8 @@ export class RobotView {
   private supportVertices: number[] = [];
   private cables: Line2[] = [];
   private markers: THREE.Mesh[] = [];
+  private path: [number, number, number][] = [];
+  private wanted: THREE.Mesh[] = [];
   private obstacles: THREE.Object3D[] = [];
   private readonly arrow: Line2;
   private readonly handle: THREE.Mesh;
@@ -124,6 +126,7 @@ export class RobotView {
     this.frame = null;
     this.root.clear();
     this.build(scene);
+    this.setPath(this.path);
     if (first) this.lookAt('home');
     if (this.options) this.setOptions(this.options);
     this.invalidate();
@@ -396,6 +399,27 @@ export class RobotView {
     this.arrow.geometry.dispose();
     this.arrow.geometry = geometry;
     this.handle.scale.setScalar(0.012 * this.size);
+  }
+
+  /// Where a marker is wanted, as rings over everything.
+  setPath(path: [number, number, number][]) {
+    this.path = path;
+    for (const dot of this.wanted) {
+      this.root.remove(dot);
+      dot.geometry.dispose();
+      (dot.material as THREE.Material).dispose();
+    }
+    this.wanted = path.map((p) => {
+      const dot = new THREE.Mesh(
+        new THREE.OctahedronGeometry(0.014 * this.size),
+        new THREE.MeshBasicMaterial({ color: 0x2e86ab, wireframe: true, transparent: true, opacity: 0.95, depthTest: false }),
+      );
+      dot.position.set(...p);
+      dot.renderOrder = 6;
+      this.root.add(dot);
+      return dot;
+    });
+    this.invalidate();
   }
 
   private placeOf(grab: { vertex: number; marker: number }) {

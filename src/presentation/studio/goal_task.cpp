@@ -1,0 +1,89 @@
+#include "presentation/studio/goal_task.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "presentation/studio/actuator_kind.hpp"
+#include "presentation/studio/led_marker.hpp"
+#include "simulation/solver/equilibrium.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+/// All that could be moved, each once.
+std::vector<sim::Steered> possible_inputs(const Built& built) {
+    const sim::Equilibrium system(built.model);
+    std::vector<double> measures;
+    for (const sim::Actuator& actuator : system.actuators()) measures.push_back(actuator.rest_measure());
+    return led_inputs(built.robot, built.model, measures);
+}
+
+/// Lengths, volumes and ratios have to stay above nothing, and no cable pushes.
+bool is_possible(const sim::Steered& input, const ActuatorKind& kind, double rest) {
+    const std::string_view name = kind.name;
+    if (name == "shortening_mm") return input.high < rest;
+    if (name == "volume_change_mm3") return input.low > -rest;
+    if (name == "pressure_kPa") return true;
+    return name == "tension_N" ? input.low >= 0 : input.low > 0;
+}
+
+Result<sim::Steered> steered(const Built& built, std::vector<sim::Steered> possible, const InputRange& range) {
+    const auto found = std::ranges::find(possible, range.name, &sim::Steered::name);
+    if (found == possible.end()) return input_error("{}: cannot be moved: there is no such actuator", range.name);
+    const sim::Description& d = built.model.description();
+    const ActuatorKind kind = kind_of(d, found->actuator);
+    sim::Steered input = *found;
+    input.low = range.low / kind.per_unit;
+    input.high = range.high / kind.per_unit;
+    if (!(input.low < input.high))
+        return input_error("{}: the range from {:g} to {:g} is empty", range.name, range.low, range.high);
+    const sim::Equilibrium system(built.model);
+    if (!is_possible(input, kind, system.actuators()[input.actuator].rest_measure()))
+        return input_error("{}: the range from {:g} to {:g} has values that it cannot have", range.name, range.low,
+                           range.high);
+    return input;
+}
+
+}  // namespace
+
+Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order) {
+    if (built.robot.program.dynamics)
+        return input_error("program: time_step: goals are for a robot at rest at every waypoint; leave it out");
+    const auto& markers = built.model.description().markers;
+    const auto marker = std::ranges::find(markers, order.marker, &sim::Marker::name);
+    if (marker == markers.end()) return input_error("{}: there is no such marker", order.marker);
+    sim::Goal goal;
+    goal.name = order.marker;
+    goal.markers = {static_cast<std::size_t>(marker - markers.begin())};
+    goal.tolerance = 1e-3 * order.tolerance_mm;
+    for (const auto& [x, y, z] : order.path_mm) goal.wanted.push_back({1e-3 * Vec3{x, y, z}});
+    sim::InverseTask task;
+    task.goals = {std::move(goal)};
+    const std::vector<sim::Steered> possible = possible_inputs(built);
+    for (const InputRange& range : order.inputs) {
+        Result<sim::Steered> input = steered(built, possible, range);
+        if (!input) return tl::unexpected(input.error());
+        const auto is_it = [&](const sim::Steered& other) { return other.actuator == input->actuator; };
+        if (std::ranges::any_of(task.inputs, is_it)) return input_error("{}: is named twice", range.name);
+        task.inputs.push_back(std::move(*input));
+    }
+    task.times.assign(order.path_mm.size(), built.robot.program.duration);
+    return task;
+}
+
+std::string goal_inputs_json(const Built& built) {
+    const sim::Description& d = built.model.description();
+    Json list = Json::array();
+    for (const sim::Steered& input : possible_inputs(built)) {
+        const ActuatorKind kind = kind_of(d, input.actuator);
+        list.push_back({{"name", input.name},
+                        {"kind", kind.name},
+                        {"low", kind.per_unit * input.low},
+                        {"high", kind.per_unit * input.high}});
+    }
+    return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace pliant::studio

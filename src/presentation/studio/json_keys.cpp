@@ -1,0 +1,36 @@
+#include "presentation/studio/json_keys.hpp"
+
+namespace pliant::studio {
+namespace {
+
+/// The parser recurses: nesting is bounded before it begins.
+bool nested_too_deep(std::string_view text) {
+    constexpr int deepest = 8;
+    int depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted && c == '\\') {
+            ++i;
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && (c == '[' || c == '{')) {
+            if (++depth > deepest) return true;
+        } else if (!quoted && (c == ']' || c == '}')) {
+            --depth;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Result<nlohmann::json> parse_object(const char* what, std::string_view text, std::size_t longest) {
+    if (text.size() > longest) return input_error("{}: over {} bytes", what, longest);
+    if (nested_too_deep(text)) return input_error("{}: nested too deep", what);
+    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object()) return input_error("{}: a JSON object is needed", what);
+    return json;
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,88 @@
+// Goals and identification: what may be asked for, the search, its result.
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "presentation/studio/goal_task.hpp"
+#include "presentation/studio/studio.hpp"
+#include "simulation/identify/unknown.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+Response nothing_built() {
+    return error_response(404, "no robot has been built yet");
+}
+
+Response goal_inputs(Studio& studio, const Request&) {
+    const auto built = studio.simulation().built();
+    return built ? json_response(goal_inputs_json(*built)) : nothing_built();
+}
+
+Response unknowns(Studio& studio, const Request&) {
+    const auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    Json list = Json::array();
+    for (const sim::identify::Unknown& one : sim::identify::possible_unknowns(built->robot))
+        list.push_back({{"key", one.key}, {"unit", one.unit}, {"value", one.value}, {"shown", one.shown(one.value)}});
+    return json_response(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Response begin_goal(Studio& studio, const Request& request) {
+    auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    Result<GoalOrder> order = parse_goal_order(request.body);
+    if (!order) return error_response(order.error());
+    if (const auto task = goal_task(*built, *order); !task) return error_response(task.error());
+    const Status begun = studio.search().find_inputs(std::move(built), std::move(*order));
+    return begun ? json_response("{}") : error_response(begun.error());
+}
+
+Response begin_identify(Studio& studio, const Request& request) {
+    auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    Result<IdentifyOrder> order = parse_identify_order(request.body);
+    if (!order) return error_response(order.error());
+    const Status begun = studio.search().identify(std::move(built), std::move(*order));
+    return begun ? json_response("{}") : error_response(begun.error());
+}
+
+Response result(Studio& studio, const Request&) {
+    const auto found = studio.search().result();
+    return json_response(found ? found->json : "{}");
+}
+
+Response plot(Studio& studio, const Request& request) {
+    const auto found = studio.search().result();
+    const std::string& text = request.parts.at("plot");
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool read = error == std::errc() && end == text.data() + text.size();
+    if (!found || !read || index >= found->plots.size()) return error_response(404, "there is no such plot");
+    return {200, "image/png", found->plots[index].png};
+}
+
+}  // namespace
+
+void add_search_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back(
+        {"GET", "/api/goal/inputs", "actuators that a goal may move, with their ranges", json, false, goal_inputs});
+    routes.push_back(
+        {"POST", "/api/goal", "looks for inputs that bring a marker along a path", json, true, begin_goal, json});
+    routes.push_back(
+        {"GET", "/api/unknowns", "numbers of the robot that measurements could tell", json, false, unknowns});
+    routes.push_back({"POST", "/api/identify", "looks for numbers with which the program follows measurements", json,
+                      true, begin_identify, json});
+    routes.push_back({"POST", "/api/search/cancel", "ends the search", json, true, [](Studio& s, const Request&) {
+                          s.search().cancel();
+                          return json_response("{}");
+                      }});
+    routes.push_back(
+        {"GET", "/api/search", "what the last search has found; {} before there is one", json, false, result});
+    routes.push_back(
+        {"GET", "/api/search/plots/{plot}", "measured beside simulated values, from 0", "image/png", false, plot});
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,159 @@
+#include "presentation/studio/search_session.hpp"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "presentation/report/identified.hpp"
+#include "presentation/report/inverse_tables.hpp"
+#include "presentation/studio/goal_task.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/identify/identify.hpp"
+#include "simulation/inverse/follow.hpp"
+#include "simulation/run/simulate.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<SearchResult> found_inputs(const Built& built, const GoalOrder& order, Progress& progress) {
+    const Result<sim::InverseTask> task = goal_task(built, order);
+    if (!task) return tl::unexpected(task.error());
+    constexpr double tightest_needed = 1e-5;
+    sim::StepperOptions stepping = sim::stepper_options(built.robot.program);
+    stepping.tolerance = std::min(stepping.tolerance, tightest_needed);
+    sim::Stepper stepper(built.model, stepping);
+    const sim::inverse::InverseResult found = sim::inverse::follow(stepper, *task, {}, progress);
+    if (found.cancelled) return tl::unexpected(cancelled());
+    Json json = Json::parse(report::inverse_json({built.robot.name, built.model, *task, found}));
+    return SearchResult{dumped({{"kind", "goal"}, {"revision", built.revision}, {"found", std::move(json)}})};
+}
+
+/// The robot at hand with other numbers, as fine as the page has it.
+sim::identify::Source source_of(const RobotText& robot, mesh::TetMesh mesh) {
+    return {[robot](const std::vector<std::string>& more) {
+                std::vector<std::string> all;
+                if (robot.accuracy == Accuracy::preview) all.emplace_back("mesh.order=1");
+                all.insert(all.end(), more.begin(), more.end());
+                return robot::parse_robot(robot.text, robot.file, all);
+            },
+            std::move(mesh)};
+}
+
+sim::identify::JudgeOn judge_of(const std::string& name) {
+    if (name.empty()) return sim::identify::JudgeOn::nothing;
+    return name == "every-second" ? sim::identify::JudgeOn::every_second : sim::identify::JudgeOn::second_half;
+}
+
+Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, Progress& progress) {
+    std::vector<sim::identify::Unknown> unknowns;
+    for (const std::string& text : order.unknowns) {
+        auto unknown = sim::identify::find_unknown(built.robot, text);
+        if (!unknown) return tl::unexpected(unknown.error());
+        unknowns.push_back(std::move(*unknown));
+    }
+    const auto measurements = sim::identify::parse_measurements(order.csv, order.file, built.model.description(),
+                                                                built.robot.program, judge_of(order.judge));
+    if (!measurements) return tl::unexpected(measurements.error());
+    Result<mesh::TetMesh> mesh = robot::build_mesh(built.robot, progress);
+    if (!mesh) return tl::unexpected(mesh.error());
+    const auto found =
+        sim::identify::identify(source_of(built.source, std::move(*mesh)), unknowns, *measurements, progress);
+    if (!found) return tl::unexpected(found.error());
+    Json json = Json::parse(sim::identify::identification_json(*found));
+    for (const sim::identify::Found& one : found->found) {
+        const auto text = [&](double value) { return one.unknown.shown(value); };
+        json["shown"].push_back({{"start", text(one.unknown.value)},
+                                 {"value", text(one.value)},
+                                 {"low", one.low ? text(*one.low) : ""},
+                                 {"high", one.high ? text(*one.high) : ""}});
+    }
+    SearchResult result;
+    for (const report::NamedPlot& named : report::identified_plots(*found)) {
+        Result<std::string> png = report::plot_png(named.plot);
+        if (!png) return tl::unexpected(png.error());
+        result.plots.push_back({named.file, std::move(*png)});
+    }
+    json["plots"] = result.plots.size();
+    result.json = dumped({{"kind", "identify"}, {"revision", built.revision}, {"found", std::move(json)}});
+    return result;
+}
+
+}  // namespace
+
+class SearchSession::Watch final : public Progress {
+public:
+    explicit Watch(SearchSession& session) : session_(session) {}
+    void advance(std::string_view stage, double fraction) override {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - last_ < std::chrono::milliseconds(100)) return;
+        last_ = now;
+        session_.tell_(
+            dumped({{"type", "search"}, {"kind", session_.kind_}, {"stage", stage}, {"fraction", fraction}}));
+    }
+    [[nodiscard]] bool cancelled() const override { return session_.cancelled_; }
+
+private:
+    SearchSession& session_;
+    std::chrono::steady_clock::time_point last_{};
+};
+
+SearchSession::~SearchSession() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+}
+
+Status SearchSession::find_inputs(std::shared_ptr<const Built> built, GoalOrder order) {
+    return begin("goal", [built = std::move(built), order = std::move(order)](Progress& progress) {
+        return found_inputs(*built, order, progress);
+    });
+}
+
+Status SearchSession::identify(std::shared_ptr<const Built> built, IdentifyOrder order) {
+    return begin("identify", [built = std::move(built), order = std::move(order)](Progress& progress) {
+        return identified(*built, order, progress);
+    });
+}
+
+Status SearchSession::begin(const char* kind, std::function<Result<SearchResult>(Progress&)> work) {
+    if (running_.exchange(true)) return failure("a search is running already; cancel it first");
+    if (thread_.joinable()) thread_.join();
+    cancelled_ = false;
+    kind_ = kind;
+    thread_ = std::thread([this, work = std::move(work)] {
+        Watch watch(*this);
+        tell_(dumped({{"type", "search"}, {"kind", kind_}, {"stage", "begin"}, {"fraction", 0}}));
+        Result<SearchResult> found = work(watch);
+        std::string error;
+        if (found) {
+            const std::lock_guard lock(mutex_);
+            result_ = std::make_shared<const SearchResult>(std::move(*found));
+            ++results_;
+        } else if (found.error().cause != Cause::cancelled) {
+            error = found.error().message;
+        }
+        const std::vector<std::string> news = this->news();
+        running_ = false;  // before it is told: whoever hears of the end may begin the next
+        tell_(dumped({{"type", "search"}, {"kind", kind_}, {"stage", ""}, {"fraction", 1}, {"error", error}}));
+        for (const std::string& one : news) tell_(one);
+    });
+    return {};
+}
+
+std::shared_ptr<const SearchResult> SearchSession::result() const {
+    const std::lock_guard lock(mutex_);
+    return result_;
+}
+
+std::vector<std::string> SearchSession::news() const {
+    const std::lock_guard lock(mutex_);
+    return {dumped({{"type", "searched"}, {"result", results_}})};
+}
+
+}  // namespace pliant::studio

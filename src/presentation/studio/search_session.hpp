@@ -1,0 +1,58 @@
+// A search that a page has asked for, on a thread of its own: one at a time, with progress, and its result until the
+// next one.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "presentation/studio/search_order.hpp"
+#include "presentation/studio/simulation_session.hpp"
+
+namespace pliant::studio {
+
+/// What a search came to.
+struct SearchResult {
+    std::string json;  ///< {"kind": "goal" or "identify", "revision": of the robot, "found": ...}
+    struct Plot {
+        std::string unit;  ///< of the values
+        std::string png;
+    };
+    std::vector<Plot> plots{};  ///< of an identification
+};
+
+class SearchSession {
+public:
+    /// `tell`: events for the pages, from the search's thread.
+    explicit SearchSession(std::function<void(const std::string& json)> tell) : tell_(std::move(tell)) {}
+    ~SearchSession();
+    SearchSession(const SearchSession&) = delete;
+    SearchSession& operator=(const SearchSession&) = delete;
+
+    /// Begins; the pages hear of its progress and of its end. Errors: one is running already.
+    [[nodiscard]] Status find_inputs(std::shared_ptr<const Built> built, GoalOrder order);
+    [[nodiscard]] Status identify(std::shared_ptr<const Built> built, IdentifyOrder order);
+    void cancel() { cancelled_ = true; }
+
+    /// Of the last search that came to an end; null before there is one.
+    [[nodiscard]] std::shared_ptr<const SearchResult> result() const;
+    [[nodiscard]] std::vector<std::string> news() const;
+
+private:
+    class Watch;
+    [[nodiscard]] Status begin(const char* kind, std::function<Result<SearchResult>(Progress&)> work);
+
+    std::function<void(const std::string& json)> tell_;
+    mutable std::mutex mutex_;
+    std::shared_ptr<const SearchResult> result_;
+    int results_ = 0;
+    std::string kind_;
+    std::atomic<bool> running_ = false, cancelled_ = false;
+    std::thread thread_;
+};
+
+}  // namespace pliant::studio

@@ -1,0 +1,163 @@
+// Goals and identifications that a page asks for.
+#include "presentation/studio/search_session.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "presentation/studio/goal_task.hpp"
+#include "presentation/studio/test_sessions.hpp"
+
+using namespace pliant;
+using namespace pliant::studio;
+using pliant::test::holds;
+using studio::test::bar;
+using studio::test::Events;
+using studio::test::Json;
+
+namespace {
+
+std::shared_ptr<const Built> built_from(const std::string& text) {
+    SimulationSession session({[](const std::string&) {}, [](const auto&) {}, [] { return std::set<std::string>(); }});
+    session.open({"bar.toml", text, Accuracy::preview});
+    REQUIRE(session.wait_until_built());
+    return session.built();
+}
+
+GoalOrder goal_at(double z_mm) {
+    return {"tip", {{4, 1.5, z_mm}}, 1.0, {{"flexor", 0, 1}}};
+}
+
+struct Bench {
+    Events events;
+    SearchSession session{[this](const std::string& json) { events.add(json); }};
+    /// What the end of the search said.
+    std::string end() {
+        const Json last = events.wait_for([](const Json& e) { return e["type"] == "search" && e["stage"] == ""; });
+        return last["error"];
+    }
+    Json result() {
+        events.wait_for([](const Json& e) { return e["type"] == "searched"; });
+        return Json::parse(session.result()->json);
+    }
+};
+
+std::string problem(const Built& built, const GoalOrder& order) {
+    const auto task = goal_task(built, order);
+    return task ? "" : task.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a page's goal becomes a task, in the units of its sliders") {
+    const auto built = built_from(bar);
+    const Json inputs = Json::parse(goal_inputs_json(*built));
+    REQUIRE(inputs.size() == 1);
+    CHECK(inputs[0]["name"] == "flexor");
+    CHECK(inputs[0]["kind"] == "shortening_mm");
+    CHECK(inputs[0]["low"] == 0);
+    CHECK(inputs[0]["high"].get<double>() == near(2, {.relative = 1e-9}));
+    const auto task = goal_task(*built, goal_at(1.5));
+    REQUIRE(task);
+    CHECK(task->inputs[0].high == near(1e-3, {.relative = 1e-12}));
+    CHECK(task->goals[0].wanted[0][0].z == near(1.5e-3, {.relative = 1e-12}));
+    CHECK(task->goals[0].tolerance == near(1e-3, {.relative = 1e-12}));
+}
+
+TEST_CASE("goals that no robot can have are refused in one line") {
+    const auto built = built_from(bar);
+    GoalOrder order = goal_at(1.5);
+    order.marker = "top";
+    CHECK(problem(*built, order) == "top: there is no such marker");
+    order = goal_at(1.5);
+    order.inputs = {{"rope", 0, 1}};
+    CHECK(problem(*built, order) == "rope: cannot be moved: there is no such actuator");
+    order.inputs = {{"flexor", 1, 1}};
+    CHECK(problem(*built, order) == "flexor: the range from 1 to 1 is empty");
+    order.inputs = {{"flexor", 0, 9}};
+    CHECK(problem(*built, order) == "flexor: the range from 0 to 9 has values that it cannot have");
+    order.inputs = {{"flexor", 0, 1}, {"flexor", 0, 1}};
+    CHECK(problem(*built, order) == "flexor: is named twice");
+    CHECK(holds(
+        problem(*built_from(std::string(bar) + "[program]\ntime_step = \"1 ms\"\nduration = \"1 s\"\n"), goal_at(1.5)),
+        "time_step"));
+}
+
+TEST_CASE("a search tells of its end, and its result stays until the next one") {
+    const auto built = built_from(bar);
+    Bench b;
+    CHECK(b.session.result() == nullptr);
+    CHECK(Json::parse(b.session.news()[0])["result"] == 0);
+    REQUIRE(b.session.find_inputs(built, goal_at(1.5)));
+    CHECK(b.end() == "");
+    const Json result = b.result();
+    CHECK(result["kind"] == "goal");
+    CHECK(result["revision"] == built->revision);
+    REQUIRE(result["found"]["waypoints"].size() == 1);
+    CHECK(result["found"]["waypoints"][0]["reached"] == true);
+    b.events.clear();
+    REQUIRE(b.session.identify(built, {{"material.soft.nothing"}, "time,tip_z_mm\n1,1\n", "t.csv", ""}));
+    CHECK(holds(b.end(), "material.soft.nothing: the robot has no such number"));
+    CHECK(Json::parse(b.session.result()->json) == result);
+}
+
+TEST_CASE("a modulus is found from a table, with its plots") {
+    const auto built = built_from(bar);
+    Bench b;
+    REQUIRE(b.session.identify(built,
+                               {{"cable.flexor.target.shortening"}, "time,tip_z_mm\n0.5,1.02\n1,1.05\n", "t.csv", ""}));
+    CHECK(b.end() == "");
+    const Json found = b.result()["found"];
+    CHECK(found["unknowns"][0]["key"] == "cable.flexor.target.shortening");
+    CHECK(found["shown"][0]["value"].get<std::string>().ends_with(" mm"));
+    REQUIRE(b.session.result()->plots.size() == 1);
+    CHECK(b.session.result()->plots[0].png.starts_with("\x89PNG"));
+}
+
+TEST_CASE("one search at a time, and one that is cancelled leaves nothing") {
+    const auto built = built_from(bar);
+    Bench b;
+    GoalOrder long_one = goal_at(1.5);
+    for (int k = 0; k < 200; ++k) long_one.path_mm.push_back({4, 1.5, 1 + 0.002 * k});
+    long_one.tolerance_mm = 1e-6;
+    REQUIRE(b.session.find_inputs(built, long_one));
+    CHECK(b.session.find_inputs(built, long_one).error().message == "a search is running already; cancel it first");
+    b.session.cancel();
+    CHECK(b.end() == "");
+    CHECK(b.session.result() == nullptr);
+}
+
+TEST_CASE("orders are read, and refused with the key") {
+    const auto goal = parse_goal_order(
+        R"({"marker":"tip","path":[[1,2,3],[4,5,6]],"tolerance":0.1,"inputs":[{"name":"flexor","low":0.5,"high":1}]})");
+    REQUIRE(goal);
+    CHECK(goal->path_mm[1][2] == 6);
+    CHECK(goal->inputs[0].low == 0.5);
+    const auto identify =
+        parse_identify_order(R"({"unknowns":["a.b"],"csv":"x\n","file":"m.csv","judge":"every-second"})");
+    REQUIRE(identify);
+    CHECK(identify->judge == "every-second");
+    const std::pair<const char*, const char*> goals[] = {
+        {"", "object"},
+        {R"({"path":[[1,2,3]],"tolerance":1,"inputs":[{"name":"a","low":0,"high":1}]})", "marker"},
+        {R"({"marker":"t","path":[],"tolerance":1,"inputs":[{"name":"a","low":0,"high":1}]})", "path"},
+        {R"({"marker":"t","path":[[1,2]],"tolerance":1,"inputs":[{"name":"a","low":0,"high":1}]})", "path"},
+        {R"({"marker":"t","path":[[1,2,1e300]],"tolerance":1,"inputs":[{"name":"a","low":0,"high":1}]})", "path"},
+        {R"({"marker":"t","path":[[1,2,3]],"tolerance":0,"inputs":[{"name":"a","low":0,"high":1}]})", "tolerance"},
+        {R"({"marker":"t","path":[[1,2,3]],"tolerance":1,"inputs":[]})", "inputs"},
+        {R"({"marker":"t","path":[[1,2,3]],"tolerance":1,"inputs":[{"name":"a","low":"0"}]})", "inputs"}};
+    for (const auto& [text, key] : goals) {
+        const auto order = parse_goal_order(text);
+        CHECK_MESSAGE((!order && holds(order.error().message, key)), text);
+    }
+    const std::pair<const char*, const char*> tables[] = {
+        {R"({"unknowns":[],"csv":"x","file":"f"})", "unknowns"},
+        {R"({"unknowns":[3],"csv":"x","file":"f"})", "unknowns"},
+        {R"({"unknowns":["a"],"csv":"","file":"f"})", "csv"},
+        {R"({"unknowns":["a"],"csv":"x"})", "file"},
+        {R"({"unknowns":["a"],"csv":"x","file":"f","judge":"half"})", "judge"}};
+    for (const auto& [text, key] : tables) {
+        const auto order = parse_identify_order(text);
+        CHECK_MESSAGE((!order && holds(order.error().message, key)), text);
+    }
+}

@@ -1,0 +1,241 @@
+// Where a marker is wanted, and which actuators may bring it there.
+import { batch, effect, signal } from '@preact/signals';
+import { NumberField } from '../number_field';
+import { api, frame, mayDrive, rough, say, scene } from '../store';
+import { driveTo, units } from './actuators';
+import { text } from './editor';
+import { insertKeys, programKeys } from './recorder';
+import { begin, result, Search, type WaypointFound } from './search';
+
+type Point = [number, number, number];
+
+interface Input {
+  name: string;
+  kind: string;
+  low: number;
+  high: number;
+  used: boolean;
+}
+
+const marker = signal('');
+/// Where it is wanted, one place after the other; the view shows them.
+export const path = signal<Point[]>([]);
+const tolerance = signal(0.1);
+const inputs = signal<Input[]>([]);
+
+let known = ''; // the robot that the inputs are of
+effect(() => {
+  const head = scene.value?.head;
+  if (!head) return;
+  const now = JSON.stringify([head.robot, head.actuators.map((a) => [a.name, a.kind]), head.markers.map((m) => m.name)]);
+  if (now === known) return;
+  known = now;
+  batch(() => {
+    marker.value = head.markers[0]?.name ?? '';
+    path.value = [];
+  });
+  api('/api/goal/inputs')
+    .then((r) => r.json())
+    .then((list: Omit<Input, 'used'>[]) => (inputs.value = list.map((input) => ({ ...input, used: true }))))
+    .catch((e: Error) => say(e.message));
+});
+
+function present(): Point | null {
+  const index = scene.value?.head.markers.findIndex((m) => m.name === marker.value) ?? -1;
+  const at = frame.value?.head.markers[index];
+  return at ? (at.map((v) => +v.toFixed(2)) as Point) : null;
+}
+
+function change(list: Input[], k: number, to: Partial<Input>) {
+  return list.map((input, i) => (i === k ? { ...input, ...to } : input));
+}
+
+function Path() {
+  const add = () => {
+    const at = path.value.at(-1) ?? present();
+    if (at) path.value = [...path.value, at];
+  };
+  const here = () => {
+    const at = present();
+    if (at) path.value = [...path.value, at];
+  };
+  return (
+    <>
+      {path.value.length > 0 && (
+        <table class="points" data-testid="goal-path">
+          <thead>
+            <tr>
+              <th />
+              <th>x</th>
+              <th>y</th>
+              <th>z</th>
+              <th class="unit">mm</th>
+            </tr>
+          </thead>
+          <tbody>
+            {path.value.map((point, k) => (
+              <tr key={k}>
+                <th>{k + 1}</th>
+                {point.map((v, axis) => (
+                  <td>
+                    <NumberField
+                      value={v}
+                      range={{ from: -1e6, to: 1e6 }}
+                      unit=""
+                      label={`${'xyz'[axis]} of point ${k + 1}`}
+                      testId={`goal-${k}-${'xyz'[axis]}`}
+                      onValue={(to) => {
+                        path.value = path.value.map((p, i) => (i === k ? (p.map((c, a) => (a === axis ? to : c)) as Point) : p));
+                      }}
+                    />
+                  </td>
+                ))}
+                <td>
+                  <button class="bare" aria-label={`Remove point ${k + 1}`} title="Remove" onClick={() => (path.value = path.value.filter((_, i) => i !== k))}>
+                    ×
+                  </button>
+                </td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      )}
+      <div class="row left wrap">
+        <button class="small" onClick={here} disabled={!present()} data-testid="goal-here">
+          Add current position
+        </button>
+        <button class="small" onClick={add} disabled={!present()} data-testid="goal-add">
+          Add point
+        </button>
+        {path.value.length > 0 && (
+          <button class="small" onClick={() => (path.value = [])}>
+            Clear
+          </button>
+        )}
+      </div>
+    </>
+  );
+}
+
+function Ranges() {
+  return (
+    <fieldset class="material" disabled={!mayDrive.value}>
+      <legend>Actuators that may move</legend>
+      {inputs.value.map((input, k) => (
+        <div class="range" key={input.name}>
+          <label class="tick">
+            <input type="checkbox" checked={input.used} onChange={(e) => (inputs.value = change(inputs.value, k, { used: e.currentTarget.checked }))} data-testid={`goal-use-${input.name}`} />
+            {input.name}
+          </label>
+          <span class="ends">
+            {(['low', 'high'] as const).map((end) => (
+              <NumberField
+                key={end}
+                value={+input[end].toPrecision(5)}
+                range={{ from: -1e9, to: 1e9 }}
+                unit={end === 'high' ? units[input.kind] : ''}
+                label={`${end === 'low' ? 'Lowest' : 'Highest'} value of ${input.name}`}
+                testId={`goal-${end}-${input.name}`}
+                disabled={!input.used}
+                onValue={(v) => {
+                  inputs.value = change(inputs.value, k, { [end]: v });
+                }}
+              />
+            ))}
+          </span>
+        </div>
+      ))}
+    </fieldset>
+  );
+}
+
+function Waypoint({ at }: { at: WaypointFound }) {
+  const kinds = Object.fromEntries((scene.value?.head.actuators ?? []).map((a) => [a.name, a.kind]));
+  const values = Object.entries(at.inputs);
+  return (
+    <li data-testid={`waypoint-${at.index}`} data-reached={at.reached}>
+      <div class="row">
+        <span>
+          <span class={`lamp ${at.reached ? (rough.value ? 'warn' : 'good') : 'bad'}`} /> {at.index}: {rough.value && '≈ '}
+          {at.reached ? 'reached' : 'nearest point'}, {+at.error_mm.toPrecision(2)} mm away
+        </span>
+        <button class="small" disabled={!mayDrive.value} onClick={() => driveTo(Object.fromEntries(values.map(([name, value]) => [name, { kind: kinds[name], value }])))} data-testid={`go-${at.index}`}>
+          Go there
+        </button>
+      </div>
+      <p class="quiet">{values.map(([name, value]) => `${name} ${+value.toPrecision(4)}${units[kinds[name]] ? ` ${units[kinds[name]]}` : ''}`).join(', ')}</p>
+      {!at.reached && <p class="limit">{at.reasons.join('; ') || 'the actuators move it in other directions only'}</p>}
+    </li>
+  );
+}
+
+function Found() {
+  const { kind, found, revision } = result.value;
+  if (kind !== 'goal' || revision !== scene.value?.head.revision) return null;
+  const waypoints = (found as { waypoints: WaypointFound[] }).waypoints;
+  return (
+    <>
+      <ol class="waypoints" data-testid="goal-found">
+        {waypoints.map((at) => (
+          <Waypoint at={at} key={at.index} />
+        ))}
+      </ol>
+      {waypoints.length > 0 && (
+        <button
+          class="small"
+          disabled={!mayDrive.value}
+          data-testid="goal-program"
+          onClick={() => {
+            const kinds = Object.fromEntries((scene.value?.head.actuators ?? []).map((a) => [a.name, a.kind]));
+            const keys = waypoints.map((at, k) => ({
+              time: k + 1,
+              values: Object.fromEntries(Object.entries(at.inputs).map(([name, value]) => [name, { kind: kinds[name], value }])),
+            }));
+            insertKeys(text.value, programKeys(keys));
+          }}
+        >
+          Use as program
+        </button>
+      )}
+    </>
+  );
+}
+
+export function Goal() {
+  const head = scene.value?.head;
+  if (!head) return null;
+  if (head.markers.length === 0) return <p class="quiet">A goal is a place for a marker. This robot has no marker: add a [[marker]] to its file.</p>;
+  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could bring a marker anywhere.</p>;
+  return (
+    <div class="search">
+      <label class="row">
+        Marker
+        <select value={marker.value} onChange={(e) => (marker.value = e.currentTarget.value)} data-testid="goal-marker">
+          {head.markers.map((m) => (
+            <option key={m.name}>{m.name}</option>
+          ))}
+        </select>
+      </label>
+      <Path />
+      <label class="row">
+        Tolerance
+        <NumberField value={tolerance.value} range={{ from: 0, to: 1e6, open: true }} unit="mm" testId="goal-tolerance" onValue={(v) => void (tolerance.value = v)} />
+      </label>
+      <Ranges />
+      <Search
+        kind="goal"
+        label="Find inputs"
+        ready={mayDrive.value && path.value.length > 0 && inputs.value.some((i) => i.used)}
+        onBegin={() =>
+          begin('goal', {
+            marker: marker.value,
+            path: path.value,
+            tolerance: tolerance.value,
+            inputs: inputs.value.filter((i) => i.used).map(({ name, low, high }) => ({ name, low, high })),
+          })
+        }
+      />
+      <Found />
+    </div>
+  );
+}

@@ -1,0 +1,198 @@
+// Numbers of the robot from a table of measurements.
+import { effect, signal } from '@preact/signals';
+import { api, mayDrive, say, scene } from '../store';
+import { apply, pinNow, text } from './editor';
+import { begin, type IdentifyFound, result, resultNumber, Search } from './search';
+import { assign } from './toml_edit';
+
+interface Unknown {
+  key: string;
+  shown: string; // its value now
+}
+
+const unknowns = signal<Unknown[]>([]);
+const chosen = signal<Record<string, { used: boolean; bounds: string }>>({});
+const table = signal<{ name: string; csv: string } | null>(null);
+const judge = signal('');
+
+effect(() => {
+  if (!scene.value) return;
+  api('/api/unknowns')
+    .then((r) => r.json())
+    .then((list: Unknown[]) => (unknowns.value = list))
+    .catch((e: Error) => say(e.message));
+});
+
+function Unknowns() {
+  return (
+    <fieldset class="material" disabled={!mayDrive.value}>
+      <legend>Numbers to find</legend>
+      <div class="unknowns">
+        {unknowns.value.map(({ key, shown }) => {
+          const now = chosen.value[key] ?? { used: false, bounds: '' };
+          const set = (to: Partial<typeof now>) => (chosen.value = { ...chosen.value, [key]: { ...now, ...to } });
+          return (
+            <div key={key}>
+              <label class="tick">
+                <input type="checkbox" checked={now.used} onChange={(e) => set({ used: e.currentTarget.checked })} data-testid={`unknown-${key}`} />
+                <span class="key">{key}</span>
+                <span class="quiet">{shown}</span>
+              </label>
+              {now.used && (
+                <input type="text" class="bounds" placeholder="bounds, as in 0.1 MPa..2 MPa (optional)" aria-label={`Bounds of ${key}`} value={now.bounds} onChange={(e) => set({ bounds: e.currentTarget.value.trim() })} data-testid={`bounds-${key}`} />
+              )}
+            </div>
+          );
+        })}
+      </div>
+    </fieldset>
+  );
+}
+
+function Table() {
+  const head = scene.value!.head;
+  const columns = [...head.markers.flatMap((m) => [`${m.name}_x_mm`, `${m.name}_z_mm`]), ...head.actuators.map((a) => (a.type === 'cable' ? `${a.name}_tension_N` : `${a.name}_pressure_kPa`))];
+  return (
+    <>
+      <label class="row">
+        Measurements
+        <input
+          type="file"
+          accept=".csv,text/csv"
+          data-testid="measured"
+          onChange={async (e) => {
+            const file = e.currentTarget.files?.[0];
+            table.value = file ? { name: file.name, csv: await file.text() } : null;
+          }}
+        />
+      </label>
+      <p class="quiet small-print">
+        CSV with a row for each instant: a column time or step, and any of {columns.slice(0, 4).join(', ')}
+        {columns.length > 4 && ' and so on'}, as in the exported histories.
+      </p>
+      <label class="row">
+        Rows to keep back
+        <select value={judge.value} onChange={(e) => (judge.value = e.currentTarget.value)} data-testid="judge">
+          <option value="">none</option>
+          <option value="every-second">every second row</option>
+          <option value="second-half">the second half</option>
+        </select>
+      </label>
+    </>
+  );
+}
+
+/// Puts what was found into the text of the file.
+function take(found: IdentifyFound) {
+  let next: string | null = text.value;
+  for (const assignment of found.assignments) {
+    const at = assignment.indexOf('=');
+    const [, number, unit] = /^"?([^" ]+)(?: ([^"]+))?"?$/.exec(assignment.slice(at + 1)) ?? [];
+    const value = unit ? `"${+Number(number).toPrecision(6)} ${unit}"` : `${+Number(number).toPrecision(6)}`;
+    next = assign(next, assignment.slice(0, at), value);
+    if (next === null) return say(`${assignment.slice(0, at)} has no line of its own in the file: write ${value} there by hand`);
+  }
+  pinNow('before');
+  text.value = next;
+  void apply(next);
+}
+
+function Errors({ of, errors }: { of: string; errors: IdentifyFound['fitted'] }) {
+  return (
+    <>
+      {errors.map((e) => (
+        <tr key={`${of}${e.unit}`}>
+          <th>
+            {of} <span class="quiet">{e.values} values</span>
+          </th>
+          <td>{+e.rms_before.toPrecision(3)}</td>
+          <td>{+e.rms_after.toPrecision(3)}</td>
+          <td class="unit">{e.unit}</td>
+        </tr>
+      ))}
+    </>
+  );
+}
+
+function Found() {
+  if (result.value.kind !== 'identify') return null;
+  const found = result.value.found as IdentifyFound;
+  return (
+    <div data-testid="identify-found">
+      <table class="readings">
+        <thead>
+          <tr>
+            <th>Found</th>
+            <th>before</th>
+            <th>after</th>
+          </tr>
+        </thead>
+        <tbody>
+          {found.unknowns.map((one, k) => (
+            <>
+              <tr key={one.key} data-testid={`found-${one.key}`}>
+                <th class="key">{one.key}</th>
+                <td>{found.shown[k].start}</td>
+                <td>
+                  <b>{found.shown[k].value}</b>
+                </td>
+              </tr>
+              <tr class="of-above">
+                <td colSpan={3} class="quiet">
+                  {!one.matters
+                    ? 'nothing that was measured depends on it'
+                    : one.at_bound
+                      ? 'at its bound'
+                      : found.shown[k].low
+                        ? `95 % confidence: ${found.shown[k].low} to ${found.shown[k].high}`
+                        : 'the data give no interval'}
+                </td>
+              </tr>
+            </>
+          ))}
+        </tbody>
+      </table>
+      <table class="readings">
+        <thead>
+          <tr>
+            <th>Root mean square error</th>
+            <th>before</th>
+            <th>after</th>
+            <th />
+          </tr>
+        </thead>
+        <tbody>
+          <Errors of="fitted" errors={found.fitted} />
+          <Errors of="kept back" errors={found.judged} />
+        </tbody>
+      </table>
+      {found.warnings.map((w) => (
+        <p class="limit">{w}</p>
+      ))}
+      <button class="small" disabled={!mayDrive.value} onClick={() => take(found)} data-testid="identify-use">
+        Use these numbers
+      </button>
+      {Array.from({ length: found.plots }, (_, k) => (
+        <img class="found-plot" key={k} src={`/api/search/plots/${k}?result=${resultNumber.value}`} alt="Measured values beside those that were simulated before and after" />
+      ))}
+    </div>
+  );
+}
+
+export function Identify() {
+  if (!scene.value) return null;
+  const wanted = unknowns.value.filter(({ key }) => chosen.value[key]?.used).map(({ key }) => (chosen.value[key].bounds ? `${key}=${chosen.value[key].bounds}` : key));
+  return (
+    <div class="search">
+      <Unknowns />
+      <Table />
+      <Search
+        kind="identify"
+        label="Identify"
+        ready={mayDrive.value && wanted.length > 0 && table.value !== null}
+        onBegin={() => begin('identify', { unknowns: wanted, csv: table.value!.csv, file: table.value!.name, judge: judge.value })}
+      />
+      <Found />
+    </div>
+  );
+}

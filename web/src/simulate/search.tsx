@@ -1,0 +1,89 @@
+// A search that runs in the studio: its progress, its end, what it has found. One at a time, for all pages.
+import { effect, signal } from '@preact/signals';
+import { api, lines, onEvent, post, say } from '../store';
+
+export type Kind = 'goal' | 'identify';
+
+export interface WaypointFound {
+  index: number;
+  reached: boolean;
+  error_mm: number;
+  inputs: Record<string, number>; // in the units of the actuators' targets
+  reasons: string[];
+}
+
+export interface IdentifyFound {
+  unknowns: { key: string; unit: string; start: number; value: number; at_bound: boolean; matters: boolean }[];
+  shown: { start: string; value: string; low: string; high: string }[];
+  fitted: { unit: string; values: number; rms_before: number; rms_after: number }[];
+  judged: { unit: string; values: number; rms_before: number; rms_after: number }[];
+  assignments: string[]; // KEY=VALUE
+  warnings: string[];
+  plots: number;
+  converged: boolean;
+}
+
+interface Result {
+  kind?: Kind;
+  revision?: number; // of the robot that it is about
+  found?: unknown;
+}
+
+export const searching = signal<{ kind: Kind; stage: string; fraction: number } | null>(null);
+export const refused = signal<{ kind: Kind; why: string } | null>(null);
+export const result = signal<Result>({});
+/// Counts the results, so that a picture of one is never taken for that of another.
+export const resultNumber = signal(0);
+
+async function load(number: number) {
+  result.value = (await (await api('/api/search')).json()) as Result;
+  resultNumber.value = number;
+}
+
+onEvent((event) => {
+  if (event.type === 'search') {
+    const { kind, stage, fraction, error } = event as unknown as { kind: Kind; stage: string; fraction: number; error?: string };
+    searching.value = stage ? { kind, stage, fraction } : null;
+    if (!stage) refused.value = error ? { kind, why: error } : null;
+  }
+  if (event.type === 'searched') load(event.result as number).catch((e: Error) => say(e.message));
+});
+// A studio that was started again knows of no search.
+effect(() => {
+  if (lines.value > 0) searching.value = null;
+});
+
+export function begin(kind: Kind, order: unknown) {
+  refused.value = null;
+  void post(`/api/${kind}`, order, (why) => (refused.value = { kind, why }));
+}
+
+/// The button that begins, or progress with a way to end it, and why nothing was found.
+export function Search({ kind, label, ready, onBegin }: { kind: Kind; label: string; ready: boolean; onBegin: () => void }) {
+  const busy = searching.value;
+  const mine = busy?.kind === kind;
+  return (
+    <>
+      {mine ? (
+        <button type="button" onClick={() => post('/api/search/cancel')} data-testid={`cancel-${kind}`}>
+          Cancel
+        </button>
+      ) : (
+        <button class="primary" type="button" disabled={!ready || busy !== null} onClick={onBegin} data-testid={`find-${kind}`}>
+          {label}
+        </button>
+      )}
+      {mine && (
+        <div class="progress" role="progressbar" aria-label={label} aria-valuenow={Math.round(100 * busy.fraction)} aria-valuemin={0} aria-valuemax={100}>
+          <div style={{ width: `${100 * busy.fraction}%` }} />
+          <span>{busy.stage}</span>
+        </div>
+      )}
+      {refused.value?.kind === kind && (
+        <p class="problems" role="alert" data-testid={`refused-${kind}`}>
+          {refused.value.why}
+        </p>
+      )}
+    </>
+  );
+}
