@@ -32,6 +32,10 @@ struct Objective {
 struct GradientOptions {
     bool rest_positions = false;  ///< of the nodes
     bool tets = false;            ///< what each tetrahedron is made of
+    /// Names of [parameters] of the robot file that are numbers, not formulas of others. Whatever follows from one
+    /// counts: the shape, whose mesh moves along and keeps its topology, places, constants, targets. For programs at
+    /// rest without friction.
+    std::vector<std::string> numbers{};
     /// States that are kept on the way where steps depend on those before. Others are solved again, so that memory does
     /// not grow with the number of steps.
     int kept = 8;
@@ -53,6 +57,7 @@ struct ProgramGradient {
     /// (nodes), where wanted. Lengths and volumes that are wanted as a share of what they are at rest follow.
     std::vector<Point> by_rest_positions;
     std::vector<TetGradient> by_tets;  ///< where wanted
+    std::vector<double> by_numbers;    ///< (GradientOptions::numbers) in the units of the robot file
     /// Where an equilibrium was found: the end of each step, and where a step was halved what lies between.
     struct Instant {
         int step = 0;                   ///< of the program, from 1
@@ -65,7 +70,8 @@ struct ProgramGradient {
 
 /// Runs the robot's program and goes back over it with the adjoint of each step; also of a motion in time. What
 /// friction lags stays as it was found.
-/// @throws Failure of a measure of something that is not there; where a step does not converge or has no derivative;
+/// @throws Failure of a measure or a number that is not there, of a number that no motion of the mesh follows; where a
+/// step does not converge or has no derivative;
 /// cancelled. What `judge` throws is passed on.
 [[nodiscard]] PLIANT_API ProgramGradient gradient(const Model& model, const Objective& objective,
                                                   const GradientOptions& options = {}, const Watch& watch = {});

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/error.hpp"
 #include "geometry/mesh/tet_mesh.hpp"
 #include "pliant/simulation.hpp"
 #include "robot/description/robot.hpp"
@@ -49,6 +50,8 @@ namespace library {
 [[nodiscard]] sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs);
 [[nodiscard]] Observation observation_of(const sim::Step& step);
 [[nodiscard]] StepResult result_of(const sim::Step& step);
+/// With further changes, which count after its own.
+[[nodiscard]] Result<robot::Robot> read_again(const Robot::Data& robot, const std::vector<std::string>& more);
 /// In metres. Throws where it is no mesh.
 [[nodiscard]] mesh::TetMesh tet_mesh(const Mesh& given);
 

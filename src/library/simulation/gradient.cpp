@@ -6,18 +6,22 @@
 #include <exception>
 #include <utility>
 
+#include "base/core/text.hpp"
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
 #include "library/simulation/measures.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_document.hpp"
 #include "simulation/gradient/program_gradient.hpp"
 #include "simulation/material/law_parameters.hpp"
 #include "simulation/run/simulate.hpp"
+#include "simulation/scene/number_models.hpp"
 
 namespace pliant {
 namespace {
 
-std::vector<double> numbers(const Eigen::VectorXd& v) {
+std::vector<double> list_of(const Eigen::VectorXd& v) {
     return {v.begin(), v.end()};
 }
 
@@ -109,7 +113,46 @@ std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivati
             entry(number.name, number.unit)[t] = slope;
         }
     }
-    if (of.density.size() > 0) entry("density", "kg/m^3") = numbers(of.density);
+    if (of.density.size() > 0) entry("density", "kg/m^3") = list_of(of.density);
+    return out;
+}
+
+/// Two robots for each of the numbers that are asked for, and their equations.
+struct Numbers {
+    std::vector<std::unique_ptr<robot::NumberModels>> models;
+    std::vector<std::unique_ptr<sim::Equilibrium>> systems;
+    std::vector<sim::NumberChange> changes;
+};
+
+double value_of_number(const std::vector<std::pair<std::string, double>>& all, const std::string& name) {
+    const auto found = std::ranges::find(all, name, &std::pair<std::string, double>::first);
+    if (found != all.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [one, value] : all) names.push_back(one);
+    const std::string nearest = nearest_name(name, names);
+    throw Failure(Failure::Kind::input, names.empty()
+                                            ? "the robot file has no [parameters] that are numbers"
+                                            : fmt::format("[parameters] has no number \"{}\"; {}", name,
+                                                          nearest.empty() ? "it has " + join_names(names)
+                                                                          : "did you mean \"" + nearest + "\"?"));
+}
+
+Numbers numbers_around(const Model::Data& model, const std::vector<std::string>& names, Progress& progress) {
+    Numbers out;
+    if (names.empty()) return out;
+    const Robot::Data& given = *model.robot;
+    const auto all = library::value_of(robot::free_parameters(given.text, given.file, given.changes));
+    const auto read = [&](const std::vector<std::string>& more) { return library::read_again(given, more); };
+    const mesh::TetMesh mesh = library::value_of(model.given_mesh ? robot::take_mesh(given.robot, *model.given_mesh)
+                                                                  : robot::build_mesh(given.robot, progress));
+    for (const std::string& name : names) {
+        out.models.push_back(std::make_unique<robot::NumberModels>(
+            library::value_of(robot::number_models(read, given.robot, mesh, name, value_of_number(all, name)))));
+        const robot::NumberModels& made = *out.models.back();
+        for (const sim::Model* one : {&made.more, &made.less})
+            out.systems.push_back(std::make_unique<sim::Equilibrium>(*one));
+        out.changes.push_back({(out.systems.end() - 2)->get(), out.systems.back().get(), made.step});
+    }
     return out;
 }
 
@@ -122,7 +165,8 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     Judge judge(scene.model, objective);
     library::WatchedProgress watched(watch);
     JudgedProgress progress(watched, judge);
-    const sim::By by{.tets = options.tets, .rest = options.rest_positions};
+    const Numbers numbers = numbers_around(*model.data(), options.numbers, progress);
+    const sim::By by{.tets = options.tets, .rest = options.rest_positions, .numbers = numbers.changes};
     auto found =
         sim::program_gradient(scene.model, scene.robot.program, judge.objective(), {by, options.kept}, progress);
     watched.rethrow();
@@ -132,11 +176,12 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     out.value = of.value;
     out.values = of.values;
     add_names(scene.model, scene.robot.program, out);
-    out.by_parameters = numbers(of.by.parameters);
+    out.by_parameters = list_of(of.by.parameters);
+    out.by_numbers = list_of(of.by.numbers);
     if (options.rest_positions) out.by_rest_positions = library::points_of(linalg::points_of(of.by.rest));
     if (options.tets) out.by_tets = by_tets(scene.model, of.by.tets);
     for (const auto& instant : of.instants)
-        out.instants.push_back({instant.step, instant.time, numbers(instant.by_inputs)});
+        out.instants.push_back({instant.step, instant.time, list_of(instant.by_inputs)});
     return out;
 }
 

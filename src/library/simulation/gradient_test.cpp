@@ -101,3 +101,59 @@ TEST_CASE("what an objective throws is passed on, and slopes that do not fit are
     CHECK_THROWS_AS((void)gradient(model, objective), Failure);
     CHECK_THROWS_AS((void)gradient(model, at_end(), {}, [](std::string_view, double) { return false; }), Failure);
 }
+
+namespace {
+
+/// A bar whose height, guide line, material, pull and marker follow parameters.
+const char* const drawn = R"(
+    name = "drawn"
+    length_unit = "mm"
+    parameters = { height = 10, poisson = 0.4, ratio = 0.93, twice = "= 2 * height" }
+    material.soft = { youngs_modulus = "1 MPa", poisson_ratio = "= poisson" }
+    mesh = { order = 1, size = "5 mm" }
+    body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [60, 10, "= height"]] } }]
+    fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, "= height"]] }]
+    marker = [{ name = "tip", point = [60, 5, "= height / 2"] }]
+    program = { steps = 4, tolerance = 1e-10 }
+    cable = [{ name = "flexor", points = [[0, 5, "= height - 1"], [30, 5, "= height - 1"], [60, 5, "= height - 1"]], )"
+                          R"(target.length_ratio = "= ratio" }]
+)";
+
+}  // namespace
+
+TEST_CASE("numbers of the drawing have derivatives, whatever follows from them") {
+    const std::string text = drawn;
+    const auto with = [&](const std::string& name, double value) {
+        return Model(Robot::parse(text, {}, {"parameters." + name + "=" + std::to_string(value)}));
+    };
+    const ProgramGradient of =
+        gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"height", "poisson", "ratio"}});
+    REQUIRE(of.by_numbers.size() == 3);
+    // Material and pull leave the mesh as it is.
+    const auto by = [&](const std::string& name, double value, double h) {
+        return (gradient(with(name, value + h), at_end()).value - gradient(with(name, value - h), at_end()).value) /
+               (2 * h);
+    };
+    CHECK(of.by_numbers[1] == near(by("poisson", 0.4, 1e-4), {.relative = 1e-5}));
+    CHECK(of.by_numbers[2] == near(by("ratio", 0.93, 1e-4), {.relative = 1e-5}));
+    CHECK_THROWS_WITH_AS((void)gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"hight"}}),
+                         "[parameters] has no number \"hight\"; did you mean \"height\"?", Failure);
+    CHECK_THROWS_AS((void)gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"twice"}}), Failure);
+    CHECK_THROWS_WITH_AS((void)gradient(Model(bar(short_program)), at_end(), {.numbers = {"height"}}),
+                         "the robot file has no [parameters] that are numbers", Failure);
+}
+
+TEST_CASE("what the height of a bar does to its cable is what bars of other heights show") {
+    Objective tension;
+    tension.measures = {{Measure::Of::tension, "flexor", {}}};
+    tension.judge = [](int step, std::span<const double> at) { return step < 4 ? Judgement{} : Judgement{at[0], {1}}; };
+    const auto of = [&](double height, const GradientOptions& options) {
+        return gradient(Model(Robot::parse(drawn, {},
+                                           {"parameters.height=" + std::to_string(height), "mesh.order=2",
+                                            "mesh.size=3 mm", "program.tolerance=1e-7"})),
+                        tension, options);
+    };
+    // Each is meshed anew, which by itself changes the tension by a percent or so.
+    const double by_others = (of(11.5, {}).value - of(8.5, {}).value) / 3;
+    CHECK(of(10, {.numbers = {"height"}}).by_numbers[0] == near(by_others, {.relative = 0.05}));
+}

@@ -10,7 +10,6 @@
 #include "presentation/report/identified.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_document.hpp"
-#include "robot/file/robot_file.hpp"
 #include "simulation/identify/identify.hpp"
 
 namespace pliant {
@@ -18,18 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// With further changes, which count after its own.
-Result<robot::Robot> read_again(const Robot::Data& robot, const std::vector<std::string>& more) {
-    std::vector<std::string> all = robot.changes;
-    all.insert(all.end(), more.begin(), more.end());
-    return robot::parse_robot(robot.text, robot.file, all);
-}
-
 sim::identify::Source source_of(const std::shared_ptr<const Robot::Data>& robot, const std::optional<Mesh>& mesh,
                                 Progress& progress) {
     Result<mesh::TetMesh> made =
         mesh ? robot::take_mesh(robot->robot, library::tet_mesh(*mesh)) : robot::build_mesh(robot->robot, progress);
-    return {[robot](const std::vector<std::string>& more) { return read_again(*robot, more); },
+    return {[robot](const std::vector<std::string>& more) { return library::read_again(*robot, more); },
             library::value_of(std::move(made))};
 }
 
@@ -119,7 +111,7 @@ std::vector<std::string> Identification::changes() const {
 
 Robot Identification::robot() const {
     Robot::Data data = *data_->robot;
-    data.robot = library::value_of(read_again(data, changes()));
+    data.robot = library::value_of(library::read_again(data, changes()));
     for (std::string& found : changes()) data.changes.push_back(std::move(found));
     return Robot(std::make_shared<const Robot::Data>(std::move(data)));
 }

@@ -16,6 +16,12 @@ std::string Robot::Data::origin() const {
     return fmt::format("{}\n{}", fmt::join(changes, "\n"), text);
 }
 
+Result<robot::Robot> library::read_again(const Robot::Data& robot, const std::vector<std::string>& more) {
+    std::vector<std::string> all = robot.changes;
+    all.insert(all.end(), more.begin(), more.end());
+    return robot::parse_robot(robot.text, robot.file, all);
+}
+
 Robot Robot::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
     auto robot = library::value_of(robot::load_robot(file, changes));
     std::string text = library::value_of(read_file(file));

@@ -88,14 +88,43 @@ Result<config::Document> on_base(config::Document document) {
     return base;
 }
 
-Result<std::string> robot_text(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments,
-                               const fs::path& folder) {
+namespace {
+
+/// With what it stands on and what is changed in it.
+Result<config::Document> whole_document(std::string_view text, const fs::path& file,
+                                        const std::vector<std::string>& assignments) {
     Result<config::Document> document = config::parse(text, file);
     if (document) document = on_base(std::move(*document));
-    if (!document) return tl::unexpected(document.error());
+    if (!document) return document;
     for (const std::string& assignment : assignments) {
         if (Status status = config::set(*document, assignment); !status) return tl::unexpected(status.error());
     }
+    return document;
+}
+
+}  // namespace
+
+Result<std::vector<std::pair<std::string, double>>> free_parameters(std::string_view text, const fs::path& file,
+                                                                    const std::vector<std::string>& assignments) {
+    const Result<config::Document> document = whole_document(text, file, assignments);
+    if (!document) return tl::unexpected(document.error());
+    std::vector<std::pair<std::string, double>> found;
+    for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
+        const auto* table = key == "parameters" ? std::get_if<config::Table>(&value.data) : nullptr;
+        if (table == nullptr) continue;
+        for (const auto& [name, number] : *table) {
+            if (const auto* real = std::get_if<double>(&number.data)) found.emplace_back(name, *real);
+            if (const auto* whole = std::get_if<std::int64_t>(&number.data))
+                found.emplace_back(name, static_cast<double>(*whole));
+        }
+    }
+    return found;
+}
+
+Result<std::string> robot_text(std::string_view text, const fs::path& file, const std::vector<std::string>& assignments,
+                               const fs::path& folder) {
+    Result<config::Document> document = whole_document(text, file, assignments);
+    if (!document) return tl::unexpected(document.error());
     lead_paths(document->root, fs::absolute(document->file).parent_path(), fs::absolute(folder));
     return config::toml_text(document->root);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/core/config.hpp"
@@ -14,6 +15,11 @@ namespace pliant::robot {
 /// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
 /// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
 [[nodiscard]] Result<config::Document> on_base(config::Document document);
+
+/// The numbers of [parameters] that are written as numbers, not as formulas of others, in the order of the file.
+/// Errors: of the text and what it stands on, of an assignment.
+[[nodiscard]] Result<std::vector<std::pair<std::string, double>>> free_parameters(
+    std::string_view text, const std::filesystem::path& file, const std::vector<std::string>& assignments);
 
 /// `text` is that of `file`. Text of a robot file in `folder` that says the same with these assignments, without
 /// comments; files that are there are named from `folder`. Errors: of the text and what it stands on, of an assignment.

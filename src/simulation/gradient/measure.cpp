@@ -238,6 +238,7 @@ void add(const Slope& slope, double factor, Slope& sum) {
     add_vector(slope.state.by_multipliers, sum.state.by_multipliers);
     add_vector(slope.state.by_forces, sum.state.by_forces);
     add_vector(slope.by_rest, sum.by_rest);
+    add_vector(slope.by_numbers, sum.by_numbers);
     for (const auto& [by, rate] : slope.direct) sum.direct.push_back({by, factor * rate});
     for (const Slope::ByMeasure& by : slope.by_measures)
         sum.by_measures.push_back({by.actuator, factor * by.now, factor * by.at_rest});

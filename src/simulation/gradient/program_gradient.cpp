@@ -37,6 +37,8 @@ public:
         for (const Measure& measure : objective_.measures) {
             if (Status status = check(stepper_.system(), measure); !status) return tl::unexpected(status.error());
         }
+        if (has_history() && !options_.by.numbers.empty())
+            return input_error("numbers of the drawing have no derivative over friction or motion in time");
         const Status status = has_history() ? all_back() : all_forward();
         if (!status) return tl::unexpected(status.error());
         std::ranges::reverse(result_.instants);
@@ -126,6 +128,9 @@ private:
         values.clear();
         for (const Measure& measure : objective_.measures) {
             slopes.push_back(slope(stepper_.system(), piece.state, piece.controls, measure));
+            if (!options_.by.numbers.empty())
+                slopes.back().by_numbers =
+                    measure_by_numbers(options_.by.numbers, piece.state, piece.controls, measure);
             values.push_back(slopes.back().value);
         }
         const Judgement judgement = objective_.judge(k, values);

@@ -111,6 +111,7 @@ void add(const Variation& change, Variation& sum) {
     add_part(change.tets.density, sum.tets.density);
     add_part(change.rest, sum.rest);
     add_part(change.guides, sum.guides);
+    add_part(change.numbers, sum.numbers);
 }
 
 Eigen::VectorXd wanted_by_rest(const Linearisation& at) {
@@ -155,6 +156,10 @@ Variation gradient(Linearisation& at, const Adjoint& adjoint, const Slope& of, c
         add_direct(of, all, result.parameters);
     }
     if (by.tets) result.tets = std::move(tets);
+    if (!by.numbers.empty()) {
+        result.numbers = worth_of_numbers(at, adjoint, by.numbers);
+        if (of.by_numbers.size() > 0) result.numbers += of.by_numbers;
+    }
     if (!by.rest && by.guides.empty()) return result;
     const Eigen::VectorXd by_measure = by_rest_measure(at, adjoint, of);
     if (by.rest) result.rest = by_rest_positions(at, adjoint, of, by_measure);

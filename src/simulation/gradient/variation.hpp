@@ -18,6 +18,7 @@
 #include "base/core/error.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/gradient/measure.hpp"
+#include "simulation/gradient/number_change.hpp"
 #include "simulation/linearisation/linearisation.hpp"
 #include "simulation/linearisation/parameters.hpp"
 
@@ -35,6 +36,7 @@ struct By {
     bool tets = false;  ///< what each tet is made of
     bool rest = false;  ///< rest positions
     std::vector<GuidePoint> guides{};
+    std::vector<NumberChange> numbers{};  ///< of the drawing, in what follows a program at rest without friction
 };
 
 /// One number for each that may change; empty where it is not wanted, or does not change.
@@ -48,6 +50,7 @@ struct Variation {
     /// (3 guides) by the rest position of each point, which the mesh then carries elsewhere; lengths that are wanted
     /// follow likewise.
     Eigen::VectorXd guides{};
+    Eigen::VectorXd numbers{};  ///< (numbers)
 };
 
 /// sum += change, of the same parts.

@@ -1,0 +1,92 @@
+#include "simulation/scene/number_models.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robot/bodies/shape_motion.hpp"
+#include "simulation/scene/build_model.hpp"
+
+namespace pliant::robot {
+namespace {
+
+/// Two robots, read with the number at value +- half a step.
+struct Pair {
+    Robot more, less;
+    double step = 0;
+};
+
+using ReadRobot = std::function<Result<Robot>(const std::vector<std::string>& assignments)>;
+
+Result<Pair> read_around(const ReadRobot& read, const std::string& parameter, double value, double half) {
+    const double high = value + half, low = value - half;
+    Result<Robot> more = read({fmt::format("parameters.{}={:.17g}", parameter, high)});
+    if (!more) return tl::unexpected(more.error());
+    Result<Robot> less = read({fmt::format("parameters.{}={:.17g}", parameter, low)});
+    if (!less) return tl::unexpected(less.error());
+    return Pair{std::move(*more), std::move(*less), high - low};
+}
+
+mesh::TetMesh moved(mesh::TetMesh mesh, const std::vector<Vec3>& motion, double by) {
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) mesh.points[n] = mesh.points[n] + by * motion[n];
+    return mesh;
+}
+
+double fastest(const std::vector<Vec3>& motion) {
+    double most = 0;
+    for (const Vec3& v : motion) most = std::max(most, norm(v));
+    return most;
+}
+
+double size_of(const mesh::TetMesh& mesh) {
+    Box3 box;
+    for (const Vec3& p : mesh.points) box.add(p);
+    return box.diagonal();
+}
+
+/// What cannot change by a little.
+Status check_alike(const sim::Model& more, const sim::Model& less) {
+    const sim::Description &a = more.description(), &b = less.description();
+    for (std::size_t s = 0; s < a.supports.size() && s < b.supports.size(); ++s) {
+        if (a.supports[s].nodes != b.supports[s].nodes)
+            return input_error("it decides which nodes \"{}\" holds; let the box of the support follow it",
+                               a.supports[s].name);
+    }
+    const auto is_held = [](int free) { return free < 0; };
+    const bool alike = a.supports.size() == b.supports.size() &&
+                       std::ranges::equal(more.free_index(), less.free_index(), {}, is_held, is_held) &&
+                       a.cables.size() == b.cables.size() && a.chambers.size() == b.chambers.size() &&
+                       a.markers.size() == b.markers.size();
+    if (!alike) return input_error("it decides what the robot consists of");
+    return {};
+}
+
+}  // namespace
+
+Result<NumberModels> number_models(const ReadRobot& read, const Robot& robot, const mesh::TetMesh& mesh,
+                                   const std::string& parameter, double value) {
+    const auto refused = [&](const Error& error) {
+        return input_error("parameter {} has no derivative: {}", parameter, error.message);
+    };
+    const double scale = value != 0 ? std::fabs(value) : 1;
+    constexpr double of_shape = 1e-4, of_number = 1e-6, of_size = 1e-7;
+    const Result<Pair> drawn = read_around(read, parameter, value, of_shape * scale);
+    if (!drawn) return refused(drawn.error());
+    auto motion = shape_motion(robot, {drawn->more, drawn->less, drawn->step}, mesh);
+    if (!motion) return refused(motion.error());
+    // Nodes move by so little that a box of a support still holds them, and by enough for rounding not to show.
+    const double speed = fastest(*motion);
+    const double half = speed > 0 ? std::min(of_number * scale, of_size * size_of(mesh) / speed) : of_number * scale;
+    const Result<Pair> pair = read_around(read, parameter, value, half);
+    if (!pair) return refused(pair.error());
+    Result<sim::Model> more = build_model(pair->more, moved(mesh, *motion, 0.5 * pair->step));
+    if (!more) return refused(more.error());
+    Result<sim::Model> less = build_model(pair->less, moved(mesh, *motion, -0.5 * pair->step));
+    if (!less) return refused(less.error());
+    if (Status status = check_alike(*more, *less); !status) return refused(status.error());
+    return NumberModels{std::move(*more), std::move(*less), pair->step, std::move(*motion)};
+}
+
+}  // namespace pliant::robot

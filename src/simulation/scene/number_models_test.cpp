@@ -1,0 +1,159 @@
+// Gradients by numbers of a drawing against programs on meshes that have moved by more than a little.
+#include "simulation/scene/number_models.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/gradient/program_gradient.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_model.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+using pliant::test::holds;
+
+namespace {
+
+/// A finger with a notch, a cable, a chamber's worth of air and a load that all follow its parameters.
+const char* const finger = R"(
+name = "finger"
+length_unit = "mm"
+parameters = { height = 12, depth = 5, place = 20, angle = 8, radius = 2.5, ratio = 0.96 }
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, density = "1100 kg/m^3" }
+material.firm = { youngs_modulus = "4 MPa", poisson_ratio = 0.4 }
+mesh = { order = ORDER, size = "6 mm" }
+[[body]]
+name = "root"
+material = "firm"
+geometry = { box = [[0, 0, 0], ["= place - 8", 10, "= height"]] }
+[[body]]
+name = "finger"
+material = "soft"
+geometry = { difference = [{ box = [["= place - 8", 0, 0], [50, 10, "= height"]] }, { rotate = "= angle", axis = [0, 1, 0], center = ["= place", 0, "= height"], of = { box = [["= place - 2", -1, "= height - depth"], ["= place + 2", 11, 20]] } }, { cylinder = { from = [40, -1, "= height / 2"], to = [40, 11, "= height / 2"], radius = "= radius" } }] }
+[[fixed]]
+name = "clamp"
+box = [[0, 0, 0], [0, 10, "= height"]]
+[[marker]]
+name = "tip"
+point = [50, 5, "= height / 2"]
+[[load]]
+name = "push"
+box = [[50, 0, 0], [50, 10, "= height"]]
+force = ["0 N", "0.05 N", "0 N"]
+[[cable]]
+name = "flexor"
+points = [[0, 5, "= height - 6"], ["= place", 5, "= height - 6"], [50, 5, "= height - 6"]]
+target = { length_ratio = "= ratio" }
+[program]
+steps = 2
+gravity = [0, 0, -9.81]
+tolerance = 1e-10
+)";
+
+struct Case {
+    std::string text;
+    Robot robot;
+    mesh::TetMesh mesh;
+
+    explicit Case(int order) : text(finger) {
+        text.replace(text.find("ORDER"), 5, std::to_string(order));
+        robot = *read({});
+        Progress silent;
+        mesh = build_mesh(robot, silent).value();
+    }
+    [[nodiscard]] Result<Robot> read(const std::vector<std::string>& changes) const {
+        auto read = parse_robot(text, "finger.toml", changes);
+        REQUIRE_MESSAGE(read, (read ? "" : read.error().message));
+        return read;
+    }
+    [[nodiscard]] Result<NumberModels> around(const std::string& name, double value) const {
+        return number_models([&](const auto& changes) { return read(changes); }, robot, mesh, name, value);
+    }
+};
+
+sim::Objective wanted() {
+    sim::Objective objective;
+    objective.measures = sim::along_axes({sim::Measure::Kind::marker, 0});
+    objective.measures.push_back({sim::Measure::Kind::tension, 0});
+    objective.measures.push_back({sim::Measure::Kind::length, 0});
+    objective.measures.push_back({sim::Measure::Kind::reaction, 0, {0.3, -0.5, 0.8}});
+    objective.judge = [](int, std::span<const double> at) {
+        return sim::squared_distance(at, std::vector<double>{0.05, 0.004, 0.01, 0.5, 0.05, 0.1},
+                                     std::vector<double>{1e4, 2e4, 1e4, 0.5, 1e3, 2});
+    };
+    return objective;
+}
+
+double value_on(const sim::Model& model, const Program& program) {
+    Progress silent;
+    const auto of =
+        sim::program_gradient(model, program, wanted(), {.by = {.inputs = false, .parameters = false}}, silent);
+    REQUIRE_MESSAGE(of, (of ? "" : of.error().message));
+    return of->value;
+}
+
+}  // namespace
+
+TEST_CASE("whatever follows from a number of the drawing is in the gradient by it") {
+    double worst = 0;
+    for (const int order : {1, 2}) {
+        const Case c(order);
+        const auto model = build_model(c.robot, c.mesh);
+        REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+        for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{
+                 {"height", 12}, {"depth", 5}, {"place", 20}, {"angle", 8}, {"radius", 2.5}, {"ratio", 0.96}}) {
+            const auto around = c.around(name, value);
+            REQUIRE_MESSAGE(around, (around ? "" : around.error().message));
+            const sim::Equilibrium more(around->more), less(around->less);
+            sim::GradientOptions options;
+            options.by.numbers = {{&more, &less, around->step}};
+            Progress silent;
+            const auto of = sim::program_gradient(*model, c.robot.program, wanted(), options, silent);
+            REQUIRE_MESSAGE(of, (of ? "" : of.error().message));
+            // The same mesh, moved along its motion by steps that are large beside rounding.
+            const auto at = [&](double change) {
+                mesh::TetMesh moved = c.mesh;
+                for (std::size_t n = 0; n < moved.points.size(); ++n)
+                    moved.points[n] = moved.points[n] + change * around->motion[n];
+                const auto robot = c.read({fmt::format("parameters.{}={:.17g}", name, value + change)});
+                const auto there = build_model(*robot, std::move(moved));
+                REQUIRE_MESSAGE(there, (there ? "" : there.error().message));
+                return value_on(*there, robot->program);
+            };
+            const double h = 1e-3 * value;
+            const double by = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+            CHECK_MESSAGE(of->by.numbers[0] == near(by, {.relative = 5e-6}), name << " of order " << order);
+            worst = std::max(worst, std::fabs(of->by.numbers[0] / by - 1));
+        }
+    }
+    MESSAGE("largest error " << worst);
+}
+
+TEST_CASE("a support that stays where the shape does not is told, and friction has no such derivative") {
+    const std::string fixed = "box = [[0, 0, 0], [0, 10, \"= height\"]]";
+    Case c(1);
+    c.text.replace(c.text.find(fixed), fixed.size(), "box = [[0, 0, 0], [0, 10, 12]]");
+    c.robot = *c.read({});
+    const auto lost = c.around("height", 12);
+    REQUIRE_FALSE(lost);
+    CHECK(holds(lost.error().message, "parameter height has no derivative: it decides which nodes \"clamp\" holds"));
+    const Case good(1);
+    const auto around = good.around("ratio", 0.96);
+    REQUIRE(around);
+    const sim::Equilibrium more(around->more), less(around->less);
+    sim::GradientOptions options;
+    options.by.numbers = {{&more, &less, around->step}};
+    Program in_time = good.robot.program;
+    in_time.dynamics.emplace();
+    const auto model = build_model(good.robot, good.mesh);
+    Progress silent;
+    const auto of = sim::program_gradient(*model, in_time, wanted(), options, silent);
+    REQUIRE_FALSE(of);
+    CHECK(holds(of.error().message, "no derivative over friction or motion in time"));
+}
