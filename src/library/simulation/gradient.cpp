@@ -17,6 +17,7 @@
 #include "simulation/material/law_parameters.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/number_models.hpp"
+#include "simulation/solver/equilibrium.hpp"
 
 namespace pliant {
 namespace {
