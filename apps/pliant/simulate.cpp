@@ -29,6 +29,7 @@ struct Options {
     int steps = 0;
     std::string pictures = "few";
     std::string picture_size;
+    bool film = false;
     std::string view;     ///< "x,y,z" from the robot to the eye; empty: chosen
     std::string solvers;  ///< one, or several with commas
     bool compare = false;
@@ -104,7 +105,8 @@ Result<ResultsOptions> read_pictures(const Options& options) {
     }};
     const auto* const named = std::ranges::find(sets, options.pictures, [](const auto& set) { return set.first; });
     if (named == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
-    ResultsOptions choice{.pictures = named->second, .enough_pictures = [] { return interrupted(); }};
+    ResultsOptions choice{
+        .pictures = named->second, .film = options.film, .enough_pictures = [] { return interrupted(); }};
     if (!options.picture_size.empty()) {
         const auto size = read_picture_size(options.picture_size);
         if (!size) return tl::unexpected(size.error());
@@ -226,6 +228,7 @@ void add_simulate(CLI::App& app, int& status) {
         "none; few: the final state over the rest shape; all: also rest, intermediate states and stress (few)");
     command->add_option("--picture-size", options->picture_size,
                         "WIDTHxHEIGHT of the pictures in pixels (800x500 of few, 1600x1000 of all)");
+    command->add_flag("--film", options->film, "also film.gif, the motion as an animated GIF");
     command->add_option("--view", options->view,
                         "X,Y,Z: viewing direction of the pictures (default: where the motion is seen best)");
     command->add_option("--measured", options->measured,

@@ -52,6 +52,7 @@ enum class Pictures {
 struct ResultsOptions {
     Pictures pictures = Pictures::few;            ///< drawing them takes longest
     std::array<int, 2> picture_size_px = {0, 0};  ///< width and height, 100 to 10000; 0: 800 x 500, of all 1600 x 1000
+    bool film = false;                            ///< also film.gif, the motion as an animated GIF
     std::optional<Point> towards_eye{};           ///< direction from the robot to the eye; else where motion shows best
     std::function<bool()> enough_pictures{};      ///< asked while they are drawn; true leaves all of them out
 };

@@ -80,6 +80,7 @@ ProgramStep program_step(const sim::Step& step) {
 report::PictureChoice choice_of(const ResultsOptions& options) {
     const auto set = static_cast<report::PictureSet>(options.pictures);
     report::PictureChoice choice{set, report::usual_size(set)};
+    choice.film = options.film;
     if (options.picture_size_px != std::array<int, 2>{0, 0}) {
         const auto [width, height] = options.picture_size_px;
         if (std::min(width, height) < 100 || std::max(width, height) > 10000)

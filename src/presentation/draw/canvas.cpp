@@ -155,6 +155,22 @@ void Canvas::disc(const Point2& centre, double radius, const Colour& colour) {
     cairo_fill(cairo);
 }
 
+Image Canvas::pixels() const {
+    cairo_surface_t* surface = state_->surface.get();
+    cairo_surface_flush(surface);
+    Image image{cairo_image_surface_get_width(surface), cairo_image_surface_get_height(surface), {}};
+    const unsigned char* rows = cairo_image_surface_get_data(surface);
+    const int stride = cairo_image_surface_get_stride(surface);
+    image.rgb.reserve(static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px) * 3);
+    for (int j = 0; j < image.height_px; ++j) {
+        const auto* row = reinterpret_cast<const std::uint32_t*>(rows + static_cast<std::ptrdiff_t>(j) * stride);
+        for (int i = 0; i < image.width_px; ++i) {
+            for (const int shift : {16, 8, 0}) image.rgb.push_back(static_cast<std::uint8_t>(row[i] >> shift));
+        }
+    }
+    return image;
+}
+
 Result<std::string> Canvas::png() const {
     std::string bytes;
     const cairo_status_t code = cairo_surface_write_to_png_stream(state_->surface.get(), &append, &bytes);

@@ -52,6 +52,7 @@ public:
 
     /// 8-bit RGB.
     [[nodiscard]] Result<std::string> png() const;
+    [[nodiscard]] Image pixels() const;
 
 private:
     struct State;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "presentation/draw/canvas.hpp"
+#include "presentation/draw/gif.hpp"
 #include "presentation/draw/raycast.hpp"
 #include "presentation/draw/stage_layout.hpp"
 #include "presentation/report/drawn_elements.hpp"
@@ -71,6 +72,7 @@ public:
     Result<Picture> stages();
     Result<Picture> von_mises();
     Result<Picture> measured();
+    Result<Image> film_frame(std::size_t step);
 
 private:
     void add_cable_points(std::size_t step) {
@@ -228,6 +230,19 @@ Result<Picture> Painter::final() {
     return finished(*canvas, "final.png", "At the end, over the rest shape");
 }
 
+/// On a backdrop of one colour, which keeps films small.
+Result<Image> Painter::film_frame(std::size_t step) {
+    const Camera camera = whole_camera(plain_margins);
+    Scene scene = scene_of(step);
+    scene.backdrop_top = scene.backdrop_bottom = stage_backdrop;
+    auto canvas = drawn(scene, camera);
+    if (!canvas) return tl::unexpected(canvas.error());
+    draw_elements(*canvas, whole(*canvas), camera, s_, step);
+    draw_heading(*canvas, s_.robot, step_line(s_, step));
+    draw_legend(*canvas, legend());
+    return canvas->pixels();
+}
+
 Result<Picture> Painter::stages() {
     const int heading_px = static_cast<int>(heading_share * size_.height_px);
     const StageLayout layout =
@@ -328,6 +343,24 @@ Result<std::vector<Picture>> draw_pictures(const Simulation& s, const Surface& s
         pictures.push_back(std::move(*plot));
     }
     return pictures;
+}
+
+Result<std::string> draw_film(const Simulation& s, const Surface& surface, const PictureChoice& choice,
+                              Progress& progress) {
+    constexpr std::size_t most_frames = 60;
+    constexpr int length_ms = 3000, pause_ms = 1200, shortest_ms = 40;
+    std::vector<std::size_t> steps = thinned_steps(s.result.steps.size(), most_frames);
+    if (steps.empty() || steps.front() != 0) steps.insert(steps.begin(), 0);
+    Painter painter(s, surface, choice, progress);
+    std::vector<Image> frames;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        progress.advance("film", static_cast<double>(k) / static_cast<double>(steps.size()));
+        auto frame = painter.film_frame(steps[k]);
+        if (!frame) return tl::unexpected(frame.error());
+        frames.push_back(std::move(*frame));
+    }
+    const int frame_ms = std::max(shortest_ms, length_ms / static_cast<int>(frames.size()));
+    return animated_gif(frames, frame_ms, pause_ms);
 }
 
 }  // namespace pliant::report

@@ -33,12 +33,21 @@ struct PictureChoice {
     PictureSet set = PictureSet::few;
     PictureSize size = usual_size(set);
     std::optional<Vec3> towards_eye{};  ///< none: chosen by how the robot moves
+    bool film = false;                  ///< with film.gif, in its own size
 };
 
 /// few: final.png (rest as a ghost, markers with their paths); all: rest.png, final.png, stages.png and von_mises.png.
 /// Where markers were measured, measured.png too. Text and lines keep their proportions to the picture.
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
                                                          const PictureChoice& choice, Progress& progress);
+
+/// Of a film: small enough for a page or a slide.
+inline constexpr PictureSize usual_film_size{640, 400};
+
+/// The robot on its way, as an animated GIF: all steps or, of many, 60 of them, which take three seconds, and a pause
+/// at the end.
+[[nodiscard]] Result<std::string> draw_film(const Simulation& simulation, const Surface& surface,
+                                            const PictureChoice& choice, Progress& progress);
 
 /// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N", or "at rest · ...".
 [[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);

@@ -35,6 +35,17 @@ Status write_pictures(const fs::path& folder, const std::vector<Picture>& pictur
     return {};
 }
 
+/// False: drawing it was cancelled, and there is none.
+Result<bool> write_film(const fs::path& folder, const Simulation& s, const Surface& surface, PictureChoice choice,
+                        Progress& drawing) {
+    choice.size = usual_film_size;
+    const Result<std::string> gif = draw_film(s, surface, choice, drawing);
+    if (!gif && gif.error().cause == Cause::cancelled) return false;
+    if (!gif) return tl::unexpected(gif.error());
+    const Status status = write_file(folder / "film.gif", *gif);
+    return status ? Result<bool>(true) : tl::unexpected(status.error());
+}
+
 }  // namespace
 
 Result<Written> write_results(const fs::path& folder, const Simulation& simulation, const PictureChoice& choice,
@@ -47,10 +58,15 @@ Result<Written> write_results(const fs::path& folder, const Simulation& simulati
     s.timing.files_s = watch.read_s();
 
     auto pictures = draw_pictures(s, surface, choice, drawing);
-    const bool stopped = !pictures && pictures.error().cause == Cause::cancelled;
+    bool stopped = !pictures && pictures.error().cause == Cause::cancelled;
     if (stopped) pictures = std::vector<Picture>();
     if (!pictures) return tl::unexpected(pictures.error());
     if (Status status = write_pictures(folder, *pictures); !status) return tl::unexpected(status.error());
+    if (choice.film && !stopped) {
+        const Result<bool> filmed = write_film(folder, s, surface, choice, drawing);
+        if (!filmed) return tl::unexpected(filmed.error());
+        stopped = !*filmed;
+    }
     if (!pictures->empty()) s.timing.pictures_s = watch.read_s();
 
     // Last, because both tell how long the rest took.

@@ -80,6 +80,26 @@ TEST_CASE("none, few or all pictures; the page has those that there are") {
     CHECK(PictureChoice{}.size.width_px == 800);
 }
 
+TEST_CASE("a film is there where it is asked for, and is left out where drawing it is cancelled") {
+    const auto robot = report::test::bent_bar(3, 1);
+    Progress progress;
+    const PictureChoice choice{.set = PictureSet::few, .size = {240, 150}, .film = true};
+    const pliant::test::Folder folder("film");
+    REQUIRE(write_results(folder.path(), robot.simulation(), choice, progress, progress));
+    const std::string gif = read_file(folder / "film.gif").value();
+    CHECK(gif.starts_with("GIF89a"));
+    const auto size = [&](std::size_t at) { return static_cast<unsigned char>(gif[at]) + 256 * gif[at + 1]; };
+    CHECK(size(6) == usual_film_size.width_px);
+    CHECK(size(8) == usual_film_size.height_px);
+    const pliant::test::Folder other("no_film");
+    Stop drawing("film");
+    const auto written = write_results(other.path(), robot.simulation(), choice, progress, drawing);
+    REQUIRE(written);
+    CHECK(written->drawing_stopped);
+    CHECK_FALSE(std::filesystem::exists(other / "film.gif"));
+    CHECK(pictures_in(other.path()) == std::vector<std::string>{"final.png"});
+}
+
 TEST_CASE("summary.json tells how long files and pictures took, of the whole") {
     const auto robot = report::test::bent_bar(2, 1);
     Simulation s = robot.simulation();
