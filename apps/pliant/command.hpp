@@ -40,6 +40,7 @@ void add_materials(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
 void add_identify(CLI::App& app, int& status);
 void add_studio(CLI::App& app, int& status);
+void add_completion(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
 

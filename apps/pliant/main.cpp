@@ -79,7 +79,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     int status = exit_done;
     for (const AddCommand add : {add_simulate, add_inverse, add_workspace, add_mesh, add_slice, add_plan, add_export,
                                  add_print, add_twin, add_firmware, add_project, add_compare_printers, add_check,
-                                 add_materials, add_calibrate, add_identify, add_studio})
+                                 add_materials, add_calibrate, add_identify, add_studio, add_completion})
         add(app, status);
     try {
         app.parse(arguments(argc, argv));
