@@ -1,13 +1,19 @@
 // pliant studio: the web interface in which a robot is simulated live, sliced and printed.
 #include <fmt/core.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <thread>
 
+#include "base/core/process.hpp"
 #include "command.hpp"
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/server.hpp"
+#include "presentation/studio/token_file.hpp"
 
 namespace pliant::app {
 namespace {
@@ -18,6 +24,8 @@ struct Options {
     std::string file;
     int port = -1;  ///< -1: the usual one, or any if that is taken
     std::string address = "127.0.0.1";
+    std::string token_file;
+    bool open = false;
     Output output;
 };
 
@@ -36,6 +44,37 @@ void wait_for_interrupt(const sigset_t& signals) {
     sigwait(&signals, &signal);
 }
 
+/// What stands in the address: on all addresses of the computer, its name.
+std::string host_name(const std::string& address) {
+    std::array<char, 256> name{};
+    if ((address == "0.0.0.0" || address == "::") && ::gethostname(name.data(), name.size() - 1) == 0)
+        return name.data();
+    return address.find(':') == std::string::npos ? address : "[" + address + "]";
+}
+
+/// A token that was made for this run is part of the address; one in a file is not repeated where others may read it.
+void tell(const Options& options, const std::string& address) {
+    if (options.output.quiet) {
+        fmt::print("{}\n", address);
+    } else {
+        fmt::print("Pliant studio: {}\n", address);
+        if (!options.token_file.empty()) fmt::print("The token is in {}.\n", options.token_file);
+        fmt::print("Ctrl-C ends it.\n");
+    }
+    std::fflush(stdout);
+}
+
+/// In the browser of the desktop. Where there is none the address has been printed.
+void open_browser(const std::string& address) {
+    const Result<pid_t> browser = start_process("/usr/bin/env", {"xdg-open", address}, {});
+    if (browser) std::thread([process = *browser] { ::waitpid(process, nullptr, 0); }).detach();
+}
+
+Result<std::string> choose_token(const Options& options) {
+    if (!options.token_file.empty()) return studio::read_or_make_token(options.token_file);
+    return studio::is_loopback(options.address) ? "" : studio::random_key();
+}
+
 Result<int> run_studio(const Options& options) {
     // Blocked before any thread is made, so that every thread leaves them to sigwait.
     sigset_t signals;
@@ -45,19 +84,16 @@ Result<int> run_studio(const Options& options) {
 
     Result<std::unique_ptr<studio::Studio>> studio = studio::Studio::open({options.file, PLIANT_VERSION});
     if (!studio) return tl::unexpected(studio.error());
-    studio::ServerSettings settings{options.address, 0, ""};
-    if (!studio::is_loopback(options.address)) settings.token = studio::random_key();
-    const auto server = start(**studio, options, settings);
+    const Result<std::string> token = choose_token(options);
+    if (!token) return tl::unexpected(token.error());
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    const auto server = start(**studio, options, {options.address, 0, *token, program.parent_path()});
     if (!server) return tl::unexpected(server.error());
-    const std::string host =
-        options.address.find(':') == std::string::npos ? options.address : "[" + options.address + "]";
-    const std::string address = fmt::format("http://{}:{}/{}", host, (*server)->port(),
-                                            settings.token.empty() ? "" : "?token=" + settings.token);
-    if (options.output.quiet)
-        fmt::print("{}\n", address);
-    else
-        fmt::print("Pliant studio: {}\nCtrl-C ends it.\n", address);
-    std::fflush(stdout);
+    const std::string address = fmt::format("http://{}:{}/", host_name(options.address), (*server)->port());
+    const std::string with_token = token->empty() ? address : address + "?token=" + *token;
+    tell(options, options.token_file.empty() ? with_token : address);
+    if (options.open) open_browser(with_token);
     wait_for_interrupt(signals);
     return exit_done;
 }
@@ -72,6 +108,9 @@ void add_studio(CLI::App& app, int& status) {
         ->check(CLI::Range(0, 65535));
     command->add_option("--bind", options->address,
                         "address to listen on; any but loopback needs the token that is printed");
+    command->add_option("--token-file", options->token_file,
+                        "file with the token that pages need; made with a random one where there is none");
+    command->add_flag("--open", options->open, "open the page in the browser of the desktop");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant studio examples/cable_gripper/gripper.toml");
     on_call(*command, status, [options] { return run_studio(*options); });

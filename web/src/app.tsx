@@ -133,6 +133,9 @@ export function App() {
           </span>
         )}
         <Helm />
+        <a class="bare" href="/help/" target="_blank" rel="noopener" aria-label="Documentation" title="Documentation" data-testid="help">
+          <Icon name="help" />
+        </a>
         <button class="bare" aria-label={theme.value === 'dark' ? 'Light theme' : 'Dark theme'} onClick={toggleTheme} data-testid="theme">
           <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
         </button>

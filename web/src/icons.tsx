@@ -18,6 +18,7 @@ const paths: Record<string, string> = {
   open: 'M3.5 15.5v-11h5l1.5 2h6.5v9z',
   left: 'M12 5l-5 5l5 5',
   right: 'M8 5l5 5l-5 5',
+  help: 'M7.5 7.5a2.5 2.5 0 1 1 3.6 2.3c-.8.4-1.1.9-1.1 1.7M10 14v.2M10 2.5a7.5 7.5 0 1 1 0 15a7.5 7.5 0 0 1 0-15z',
   close: 'M5.5 5.5l9 9M14.5 5.5l-9 9',
   pin: 'M7 3.5h6l-1 5l2 2.5H6l2-2.5zM10 11v5.5',
 };

@@ -208,6 +208,7 @@ Result<std::filesystem::path> mesher_program() {
             if (fs::is_regular_file(path, error)) return path;
         }
     }
+    // Empty in packages.
     if (fs::is_regular_file(PLIANT_MESH_BUILT, error)) return fs::path(PLIANT_MESH_BUILT);
     return failure(
         "shapes and surfaces are meshed by the program pliant-mesh, which is not beside {}; install it there, or set "

@@ -25,6 +25,7 @@ struct Response {
     std::string file_name{};  ///< not empty: the browser saves it under this name
     bool packed = false;      ///< body is gzip
     bool keep = false;        ///< may be kept for good: its address changes with its content
+    std::string location{};   ///< not empty: where the browser goes instead
 };
 
 [[nodiscard]] Response json_response(std::string json);

@@ -10,6 +10,7 @@
 
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/help_pages.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -62,6 +63,7 @@ void write(mg_connection* wire, const Response& response, const std::string& mor
     if (response.packed) head += "Content-Encoding: gzip\r\n";
     if (!response.file_name.empty())
         head += fmt::format("Content-Disposition: attachment; filename=\"{}\"\r\n", response.file_name);
+    if (!response.location.empty()) head += fmt::format("Location: {}\r\n", response.location);
     head += more + "\r\n";
     mg_write(wire, head.data(), head.size());
     if (!response.body.empty()) mg_write(wire, response.body.data(), response.body.size());
@@ -107,6 +109,7 @@ bool is_loopback(const std::string& address) {
 struct Server::State {
     Studio& studio;
     AccessRules rules;
+    std::filesystem::path help;  ///< empty: there are no pages
     mg_context* context = nullptr;
 
     [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
@@ -136,6 +139,8 @@ struct Server::State {
         if (request.method != "GET" && !read_body(wire, info.content_length, request.body))
             return refuse(wire, 413, "more than 4 MB are refused");
         if (request.path.starts_with("/api/")) return answer(wire, studio.handle(request));
+        if (request.method == "GET" && (request.path == "/help" || request.path.starts_with("/help/")))
+            return answer(wire, help_page(help, request.path));
         return answer(wire, page_file(request));
     }
 
@@ -149,9 +154,10 @@ struct Server::State {
 
     /// From the address bar into a cookie, so that it does not stay in the history.
     static int settle_token(mg_connection* wire, const std::string& token) {
-        write(
-            wire, {302, "text/plain", ""},
-            fmt::format("Location: /\r\nSet-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
+        Response response{302, "text/plain"};
+        response.location = "/";
+        write(wire, response,
+              fmt::format("Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
         return 302;
     }
 
@@ -201,7 +207,8 @@ int Server::port() const {
 Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettings& settings) {
     use_large_thread_stacks();
     mg_init_library(MG_FEATURES_DEFAULT);
-    std::unique_ptr<Server> server(new Server(std::make_unique<State>(State{studio, {0, settings.token}})));
+    std::unique_ptr<Server> server(new Server(
+        std::make_unique<State>(State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
     const bool six = settings.address.find(':') != std::string::npos;
     const std::string ports =
         fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);

@@ -1,6 +1,7 @@
 // The studio on a socket: HTTP and WebSocket through civetweb, on loopback unless it is bound elsewhere.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@ struct ServerSettings {
     std::string address = "127.0.0.1";
     int port = 0;       ///< 0: any that is free
     std::string token;  ///< needed from every page; must not be empty unless the address is loopback
+    std::filesystem::path program_folder{};  ///< from which the pages of /help/ are found
 };
 
 class Server {
