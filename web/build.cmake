@@ -1,9 +1,12 @@
 # Builds the page in a copy of web/ beside the other build products, and writes BUILD/page.cpp.
-#   cmake -DSOURCE=web -DBUILD=build/release/web -DENABLED=ON -P build.cmake
+#   cmake -DSOURCE=web -DBUILD=build/release/web -DENABLED=ON|OFF|REQUIRED -P build.cmake
 find_program(NODE NAMES node nodejs)
 find_program(NPM npm)
 
 function(write_missing_page why)
+  if(ENABLED STREQUAL "REQUIRED")
+    message(FATAL_ERROR "the studio's page is not built: ${why}")
+  endif()
   message(WARNING "the studio's page is not built: ${why}. Delete ${BUILD} to try again")
   file(READ ${SOURCE}/missing.html content HEX)
   string(REGEX REPLACE "(..)" "\\\\x\\1" content "${content}")
