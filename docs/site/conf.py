@@ -18,7 +18,7 @@ if os.environ.get("PLIANT_PYTHON_MODULE"):
     sys.path.insert(0, os.environ["PLIANT_PYTHON_MODULE"])
     extensions += ["sphinx.ext.autodoc", "sphinx.ext.napoleon"]
     autodoc_member_order = "bysource"
-    tags.add("python")  # noqa: F821  Sphinx puts it here
+    autodoc_typehints = "signature"
 
 myst_heading_anchors = 4
 highlight_language = "text"
