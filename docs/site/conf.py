@@ -22,6 +22,7 @@ if os.environ.get("PLIANT_PYTHON_MODULE"):
 
 myst_heading_anchors = 4
 highlight_language = "text"
+smartquotes = False  # --option is no dash
 templates_path = ["_templates"]
 exclude_patterns = ["docs/README.md"]
 
