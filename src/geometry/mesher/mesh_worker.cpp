@@ -185,7 +185,26 @@ std::vector<std::filesystem::path> mesher_near(const std::filesystem::path& fold
     return paths;
 }
 
+std::filesystem::path mesher_of(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (const std::filesystem::path& path : mesher_near(folder)) {
+        if (std::filesystem::is_regular_file(path, error)) return path;
+    }
+    return {};
+}
+
 }  // namespace
+
+std::filesystem::path mesher_on(std::string_view search_path) {
+    while (!search_path.empty()) {
+        const std::size_t end = std::min(search_path.find(':'), search_path.size());
+        const std::filesystem::path folder = search_path.substr(0, end);
+        search_path.remove_prefix(std::min(end + 1, search_path.size()));
+        if (!folder.is_absolute()) continue;  // what is found must not depend on the current folder
+        if (std::filesystem::path path = mesher_of(folder); !path.empty()) return path;
+    }
+    return {};
+}
 
 MesherLimits mesher_limits() {
     MesherLimits limits;
@@ -204,15 +223,16 @@ Result<std::filesystem::path> mesher_program() {
     }
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
     for (const fs::path& folder : {here, folder_of_this_code()}) {
-        for (const fs::path& path : mesher_near(folder)) {
-            if (fs::is_regular_file(path, error)) return path;
-        }
+        if (fs::path path = mesher_of(folder); !path.empty()) return path;
     }
     // Empty in packages.
     if (fs::is_regular_file(PLIANT_MESH_BUILT, error)) return fs::path(PLIANT_MESH_BUILT);
+    if (const char* const search_path = std::getenv("PATH"); search_path != nullptr) {
+        if (fs::path path = mesher_on(search_path); !path.empty()) return path;
+    }
     return failure(
-        "shapes and surfaces are meshed by the program pliant-mesh, which is not beside {}; install it there, or set "
-        "PLIANT_MESH to where it is",
+        "shapes and surfaces are meshed by the program pliant-mesh, which is not beside {} and not installed with a "
+        "program of PATH; install it there, or set PLIANT_MESH to where it is",
         here.string());
 }
 

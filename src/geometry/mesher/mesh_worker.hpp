@@ -19,8 +19,12 @@ struct MesherLimits {
 };
 [[nodiscard]] MesherLimits mesher_limits();
 
-/// Where pliant-mesh is: what PLIANT_MESH names, else beside the running program, else where it was built or installed.
+/// Where pliant-mesh is: what PLIANT_MESH names, else beside the running program or the library that this is part of,
+/// else where it was built, else where it is installed with a program of PATH.
 [[nodiscard]] Result<std::filesystem::path> mesher_program();
+
+/// The first that belongs to a folder of programs in `search_path`, as PATH has them; empty: there is none.
+[[nodiscard]] std::filesystem::path mesher_on(std::string_view search_path);
 
 /// Has a request answered by a process that is kept for the next one. Any thread may ask; requests at one time run in
 /// processes of their own. Errors: those of the mesher; `crash`, with the reason, where its process dies; that it took

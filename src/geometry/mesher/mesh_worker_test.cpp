@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_processes.hpp"
 #include "base/core/test_variable.hpp"
@@ -145,4 +146,20 @@ TEST_CASE("a program that is no mesher, or none, is told by name") {
     const Result<TetMesh> mesh = mesh_cube(5, silent);
     REQUIRE_FALSE(mesh);
     CHECK(mesh.error().message.find("pliant-mesh does not start") == 0);
+}
+
+TEST_CASE("a mesher is found with an installation that PATH names") {
+    const pliant::test::Folder folder("path");
+    std::filesystem::create_directories(folder / "empty/bin");
+    std::filesystem::create_directories(folder / "usr/bin");
+    std::filesystem::create_directories(folder / "usr/libexec/pliant/pliant-mesh");  // a folder is no program
+    const std::string path = (folder / "empty/bin").string() + ":relative::" + (folder / "usr/bin").string();
+    CHECK(mesher_on(path).empty());
+    CHECK(mesher_on("").empty());
+    std::filesystem::remove(folder / "usr/libexec/pliant/pliant-mesh");
+    REQUIRE(write_file(folder / "usr/libexec/pliant/pliant-mesh", "program"));
+    const auto found = mesher_on(path);
+    REQUIRE(!found.empty());
+    CHECK(std::filesystem::equivalent(found, folder / "usr/libexec/pliant/pliant-mesh"));
+    CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
