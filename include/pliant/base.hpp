@@ -54,6 +54,11 @@ private:
 /// Failure of kind `cancelled`. May be empty.
 using Watch = std::function<bool(std::string_view stage, double share)>;
 
+/// Value in SI units of a text as robot files have it: quantity("4 mm", "m") is 0.004. `unit` says what it must be: m,
+/// s, N, Pa, m^3, kg/m^3 or N/m.
+/// @throws Failure where the text is no number with such a unit; it names the units that would be right.
+[[nodiscard]] PLIANT_API double quantity(std::string_view text, std::string_view unit);
+
 /// Version of the library, as "1.0.0".
 [[nodiscard]] PLIANT_API std::string_view version() noexcept;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pliant/base.hpp"           // IWYU pragma: export
+#include "pliant/batch.hpp"          // IWYU pragma: export
 #include "pliant/gradient.hpp"       // IWYU pragma: export
 #include "pliant/identify.hpp"       // IWYU pragma: export
 #include "pliant/inverse.hpp"        // IWYU pragma: export

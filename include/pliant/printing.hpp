@@ -5,8 +5,11 @@
 /// the printer, the plan and the G-code; nothing else is kept between the calls.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +65,23 @@ PLIANT_API PrintPlan slice_job(const SliceOptions& options, const std::filesyste
 /// @throws Failure that names file, entry or line, and layer.
 PLIANT_API std::vector<std::string> check_job(const std::filesystem::path& job);
 
+/// What has cured, voxel by voxel: pixels of the projector across, cured layers up; as large as it must be to hold all.
+struct CuredBlock {
+    std::array<std::size_t, 3> size{};  ///< voxels along x, y and z
+    Point corner_mm{};                  ///< the lowest x, y and z of the block, on the printer's platform
+    double pixel_mm = 0;                ///< length of a voxel along x and y
+    std::vector<double> bottoms_mm;     ///< (z) where a layer begins
+    std::vector<double> tops_mm;        ///< (z) where it ends
+    std::vector<std::string> resins;    ///< that have cured
+    std::vector<std::uint8_t> resin;    ///< (z, y, x) 0: none, k: the k-th of `resins`; of several the one with most
+    std::vector<std::uint8_t> share;    ///< (z, y, x) of the voxel that is solid, 255: all of it
+};
+
+/// What is wanted of a virtual print beside its verdict.
+struct VirtualPrintOptions {
+    bool block = false;  ///< the cured block: a byte or two for each voxel
+};
+
 /// What a print on the virtual printer came to.
 struct VirtualPrint {
     bool passed = false;               ///< the part is as the job asks, and nothing happened that must not
@@ -70,11 +90,13 @@ struct VirtualPrint {
     int layers = 0;                    ///< that cured
     /// (material, volume that cured in its own resin, mm^3)
     std::vector<std::pair<std::string, double>> cured_mm3;
-    std::string journal;  ///< of the print, as the host writes it
+    std::string journal;                      ///< of the print, as the host writes it
+    std::shared_ptr<const CuredBlock> block;  ///< where the options ask for it; else null
 };
 
 /// Prints a job on the virtual printer, by the engine that prints on machines; takes seconds.
-/// @throws Failure of the job, of the print; cancelled.
-[[nodiscard]] PLIANT_API VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch = {});
+/// @throws Failure of the job, of the print; cancelled; a block of more than 4 * 10^9 voxels.
+[[nodiscard]] PLIANT_API VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch = {},
+                                                      const VirtualPrintOptions& options = {});
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -78,6 +79,8 @@ public:
     [[nodiscard]] int order() const;
     /// (nodes) positions at rest, m.
     [[nodiscard]] std::vector<Point> rest_positions() const;
+    /// (3 nodes) the same without a copy, x, y and z of each node; there as long as a copy of this model is.
+    [[nodiscard]] std::span<const double> rest_coordinates() const;
     /// (tets * 4 or 10) node indices, corners first.
     [[nodiscard]] const std::vector<int>& tets() const;
     /// (tets) index into region_names().
@@ -135,6 +138,9 @@ class PLIANT_API State {
 public:
     /// (nodes) m.
     [[nodiscard]] std::vector<Point> positions() const;
+    /// (3 nodes) the same without a copy, x, y and z of each node; there as long as this state or a copy of it is, and
+    /// is not stepped.
+    [[nodiscard]] std::span<const double> coordinates() const;
     /// (nodes) m/s; all 0 for a robot at rest at every instant.
     [[nodiscard]] std::vector<Point> velocities() const;
     /// That it is in equilibrium with.
@@ -255,6 +261,8 @@ public:
     [[nodiscard]] Fields fields(const State& state) const;
     /// (nodes) N, pressure and friction of everything that touches a node; zero where nothing does.
     [[nodiscard]] std::vector<Point> contact_forces(const State& state) const;
+    /// (cables)(points) m, the path of each cable in this state.
+    [[nodiscard]] std::vector<std::vector<Point>> cable_paths(const State& state) const;
     /// The state whose State::bytes() these are.
     /// @throws Failure: no state, one of another version or model, or damaged.
     [[nodiscard]] State state_from(std::string_view bytes) const;

@@ -1,5 +1,9 @@
 #include "library/base/calls.hpp"
 
+#include <fmt/format.h>
+
+#include "base/core/units.hpp"
+
 namespace pliant {
 
 Failure::Failure(Kind kind, const std::string& message, std::string file, int line, std::string key)
@@ -7,6 +11,17 @@ Failure::Failure(Kind kind, const std::string& message, std::string file, int li
 Failure::~Failure() = default;
 Failure::Failure(const Failure&) = default;
 Failure& Failure::operator=(const Failure&) = default;
+
+double quantity(std::string_view text, std::string_view unit) {
+    static constexpr std::pair<std::string_view, Dimension> dimensions[] = {
+        {"m", Dimension::length},     {"s", Dimension::time},     {"N", Dimension::force},
+        {"Pa", Dimension::pressure},  {"m^3", Dimension::volume}, {"kg/m^3", Dimension::density},
+        {"N/m", Dimension::stiffness}};
+    for (const auto& [name, dimension] : dimensions)
+        if (name == unit) return library::value_of(parse_quantity(text, dimension));
+    throw Failure(Failure::Kind::input,
+                  fmt::format("there is no unit \"{}\" here; write m, s, N, Pa, m^3, kg/m^3 or N/m", unit));
+}
 
 std::string_view version() noexcept {
     return PLIANT_VERSION;

@@ -6,6 +6,7 @@
 
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
+#include "library/printing/cured_block.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/job_file.hpp"
@@ -77,7 +78,7 @@ std::vector<std::string> check_job(const std::filesystem::path& job) {
     return value_of(operate::prove_job(job, operate::Pixels::areas)).warnings;
 }
 
-VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch) {
+VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch, const VirtualPrintOptions& options) {
     library::WatchedProgress progress(watch);
     auto rehearsal = value_of(rehearse::Rehearsal::make(value_of(operate::load_job(job)), {}));
     const Status printed = rehearsal.print().print(progress);
@@ -92,6 +93,11 @@ VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watc
     for (const twin::MaterialReport& material : report.materials)
         out.cured_mm3.emplace_back(material.name, material.cured_mm3);
     out.journal = value_of(rehearsal.print().journal());
+    if (options.block) {
+        twin::Twin& printer = rehearsal.print().twin();
+        out.block =
+            std::make_shared<const CuredBlock>(library::cured_block(printer.cured().layers(), printer.printer()));
+    }
     return out;
 }
 

@@ -44,6 +44,8 @@ struct State::Data {
 namespace library {
 
 [[nodiscard]] std::vector<Point> points_of(std::span<const Vec3> points);
+/// x, y and z of each.
+[[nodiscard]] std::span<const double> numbers_of(std::span<const Vec3> points);
 /// As in Inputs and back. Precondition: as many as the model has.
 [[nodiscard]] Inputs inputs_of(const sim::Model& model, const sim::Inputs& inputs);
 /// Throws where the drives are not those of the model, or not finite.

@@ -81,6 +81,9 @@ int Model::order() const {
 std::vector<Point> Model::rest_positions() const {
     return library::points_of(data_->scene.model.mesh().points);
 }
+std::span<const double> Model::rest_coordinates() const {
+    return library::numbers_of(data_->scene.model.mesh().points);
+}
 const std::vector<int>& Model::tets() const {
     return data_->scene.model.mesh().nodes;
 }

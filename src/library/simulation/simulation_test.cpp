@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -46,6 +47,50 @@ TEST_CASE("a model tells what it is made of") {
                   6;
     }
     CHECK(volume == near(6e-6, {.relative = 1e-9}));
+}
+
+TEST_CASE("coordinates are the positions without a copy, and last as long as a copy of their owner") {
+    std::optional<Model> model(bar());
+    Stepper stepper(*model);
+    State state = stepper.rest();
+    const State rest = state;
+    const std::span<const double> before = state.coordinates();
+    REQUIRE(before.size() == 3 * model->node_count());
+    const std::vector<Point> points = rest.positions();
+    for (std::size_t n = 0; n < points.size(); ++n)
+        for (std::size_t k = 0; k < 3; ++k) CHECK(before[3 * n + k] == points[n][k]);
+    (void)stepper.step(state, pulled(state, 0.002));
+    CHECK(before.data() == rest.coordinates().data());
+    CHECK(before.data() != state.coordinates().data());
+    const Model copy = *model;
+    const std::span<const double> at_rest = model->rest_coordinates();
+    model.reset();
+    CHECK(at_rest.data() == copy.rest_coordinates().data());
+    CHECK(at_rest[0] == copy.rest_positions()[0][0]);
+}
+
+TEST_CASE("the path of a cable is as long as the cable") {
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    (void)stepper.step(state, pulled(state, 0.002));
+    const auto paths = stepper.cable_paths(state);
+    REQUIRE(paths.size() == 1);
+    REQUIRE(paths[0].size() == 3);
+    double length = 0;
+    for (std::size_t p = 1; p < 3; ++p)
+        length += std::hypot(paths[0][p][0] - paths[0][p - 1][0], paths[0][p][1] - paths[0][p - 1][1],
+                             paths[0][p][2] - paths[0][p - 1][2]);
+    CHECK(length == near(stepper.observe(state).cables[0].length_m, {.relative = 1e-12}));
+}
+
+TEST_CASE("a quantity has a unit that fits") {
+    CHECK(quantity("4 mm", "m") == near(0.004, {.relative = 1e-15}));
+    CHECK(quantity("20 kPa", "Pa") == near(2e4, {.relative = 1e-15}));
+    CHECK(quantity("2 ml", "m^3") == near(2e-6, {.relative = 1e-15}));
+    CHECK_THROWS_WITH_AS((void)quantity("4", "m"), "\"4\" has no unit; write a length such as \"2.5 mm\"", Failure);
+    CHECK_THROWS_WITH_AS((void)quantity("4 mm", "J"),
+                         "there is no unit \"J\" here; write m, s, N, Pa, m^3, kg/m^3 or N/m", Failure);
 }
 
 TEST_CASE("a mesh that a program has made takes the place of a file") {

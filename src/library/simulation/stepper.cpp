@@ -99,6 +99,14 @@ std::vector<Point> Stepper::contact_forces(const State& state) const {
         linalg::points_of(work_->stepper.system().contact_node_forces(robot.now.state, robot.controls)));
 }
 
+std::vector<std::vector<Point>> Stepper::cable_paths(const State& state) const {
+    const std::vector<Vec3> positions = linalg::points_of(work_->robot_of(state).x());
+    std::vector<std::vector<Point>> paths;
+    for (const std::vector<Vec3>& path : sim::cable_points(work_->model->scene.model, positions))
+        paths.push_back(library::points_of(path));
+    return paths;
+}
+
 State Stepper::state_from(std::string_view bytes) const {
     return work_->state_of(library::value_of(sim::state_from_bytes(work_->stepper, bytes)));
 }

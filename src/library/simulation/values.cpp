@@ -54,6 +54,11 @@ std::vector<Point> points_of(std::span<const Vec3> points) {
     return out;
 }
 
+std::span<const double> numbers_of(std::span<const Vec3> points) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    return points.empty() ? std::span<const double>{} : std::span{&points.data()->x, 3 * points.size()};
+}
+
 Inputs inputs_of(const sim::Model& model, const sim::Inputs& inputs) {
     Inputs out;
     out.time = inputs.time;
@@ -105,6 +110,11 @@ State::State(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 std::vector<Point> State::positions() const {
     return library::points_of(linalg::points_of(data_->robot.x()));
+}
+
+std::span<const double> State::coordinates() const {
+    const Eigen::VectorXd& x = data_->robot.x();
+    return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
 std::vector<Point> State::velocities() const {

@@ -1,0 +1,41 @@
+// A Failure of the library as the exception of pliant.errors that belongs to its kind.
+#include "parts.hpp"
+
+namespace pliant::python {
+namespace {
+
+const char* class_of(Failure::Kind kind) {
+    switch (kind) {
+        case Failure::Kind::input:
+            return "InputError";
+        case Failure::Kind::cancelled:
+            return "Cancelled";
+        case Failure::Kind::failed:
+            break;
+    }
+    return "Failure";
+}
+
+void raise(const Failure& failure) {
+    try {
+        const py::object type = py::module_::import("pliant.errors").attr(class_of(failure.kind()));
+        const py::object error = type(failure.what(), failure.file(), failure.line(), failure.key());
+        PyErr_SetObject(type.ptr(), error.ptr());
+    } catch (py::error_already_set& error) {
+        error.restore();
+    }
+}
+
+}  // namespace
+
+void add_failures(py::module_&) {
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const Failure& failure) {
+            raise(failure);
+        }
+    });
+}
+
+}  // namespace pliant::python

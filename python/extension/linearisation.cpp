@@ -1,0 +1,121 @@
+// What a state answers to small changes.
+#include "pliant/linearisation.hpp"
+
+#include <pybind11/stl.h>
+
+#include <mutex>
+
+#include "arrays.hpp"
+#include "parts.hpp"
+
+namespace pliant::python {
+namespace {
+
+/// A Linearisation that threads wait for.
+struct Shared {
+    explicit Shared(const State& state) : at(state) {}
+    Linearisation at;
+    std::mutex mutex;
+};
+
+template <class Use>
+auto locked(Shared& shared, const Use& use) {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(shared.mutex);
+    return use(shared.at);
+}
+
+py::list list_of(const std::vector<Parameter>& all) {
+    py::list list;
+    for (const Parameter& one : all) list.append(py::make_tuple(one.name, one.unit, one.value));
+    return list;
+}
+
+py::tuple tuple_of(Change change) {
+    return py::make_tuple(array_of(std::move(change.positions)), array_of(std::move(change.tensions_N)),
+                          array_of(std::move(change.pressures_Pa)));
+}
+
+template <std::vector<double> (Linearisation::*Product)(std::span<const double>) const>
+py::array product(Shared& shared, const Numbers& v) {
+    return array_of(locked(shared, [&](Linearisation& at) { return (at.*Product)(span_of(v)); }));
+}
+template <std::vector<double> (Linearisation::*Solution)(std::span<const double>)>
+py::array solution(Shared& shared, const Numbers& b) {
+    return array_of(locked(shared, [&](Linearisation& at) { return (at.*Solution)(span_of(b)); }));
+}
+
+std::vector<double> list_of(const Numbers& numbers) {
+    return {numbers.data(), numbers.data() + numbers.size()};
+}
+
+py::tuple gradient(Shared& shared, const Numbers& by_positions, const Numbers& by_tensions,
+                   const Numbers& by_pressures) {
+    const Quantity quantity{points_of(by_positions), list_of(by_tensions), list_of(by_pressures)};
+    Linearisation::Gradient g = locked(shared, [&](Linearisation& at) { return at.gradient(quantity); });
+    return py::make_tuple(array_of(std::move(g.inputs)), array_of(std::move(g.parameters)),
+                          array_of(std::move(g.rest_positions)));
+}
+
+double dot(const std::vector<Point>& a, const std::vector<Point>& b) {
+    double sum = 0;
+    for (std::size_t n = 0; n < a.size(); ++n)
+        for (std::size_t k = 0; k < 3; ++k) sum += a[n][k] * b[n][k];
+    return sum;
+}
+
+/// (markers, 3, inputs): one solution for each input.
+py::array jacobian(Shared& shared, const std::vector<std::size_t>& markers, const std::vector<std::size_t>& inputs) {
+    std::vector<double> numbers(3 * markers.size() * inputs.size());
+    locked(shared, [&](Linearisation& at) {
+        std::vector<Quantity> coordinates;
+        for (const std::size_t marker : markers)
+            for (std::size_t k = 0; k < 3; ++k)
+                coordinates.push_back(
+                    at.marker_coordinate(marker, {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0}));
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            const Change change = at.response_to_input(inputs[i]);
+            for (std::size_t c = 0; c < coordinates.size(); ++c)
+                numbers[c * inputs.size() + i] = dot(coordinates[c].by_positions, change.positions);
+        }
+        return 0;
+    });
+    return array_of(std::move(numbers))
+        .reshape(Shape{static_cast<py::ssize_t>(markers.size()), 3, static_cast<py::ssize_t>(inputs.size())});
+}
+
+}  // namespace
+
+void add_linearisation(py::module_& module) {
+    py::class_<Shared>(module, "Linearisation")
+        .def(py::init<const State&>(), py::call_guard<py::gil_scoped_release>())
+        .def_property_readonly("size", [](const Shared& shared) { return shared.at.size(); })
+        .def("multiply", &product<&Linearisation::multiply>)
+        .def("multiply_transposed", &product<&Linearisation::multiply_transposed>)
+        .def("solve", &solution<&Linearisation::solve>)
+        .def("solve_transposed", &solution<&Linearisation::solve_transposed>)
+        .def("change",
+             [](Shared& shared, const Numbers& unknowns) {
+                 return tuple_of(locked(shared, [&](Linearisation& at) { return at.change(span_of(unknowns)); }));
+             })
+        .def("inputs", [](const Shared& shared) { return list_of(shared.at.inputs()); })
+        .def("parameters", [](const Shared& shared) { return list_of(shared.at.parameters()); })
+        .def("response_to_input",
+             [](Shared& shared, std::size_t input) {
+                 return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_input(input); }));
+             })
+        .def(
+            "response_to_parameter",
+            [](Shared& shared, std::size_t parameter) {
+                return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_parameter(parameter); }));
+            })
+        .def("gradient", &gradient)
+        .def("marker_coordinate",
+             [](Shared& shared, std::size_t marker, const Point& direction) {
+                 return array_of(locked(
+                     shared, [&](Linearisation& at) { return at.marker_coordinate(marker, direction).by_positions; }));
+             })
+        .def("jacobian", &jacobian);
+}
+
+}  // namespace pliant::python

@@ -1,0 +1,21 @@
+// The parts of the module pliant._pliant. What people use is the Python of python/pliant, which says shapes and units
+// and checks what it is given; this is what lies below.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "pliant/base.hpp"
+
+namespace pliant::python {
+
+namespace py = pybind11;
+
+void add_failures(py::module_& module);
+void add_robot(py::module_& module);
+void add_steps(py::module_& module);
+void add_linearisation(py::module_& module);
+void add_program(py::module_& module);
+void add_printing(py::module_& module);
+void add_batch(py::module_& module);
+
+}  // namespace pliant::python

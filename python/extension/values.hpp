@@ -1,0 +1,25 @@
+// Inputs as Python has them: (time, kinds, values), cables first.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "pliant/simulation.hpp"
+
+namespace pliant::python {
+
+namespace py = pybind11;
+
+using InputTuple = std::tuple<double, std::vector<std::string>, std::vector<double>>;
+
+[[nodiscard]] InputTuple tuple_of(const Inputs& inputs);
+/// Throws where there are not as many kinds as values and actuators, or a kind is none.
+[[nodiscard]] Inputs inputs_of(const Model& model, const InputTuple& tuple);
+[[nodiscard]] py::dict dict_of(const StepResult& result);
+[[nodiscard]] py::dict dict_of(const Observation& seen);
+
+}  // namespace pliant::python

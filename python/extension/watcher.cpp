@@ -1,0 +1,32 @@
+#include "watcher.hpp"
+
+#include <string>
+#include <utility>
+
+namespace pliant::python {
+namespace {
+
+constexpr auto interval = std::chrono::milliseconds(50);
+
+}  // namespace
+
+/// Short work never asks; where somebody listens they hear of its beginning.
+Watcher::Watcher(py::object progress)
+    : progress_(std::move(progress)), next_(progress_.is_none() ? Clock::now() + interval : Clock::now()) {}
+
+Watch Watcher::watch() {
+    return [this](std::string_view stage, double share) { return ask(stage, share); };
+}
+
+bool Watcher::ask(std::string_view stage, double share) {
+    const Clock::time_point now = Clock::now();
+    if (now < next_ && !thrown_) return true;
+    next_ = now + interval;
+    const py::gil_scoped_acquire lock;
+    rethrow();
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (progress_.is_none()) return true;
+    return !progress_(std::string(stage), share).is(py::bool_(false));
+}
+
+}  // namespace pliant::python

@@ -1,0 +1,58 @@
+"""Simulates multi-material soft robots, and slices, plans and prints them.
+
+    import pliant
+
+    model = pliant.Model(pliant.Robot.load("finger.toml"))
+    state = model.rest()
+    model.step(state, {"flexor": {"shortening": "4 mm"}})
+    print(state.observe().markers["tip"], state.observe().cables["flexor"].tension_N)
+
+Robot files keep their own units; everything here is in SI units: metres, newtons, pascals, seconds. What fails raises
+:class:`Failure`, or one of its kinds, with one sentence for people. A model may be used by any number of threads.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _pliant
+from ._pliant import StepResult
+from .batch import Batch
+from .controls import Drive, Inputs
+from .errors import Cancelled, Failure, InputError
+from .linearisation import Change, Gradient, Linearisation, Parameter
+from .model import Model, State
+from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
+from .program import ProgramResult, ProgramStep
+from .results import Cable, Chamber, Fields, Observation, Spring
+from .robot import Mesh, Robot
+
+__version__ = _pliant.version()
+
+__all__ = [
+    "Batch", "Cable", "Cancelled", "Chamber", "Change", "CuredBlock", "Drive", "Failure", "Fields", "Gradient", "Inputs",
+    "InputError", "Linearisation", "Mesh", "Model", "Observation", "Parameter", "PrintPlan", "ProgramResult",
+    "ProgramStep", "Robot", "Spring", "State", "StepResult", "Vat", "VirtualPrint", "check", "plan", "print_virtually",
+    "quantity", "slice",
+]  # fmt: skip
+
+
+def quantity(text: str, unit: str) -> float:
+    """Value in SI units of a text as robot files have it: ``quantity("4 mm", "m")`` is 0.004.
+
+    Args:
+        text: a number and its unit.
+        unit: what it must be: m, s, N, Pa, m^3, kg/m^3 or N/m.
+    """
+    if not isinstance(text, str) or not isinstance(unit, str):
+        raise TypeError('quantity takes two texts, as quantity("4 mm", "m")')
+    return _pliant.quantity(text, unit)
+
+
+def __getattr__(name: str) -> Any:
+    """The parts that few need are imported when they are asked for."""
+    import importlib
+
+    if name in ("envs", "plotting", "torch"):
+        return importlib.import_module("." + name, __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

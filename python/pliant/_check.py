@@ -1,0 +1,118 @@
+"""What is given to a function, as what it needs; else an error in one sentence."""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+Array = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int32]
+PathLike = Union[str, "os.PathLike[str]"]
+#: Called with what is being done and which share of it is done; False cancels the work.
+Progress = Callable[[str, float], Any]
+
+T = TypeVar("T")
+
+
+def instance(value: Any, kind: type[T], what: str) -> T:
+    """`value`, which must be one of `kind`."""
+    if isinstance(value, kind):
+        return value
+    raise TypeError(f"{what} must be a pliant.{kind.__name__}, not {_named(value)}")
+
+
+def progress(value: Any) -> Any:
+    """None, or what can be called."""
+    if value is None or callable(value):
+        return value
+    raise TypeError(f"progress must be callable, as progress(stage, share), not {_named(value)}")
+
+
+def number(value: Any, what: str) -> float:
+    """A finite number."""
+    try:
+        if isinstance(value, (str, bytes)):
+            raise TypeError
+        found = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} must be a number, not {_shown(value)}") from None
+    if not np.isfinite(found):
+        raise InputError(f"{what} is {found}, which is not finite")
+    return found
+
+
+def integer(value: Any, what: str) -> int:
+    """A whole number that a machine can count to."""
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise InputError(f"{what} must be a whole number, not {_shown(value)}") from None
+    if abs(found) > 2**31 - 1:
+        raise InputError(f"{what} is {found}, which is too large")
+    return found
+
+
+def numbers(value: Any, what: str, shape: tuple[int | None, ...]) -> Array:
+    """An array of numbers; None in the shape is any length."""
+    array = _array(value, what)
+    if array.ndim != len(shape) or any(w is not None and n != w for n, w in zip(array.shape, shape)):
+        wanted = ", ".join("any" if n is None else str(n) for n in shape)
+        raise InputError(f"{what} has shape {array.shape}; it must have shape ({wanted}{',' * (len(shape) == 1)})")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def integers(value: Any, what: str) -> IntArray:
+    """An array of whole numbers."""
+    array = _array(value, what)
+    if array.dtype.kind == "f" and not np.array_equal(array, np.floor(array)):
+        raise InputError(f"{what} must be whole numbers")
+    if array.size and not (array.min() >= -(2**31) and array.max() < 2**31):
+        raise InputError(f"{what} has a number that is too large")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def path(value: Any, what: str) -> Path:
+    """A path of a file or folder."""
+    if isinstance(value, (str, os.PathLike)):
+        found = os.fspath(value)
+        if isinstance(found, str) and "\0" not in found:
+            return Path(found)
+    raise InputError(f"{what} must be a path, not {_shown(value)}")
+
+
+def texts(value: Any, what: str) -> list[str]:
+    """A list of texts; one alone stands for a list of it."""
+    if isinstance(value, str):
+        return [value]
+    if isinstance(value, Iterable):
+        found = list(value)
+        if all(isinstance(v, str) for v in found):
+            return found
+    raise InputError(f"{what} must be a list of texts, not {_shown(value)}")
+
+
+def _array(value: Any, what: str) -> npt.NDArray[Any]:
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError):
+        raise InputError(f"{what} must be an array of numbers; its rows have different lengths") from None
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{what} must be an array of numbers, not {_shown(value)}")
+    return array
+
+
+def _named(value: Any) -> str:
+    return "None" if value is None else type(value).__name__
+
+
+def _shown(value: Any) -> str:
+    shown = " ".join(repr(value).split())
+    return shown if len(shown) <= 40 else shown[:37] + "..."

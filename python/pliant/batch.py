@@ -1,0 +1,135 @@
+"""Many robots, or many states of one, at once: one core for each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Union
+
+import numpy as np
+
+from . import _check, _pliant
+from ._check import Progress
+from ._pliant import StepResult
+from .controls import Controls
+from .errors import InputError
+from .model import Model, State
+from .results import Observation, observation
+
+
+class Batch:
+    """Robots that take their steps side by side, on all cores and without the interpreter's lock.
+
+    The bits are those of :meth:`Model.step` for one after the other, on any number of threads::
+
+        batch = pliant.Batch(model, 64)
+        states = batch.rest()
+        results = batch.step(states, lengths)            # (64, cables + chambers)
+
+    Args:
+        models: a model for each robot, or one model for all.
+        count: how many robots, where one model is for all.
+        threads: 0: one for each core.
+        tolerance, iteration_limit: as of :class:`Model`.
+    """
+
+    __slots__ = ("models", "_batch")
+
+    #: (robots)
+    models: tuple[Model, ...]
+
+    def __init__(
+        self,
+        models: Union[Model, Iterable[Model]],
+        count: int | None = None,
+        *,
+        threads: int = 0,
+        tolerance: float | None = None,
+        iteration_limit: int | None = None,
+    ) -> None:
+        if isinstance(models, Model):
+            robots = 1 if count is None else _check.integer(count, "count")
+            if robots < 0:
+                raise InputError(f"count is {robots}; it must not be negative")
+            self.models = (models,) * robots
+        else:
+            if count is not None:
+                raise InputError("count goes with one model; there are as many robots as models")
+            self.models = tuple(_check.instance(m, Model, "each of models") for m in models)
+        self._batch = _pliant.Batch(
+            [m._model for m in self.models],
+            None if tolerance is None else _check.number(tolerance, "tolerance"),
+            None if iteration_limit is None else _check.integer(iteration_limit, "iteration_limit"),
+            _check.integer(threads, "threads"),
+        )
+
+    @property
+    def threads(self) -> int:
+        """Threads that are used."""
+        return self._batch.threads
+
+    def rest(self) -> list[State]:
+        """(robots) undeformed states."""
+        return [model.rest() for model in self.models]
+
+    def step(
+        self,
+        states: Sequence[State],
+        controls: Any = None,
+        *,
+        time: float | None = None,
+        progress: Progress | None = None,
+    ) -> list[StepResult]:
+        """A step of each robot, as :meth:`Model.step`.
+
+        Args:
+            states: (robots) changed in place.
+            controls: (robots) of what :meth:`Model.inputs` takes, as an array (robots, cables + chambers); None: all
+                stay as they are.
+            time: of the program, for all; None: that of each.
+            progress: called with ("robots", share) some times a second; False cancels.
+
+        Raises:
+            InputError: names the robot; all states are as before.
+            Cancelled: by `progress`; each state is as far as it got. After Ctrl-C KeyboardInterrupt, likewise.
+        """
+        own = self._own(states)
+        wanted: Sequence[Controls] = [None] * len(own) if controls is None else _listed(controls, len(own))
+        tuples = []
+        for k, (model, state, control) in enumerate(zip(self.models, states, wanted)):
+            try:
+                tuples.append(model.inputs(control, state, time=time)._tuple())
+            except InputError as error:
+                raise InputError(f"robot {k}: {error}", key=error.key) from None
+        return self._batch.step(own, tuples, _check.progress(progress))
+
+    def observe(self, states: Sequence[State]) -> list[Observation]:
+        """(robots) what can be read off each state."""
+        return [observation(seen) for seen in self._batch.observe(self._own(states))]
+
+    def _own(self, states: Sequence[State]) -> list[_pliant.State]:
+        listed = list(states)
+        if len(listed) != len(self.models):
+            raise InputError(f"{len(listed)} states for {len(self.models)} robots")
+        if len({id(s) for s in listed}) != len(listed):
+            raise InputError("the same state is given for two robots; State.copy makes another")
+        own = []
+        for k, (model, state) in enumerate(zip(self.models, listed)):
+            try:
+                own.append(model._own(state)._state)
+            except InputError as error:
+                raise InputError(f"robot {k}: {error}") from None
+        return own
+
+    def __len__(self) -> int:
+        return len(self.models)
+
+    def __repr__(self) -> str:
+        return f"<pliant.Batch of {len(self)} robots, {self.threads} threads>"
+
+
+def _listed(controls: Any, robots: int) -> Sequence[Controls]:
+    if isinstance(controls, np.ndarray) or isinstance(controls, Sequence) and not isinstance(controls, str):
+        if len(controls) == robots:
+            return list(controls)
+        raise InputError(f"{len(controls)} controls for {robots} robots")
+    raise InputError(f"controls must be a list with one entry for each of {robots} robots")

@@ -1,0 +1,185 @@
+"""What a state answers to small changes: of what drives the robot, of what it is made of, of its rest shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _check, _pliant
+from ._check import Array
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from .model import State
+
+
+class Parameter(NamedTuple):
+    """A number that a state is a function of."""
+
+    #: for people: cable "left": length
+    name: str
+    #: SI; "" for a plain number
+    unit: str
+    #: at the state
+    value: float
+
+
+@dataclass(frozen=True)
+class Change:
+    """A small change of a state, for each unit of what causes it."""
+
+    #: (nodes, 3) m
+    positions: Array
+    #: (cables,) N
+    tensions: Array
+    #: (chambers,) Pa
+    pressures: Array
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """What everything does to a number that depends on a state, for each SI unit."""
+
+    #: (cables + chambers,) by the controls, in the kinds of the state
+    controls: Array
+    #: (inputs,) by :attr:`Linearisation.inputs`: controls, and shares of supports, loads, gravity and obstacles
+    inputs: Array
+    #: (parameters,) by :attr:`Linearisation.parameters`
+    parameters: Array
+    #: (nodes, 3) by the rest shape; lengths and volumes that are driven stay as they are, in m and m^3
+    rest_positions: Array
+
+
+class Linearisation:
+    """The equations of a state of equilibrium, F(z) = 0 in its unknowns z, linearised with everything that acts.
+
+    The unknowns are the positions of the nodes that nothing holds, three by three, then the multipliers that are not
+    given: tensions of cables and minus the pressures of chambers. The matrix is factorised at the first solution and
+    kept. Threads that share one wait for each other.
+
+    Args:
+        state: one that a step left; a copy is kept.
+    """
+
+    __slots__ = ("model", "_at", "_inputs", "_columns")
+
+    def __init__(self, state: State) -> None:
+        from .model import State as StateClass
+
+        _check.instance(state, StateClass, "state")
+        self.model = state.model
+        self._at = _pliant.Linearisation(state._state)
+        self._inputs = [Parameter(*p) for p in self._at.inputs()]
+        self._columns = self._actuator_columns()
+
+    def _actuator_columns(self) -> list[int]:
+        """Of each cable and chamber its input; -1: it has none, as thesis' elements."""
+        places = {p.name.rsplit(": ", 1)[0]: k for k, p in reversed(list(enumerate(self._inputs)))}
+        heads = [f'cable "{name}"' for name in self.model.cables] + [f'chamber "{n}"' for n in self.model.chambers]
+        return [places.get(head, -1) for head in heads]
+
+    @property
+    def size(self) -> int:
+        """Unknowns."""
+        return self._at.size
+
+    def multiply(self, v: Any) -> Array:
+        """(unknowns,) A v with A = dF/dz. Exact."""
+        return self._at.multiply(self._vector(v, "v"))
+
+    def multiply_transposed(self, w: Any) -> Array:
+        """(unknowns,) A^T w."""
+        return self._at.multiply_transposed(self._vector(w, "w"))
+
+    def solve(self, b: Any) -> Array:
+        """(unknowns,) A^-1 b, to 1e-12 of b; also where the equilibrium is unstable."""
+        return self._at.solve(self._vector(b, "b"))
+
+    def solve_transposed(self, b: Any) -> Array:
+        """(unknowns,) A^-T b."""
+        return self._at.solve_transposed(self._vector(b, "b"))
+
+    def change(self, unknowns: Any) -> Change:
+        """What a vector of unknowns is, as a change of the state."""
+        return Change(*self._at.change(self._vector(unknowns, "unknowns")))
+
+    @property
+    def inputs(self) -> list[Parameter]:
+        """What drives the robot: controls, and how far supports, loads, gravity and obstacles are on their way."""
+        return list(self._inputs)
+
+    @property
+    def parameters(self) -> list[Parameter]:
+        """What the robot is made of and stands in: constants of materials, densities, springs, friction, loads..."""
+        return [Parameter(*p) for p in self._at.parameters()]
+
+    def response(self, input: int | str) -> Change:
+        """What the whole state does for each unit of an input, by its name or index. One solution."""
+        return Change(*self._at.response_to_input(self._index(input, self._inputs, "input")))
+
+    def response_to_parameter(self, parameter: int | str) -> Change:
+        """What the whole state does for each unit of a parameter, by its name or index. One solution."""
+        return Change(*self._at.response_to_parameter(self._index(parameter, self.parameters, "parameter")))
+
+    def jacobian(self, markers: Iterable[str] | None = None) -> Array:
+        """(markers, 3, cables + chambers) how markers move with each control: m for each SI unit of its kind."""
+        names = self.model.markers if markers is None else _check.texts(markers, "markers")
+        driven = [c for c in self._columns if c >= 0]
+        found = self._at.jacobian([self._marker(name) for name in names], driven)
+        if len(driven) == len(self._columns):
+            return found
+        full = np.zeros((len(names), 3, len(self._columns)))
+        full[:, :, [k for k, c in enumerate(self._columns) if c >= 0]] = found
+        return full
+
+    def gradient(
+        self,
+        *,
+        positions: Any = None,
+        tensions: Any = None,
+        pressures: Any = None,
+        markers: Mapping[str, Any] | None = None,
+    ) -> Gradient:
+        """As of :meth:`Model.grad`."""
+        model = self.model
+        by = np.zeros((model.node_count, 3))
+        if positions is not None:
+            by += _check.numbers(positions, "positions", (model.node_count, 3))
+        for name, weights in (markers or {}).items():
+            index, direction = self._marker(name), _check.numbers(weights, f"markers[{name!r}]", (3,))
+            by += self._at.marker_coordinate(index, direction.tolist())
+        inputs, parameters, rest = self._at.gradient(
+            by,
+            _vector_or_none(tensions, "tensions", len(model.cables)),
+            _vector_or_none(pressures, "pressures", len(model.chambers)),
+        )
+        controls = np.array([inputs[c] if c >= 0 else 0.0 for c in self._columns], dtype=np.float64)
+        return Gradient(controls, inputs, parameters, rest)
+
+    def _vector(self, v: Any, what: str) -> Array:
+        return _check.numbers(v, what, (self.size,))
+
+    def _marker(self, name: str) -> int:
+        if name in self.model.markers:
+            return self.model.markers.index(name)
+        there = ", ".join(self.model.markers) or "none"
+        raise InputError(f"there is no marker {name!r}; there are {there}", key=str(name))
+
+    @staticmethod
+    def _index(wanted: int | str, all: list[Parameter], what: str) -> int:
+        if isinstance(wanted, str):
+            for k, parameter in enumerate(all):
+                if parameter.name == wanted:
+                    return k
+            raise InputError(f"there is no {what} {wanted!r}; there are {', '.join(p.name for p in all)}", key=wanted)
+        index = _check.integer(wanted, what)
+        if not 0 <= index < len(all):
+            raise InputError(f"there is no {what} {index}; there are {len(all)}")
+        return index
+
+
+def _vector_or_none(value: Any, what: str, size: int) -> Array:
+    return np.empty(0) if value is None else _check.numbers(value, what, (size,))

@@ -1,0 +1,462 @@
+"""A robot that is meshed and ready, its states, and the steps between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _check, _pliant
+from ._check import Array, IntArray, PathLike, Progress
+from ._pliant import StepResult
+from .controls import Controls, Drive, Inputs, Rest, drive_of
+from .errors import Failure, InputError
+from .results import Fields, Observation, observation
+from .robot import Mesh, Robot
+
+if TYPE_CHECKING:
+    from .linearisation import Gradient, Linearisation
+    from .program import OnStep, ProgramResult
+
+
+class State:
+    """Everything about a robot that changes: positions, velocities, multipliers, contact, friction and what the solver
+    remembers.
+
+    States come from :meth:`Model.rest` and :meth:`Model.solve`; :meth:`Model.step` changes one in place, and
+    :meth:`copy` keeps it. Two states are equal if all their bits are. A step from equal states gives equal states, on
+    any number of threads and whatever was solved in between, also from one that was saved, pickled or copied.
+    """
+
+    __slots__ = ("model", "_state")
+    __hash__ = None  # type: ignore[assignment]
+
+    #: Whose state it is.
+    model: Model
+
+    def __init__(self, model: Model, state: _pliant.State) -> None:
+        self.model = model
+        self._state = state
+
+    @property
+    def positions(self) -> Array:
+        """(nodes, 3) m. Shares the state's memory and cannot be written; stays what it is when the state is stepped."""
+        return self._state.positions()
+
+    @property
+    def velocities(self) -> Array:
+        """(nodes, 3) m/s; all 0 for a robot at rest at every instant."""
+        return self._state.velocities()
+
+    @property
+    def displacements(self) -> Array:
+        """(nodes, 3) m, from the rest position."""
+        moved: Array = self.positions - self.model.rest_positions
+        return moved
+
+    @property
+    def inputs(self) -> Inputs:
+        """That it is in equilibrium with."""
+        return self.model._inputs_of(self._state.inputs())
+
+    @property
+    def time(self) -> float:
+        """Of the program, s for a motion in time."""
+        return self._state.inputs()[0]
+
+    def observe(self) -> Observation:
+        """Everything that can be read off it, by the names of the robot file."""
+        return self.model.observe(self)
+
+    def markers(self) -> Array:
+        """(markers, 3) m, in the order of :attr:`Model.markers`."""
+        found = self.observe().markers
+        return np.array([found[name] for name in self.model.markers]).reshape(-1, 3)
+
+    def fields(self) -> Fields:
+        """Strains and stresses, a number for each tetrahedron."""
+        return self.model.fields(self)
+
+    def copy(self) -> State:
+        """One that is independent of it; shares memory until one of them is stepped."""
+        return State(self.model, _pliant.State(self._state))
+
+    def bytes(self) -> bytes:
+        """All of it, to be kept; of use to the same model."""
+        return self._state.bytes()
+
+    def save(self, file: PathLike) -> None:
+        """Writes :meth:`bytes` to a file, whole or not at all; :meth:`Model.load_state` reads it."""
+        self._state.save(_check.path(file, "file"))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, State):
+            return NotImplemented
+        return self._state.equals(other._state)
+
+    def __copy__(self) -> State:
+        return self.copy()
+
+    def __deepcopy__(self, memo: Any) -> State:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _state_again, (self.model, self.bytes())
+
+    def __repr__(self) -> str:
+        return f"<pliant.State of {self.model.robot.name!r} at {self.time:g}>"
+
+
+def _state_again(model: Model, data: bytes) -> State:
+    return model.state_from(data)
+
+
+class Model:
+    """A robot that is meshed and ready to be simulated. Never changes; any number of threads may use it at once.
+
+    Args:
+        robot: what is simulated.
+        mesh: for a robot that says ``mesh={"file": "memory:"}``; otherwise the bodies are meshed, which takes seconds,
+            or the file that the robot names is read.
+        tolerance: largest residual of a step, in place of the robot's ``program.tolerance``.
+        iteration_limit: of the solver, for one piece of a step; 0: the solver's own.
+        progress: called with (stage, share) while bodies are meshed; False cancels.
+
+    Raises:
+        Failure: of the geometry, the mesh, or what does not fit it.
+    """
+
+    __slots__ = (
+        "robot", "mesh", "cables", "chambers", "markers", "_model", "_engine", "_actuators", "_rest", "_options",
+    )  # fmt: skip
+
+    #: What it is made of.
+    robot: Robot
+    #: What was given as its mesh.
+    mesh: Mesh | None
+    #: Names, in the order of inputs.
+    cables: tuple[str, ...]
+    #: Names; in inputs they follow the cables.
+    chambers: tuple[str, ...]
+    #: Names, in the order of the robot file.
+    markers: tuple[str, ...]
+
+    def __init__(
+        self,
+        robot: Robot,
+        mesh: Mesh | None = None,
+        *,
+        tolerance: float | None = None,
+        iteration_limit: int | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        self.robot = _check.instance(robot, Robot, "robot")
+        self.mesh = None if mesh is None else _check.instance(mesh, Mesh, "mesh")
+        self._options = (
+            None if tolerance is None else _check.number(tolerance, "tolerance"),
+            None if iteration_limit is None else _check.integer(iteration_limit, "iteration_limit"),
+        )
+        if self.mesh is None:
+            self._model = _pliant.Model(self.robot._robot, _check.progress(progress))
+        else:
+            regions = self.mesh.regions if self.mesh.regions is not None else np.empty(0, dtype=np.int32)
+            names = list(self.mesh.region_names)
+            self._model = _pliant.Model(self.robot._robot, self.mesh.points, self.mesh.tets, regions, names)
+        self._engine = _pliant.Engine(self._model, *self._options)
+        self.cables = tuple(self._model.cables)
+        self.chambers = tuple(self._model.chambers)
+        self.markers = tuple(self._model.markers)
+        self._actuators = self.cables + self.chambers
+        self._rest: dict[str, Rest] | None = None
+
+    # ---- what it is made of
+
+    @property
+    def node_count(self) -> int:
+        """Nodes of the mesh."""
+        return self._model.node_count
+
+    @property
+    def tet_count(self) -> int:
+        """Tetrahedra of the mesh."""
+        return self._model.tet_count
+
+    @property
+    def order(self) -> int:
+        """1: tetrahedra of 4 nodes; 2: of 10."""
+        return self._model.order
+
+    @property
+    def rest_positions(self) -> Array:
+        """(nodes, 3) m. Shares the model's memory and cannot be written."""
+        return self._model.rest_positions()
+
+    @property
+    def tets(self) -> IntArray:
+        """(tets, 4 or 10) nodes, corners first. Shares the model's memory and cannot be written."""
+        return self._model.tets()
+
+    @property
+    def regions(self) -> IntArray:
+        """(tets,) index into :attr:`region_names`. Shares the model's memory and cannot be written."""
+        return self._model.regions()
+
+    @property
+    def region_names(self) -> list[str]:
+        """Names of the bodies."""
+        return self._model.region_names
+
+    def surface(self) -> IntArray:
+        """(triangles, 3) nodes of the surface, counter-clockwise seen from outside; corners only."""
+        return self._model.surface()
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of cables and chambers: the order of a vector of controls."""
+        return self._actuators
+
+    def warnings(self) -> list[str]:
+        """What is odd about the robot before anything moves, a sentence each."""
+        return self._model.warnings()
+
+    # ---- states
+
+    def rest(self) -> State:
+        """Undeformed and, for a motion in time, still."""
+        return State(self, self._engine.rest())
+
+    def state_from(self, data: bytes) -> State:
+        """The state whose :meth:`State.bytes` these are."""
+        if not isinstance(data, (bytes, bytearray, memoryview)):
+            raise TypeError(f"data must be bytes, not {type(data).__name__}")
+        return State(self, self._engine.state_from(bytes(data)))
+
+    def load_state(self, file: PathLike) -> State:
+        """The state that :meth:`State.save` wrote to this file."""
+        return State(self, self._engine.load(_check.path(file, "file")))
+
+    # ---- inputs
+
+    def program(self, time: float) -> Inputs:
+        """What the robot's program asks for at `time`."""
+        return self._inputs_of(self._engine.program(_check.number(time, "time")))
+
+    def inputs(self, controls: Controls, state: State | None = None, *, time: float | None = None) -> Inputs:
+        """Inputs from what a user would write.
+
+        Args:
+            controls:
+                a mapping from names to targets, in the words of the robot file:
+                ``{"flexor": {"shortening": "4 mm"}, "air": {"pressure": "20 kPa"}}``, with `length`, `length_ratio`,
+                `shortening`, `tension` of cables and `volume`, `volume_ratio`, `volume_change`, `pressure`, `gas` of
+                chambers; text with a unit, or a number in SI units. What is not named stays as it is.
+                Or (cables + chambers,) numbers in SI units, in the kinds of the state: lengths, unless something else
+                was asked for. Or :class:`Inputs`. Or None: all stays as it is.
+            state: what "as it is" means; None: at rest.
+            time: of the program, which drives supports, loads, gravity and obstacles; None: that of the inputs or of
+                the state.
+        """
+        known = (self.rest() if state is None else self._own(state))._state.inputs()
+        if isinstance(controls, Inputs):
+            if controls.names != self._actuators:
+                raise InputError("the inputs are those of another model")
+            known = controls._tuple()
+        when = known[0] if time is None else _check.number(time, "time")
+        if controls is None or isinstance(controls, Inputs):
+            return self._inputs_of((when, known[1], known[2]))
+        if not isinstance(controls, Mapping):
+            values = _check.numbers(controls, "controls", (len(self._actuators),))
+            return self._inputs_of((when, known[1], values.tolist()))
+        by, numbers = list(known[1]), list(known[2])
+        rest = self._rest_measures()
+        for name, wanted in controls.items():
+            if name not in rest:
+                raise InputError(self._no_actuator(name), key=str(name))
+            index = self._actuators.index(name)
+            by[index], numbers[index] = drive_of(name, rest[name], wanted)
+        return self._inputs_of((when, by, numbers))
+
+    # ---- steps
+
+    def step(
+        self,
+        state: State,
+        controls: Controls = None,
+        *,
+        time: float | None = None,
+        progress: Progress | None = None,
+    ) -> StepResult:
+        """Goes from `state` to the controls, on a straight way in as many pieces as it takes, and leaves the new state
+        there.
+
+        A motion in time (``program.time_step``) takes until `time`, which must be later than that of the state.
+
+        Args:
+            state: changed in place; :meth:`State.copy` keeps what was.
+            controls, time: as of :meth:`inputs`.
+            progress: called with (stage, share) some times a second; False cancels.
+
+        Returns:
+            What the step did. One that finds no equilibrium is no error: `arrived` is False, `reason` says why, and the
+            state is as far as it got.
+
+        Raises:
+            InputError: the state belongs to another model, or a number is not possible.
+            Cancelled: by `progress`; the state is as far as it got. After Ctrl-C KeyboardInterrupt, likewise.
+        """
+        own = self._own(state)._state
+        if progress is not None:
+            _check.progress(progress)
+        if isinstance(controls, np.ndarray) and controls.dtype == np.float64 and controls.ndim == 1:
+            when = None if time is None else _check.number(time, "time")
+            return self._engine.step_values(own, controls, when, progress)
+        return self._engine.step(own, self.inputs(controls, state, time=time)._tuple(), progress)
+
+    def solve(
+        self,
+        controls: Controls = None,
+        *,
+        state: State | None = None,
+        time: float | None = None,
+        progress: Progress | None = None,
+    ) -> State:
+        """The state that a step from `state` (None: rest) to the controls leads to; `state` stays as it is.
+
+        Raises:
+            Failure: no equilibrium was found; the text says why.
+        """
+        found = self.rest() if state is None else self._own(state).copy()
+        result = self.step(found, controls, time=time, progress=progress)
+        if not result.arrived:
+            raise Failure(result.reason or "no equilibrium was found")
+        return found
+
+    # ---- what can be read off a state
+
+    def observe(self, state: State) -> Observation:
+        """Everything that can be read off a state, by the names of the robot file."""
+        return observation(self._engine.observe(self._own(state)._state))
+
+    def fields(self, state: State) -> Fields:
+        """Strains and stresses, a number for each tetrahedron."""
+        return Fields(**self._engine.fields(self._own(state)._state))
+
+    def contact_forces(self, state: State) -> Array:
+        """(nodes, 3) N, pressure and friction of everything that touches a node; zero where nothing does."""
+        return self._engine.contact_forces(self._own(state)._state)
+
+    def cable_paths(self, state: State) -> dict[str, Array]:
+        """By name, (points, 3) m: the path of each cable."""
+        return dict(zip(self.cables, self._engine.cable_paths(self._own(state)._state)))
+
+    # ---- derivatives
+
+    def linearise(self, state: State) -> Linearisation:
+        """What a state of equilibrium answers to small changes; exact derivatives."""
+        from .linearisation import Linearisation
+
+        return Linearisation(self._own(state))
+
+    def jacobian(self, state: State, markers: Iterable[str] | None = None) -> Array:
+        """(markers, 3, cables + chambers) how markers move with each control: m for each SI unit of its kind.
+
+        One solution for each control, all with one factorisation.
+
+        Args:
+            state: one that a step left.
+            markers: names; None: all.
+        """
+        return self.linearise(state).jacobian(markers)
+
+    def grad(
+        self,
+        state: State,
+        *,
+        positions: Any = None,
+        tensions: Any = None,
+        pressures: Any = None,
+        markers: Mapping[str, Any] | None = None,
+    ) -> Gradient:
+        """Exact derivatives, by one transposed solution, of a number that depends on the state.
+
+        The number is given by its own derivatives: by positions (nodes, 3), by tensions (cables,), by pressures
+        (chambers,), by the positions of markers, ``{"tip": [0, 0, 1]}``; what is left out is zero.
+
+        Returns:
+            Its derivatives by controls, inputs, parameters (materials, loads, friction...) and rest positions.
+        """
+        return self.linearise(state).gradient(
+            positions=positions, tensions=tensions, pressures=pressures, markers=markers
+        )
+
+    # ---- the program of the robot
+
+    def run(
+        self,
+        on_step: OnStep | None = None,
+        *,
+        measured: PathLike | None = None,
+        checkpoint: PathLike | None = None,
+        checkpoint_every: int = 0,
+        resume: bool = False,
+        progress: Progress | None = None,
+    ) -> ProgramResult:
+        """Runs the robot's program from rest to its end: what ``pliant simulate`` does, to the last bit.
+
+        A program that gets stuck, or is cancelled by `progress`, is no error: the result says so and has the steps
+        until then.
+
+        Args:
+            on_step: called with each :class:`ProgramStep` as it comes, the rest state first.
+            measured: CSV of measured markers, to be compared with the simulated ones.
+            checkpoint: folder in which the run is kept as it goes.
+            checkpoint_every: steps from one checkpoint to the next.
+            resume: goes on from the checkpoint.
+            progress: called with (stage, share) some times a second; False cancels.
+        """
+        from .program import run
+
+        return run(self, on_step, measured, checkpoint, checkpoint_every, resume, progress)
+
+    # ---- its own
+
+    def _own(self, state: State) -> State:
+        if not isinstance(state, State):
+            _check.instance(state, State, "state")
+        if state.model is not self and state.model._model is not self._model:
+            raise InputError("the state is one of another model")
+        return state
+
+    def _inputs_of(self, known: tuple[float, Any, Any]) -> Inputs:
+        return Inputs(self._actuators, *known)
+
+    def _rest_measures(self) -> dict[str, Rest]:
+        if self._rest is None:
+            seen = self._engine.observe(self._engine.rest())
+            self._rest = {
+                **{name: Rest(True, seen["cables"][name][0]) for name in self.cables},
+                **{name: Rest(False, seen["chambers"][name][0]) for name in self.chambers},
+            }
+        return self._rest
+
+    def _no_actuator(self, name: Any) -> str:
+        if not self._actuators:
+            return f"there is no cable or chamber {name!r}; the robot has none"
+        return f"there is no cable or chamber {name!r}; there are {', '.join(self._actuators)}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _model_again, (self.robot, self.mesh, *self._options)
+
+    def __copy__(self) -> Model:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Model:
+        return self
+
+    def __repr__(self) -> str:
+        return f"<pliant.Model {self.robot.name!r}: {self.node_count} nodes, {self.tet_count} tets>"
+
+
+def _model_again(robot: Robot, mesh: Mesh | None, tolerance: float | None, iteration_limit: int | None) -> Model:
+    return Model(robot, mesh, tolerance=tolerance, iteration_limit=iteration_limit)

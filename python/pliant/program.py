@@ -1,0 +1,176 @@
+"""The program of a robot, from rest to its end, and what came of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _check, _pliant
+from ._check import Array, PathLike, Progress
+from ._pliant import StepResult
+from .errors import InputError
+from .results import Observation, observation
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+@dataclass(frozen=True)
+class ProgramStep:
+    """A step of a program."""
+
+    #: 0: at rest
+    index: int
+    #: of the program
+    time: float
+    #: how it was reached
+    result: StepResult
+    #: what it is like
+    observed: Observation
+    #: (nodes, 3) m
+    positions: Array
+
+
+OnStep = Callable[[ProgramStep], Any]
+
+
+class ProgramResult:
+    """What came of a program: a sequence of :class:`ProgramStep`, the rest state first."""
+
+    __slots__ = ("model", "_result")
+
+    def __init__(self, model: Model, result: _pliant.ProgramResult) -> None:
+        self.model = model
+        self._result = result
+
+    @property
+    def converged(self) -> bool:
+        """It ran to its end."""
+        return self._result.converged
+
+    @property
+    def message(self) -> str:
+        """Where and why it stopped, if it did."""
+        return self._result.message
+
+    @property
+    def warnings(self) -> list[str]:
+        """Where the answer should not be trusted, a sentence each."""
+        return self._result.warnings
+
+    @property
+    def solver(self) -> str:
+        """The solver that was asked for or chosen."""
+        return self._result.solver
+
+    @property
+    def solve_s(self) -> float:
+        """Wall time of solving, s."""
+        return self._result.solve_s
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """All figures, as in summary.json."""
+        found: dict[str, Any] = json.loads(self._result.summary_json())
+        return found
+
+    @property
+    def positions(self) -> Array:
+        """(steps, nodes, 3) m, of all steps."""
+        return np.stack([self._result.positions(k) for k in range(len(self))])
+
+    @property
+    def times(self) -> Array:
+        """(steps,) of the program."""
+        return np.array([self._result.step(k)[1] for k in range(len(self))])
+
+    @property
+    def markers(self) -> dict[str, Array]:
+        """By name, (steps, 3) m: the way of each marker."""
+        seen = [self._result.step(k)[3]["markers"] for k in range(len(self))]
+        return {name: np.array([s[name] for s in seen]) for name in self.model.markers}
+
+    def deviations(self) -> list[str]:
+        """A line for each marker that was measured: how far the measured points lie from the simulated way."""
+        return self._result.deviations()
+
+    def write(
+        self,
+        folder: PathLike,
+        *,
+        pictures: str = "few",
+        picture_size_px: tuple[int, int] | None = None,
+        view: Any = None,
+        progress: Progress | None = None,
+    ) -> None:
+        """Writes the folder that ``pliant simulate -o`` writes, whole or not at all, in place of an older one.
+
+        Args:
+            folder: its path.
+            pictures: "none", "few" or "all".
+            picture_size_px: width and height.
+            view: (3,) direction from the robot to the eye; None: from where its motion shows best.
+            progress: called with (stage, share) some times a second; False cancels.
+        """
+        if not isinstance(pictures, str):
+            raise InputError(f'pictures are "none", "few" or "all", not {pictures!r}')
+        size = (0, 0) if picture_size_px is None else _check.integers(picture_size_px, "picture_size_px").tolist()
+        if len(size) != 2:
+            raise InputError("picture_size_px must be (width, height)")
+        eye = None if view is None else _check.numbers(view, "view", (3,)).tolist()
+        self._result.write(_check.path(folder, "folder"), pictures, size, eye, _check.progress(progress))
+
+    def remove_checkpoint(self) -> None:
+        """Deletes the checkpoint of the run, if it has one."""
+        self._result.remove_checkpoint()
+
+    def __len__(self) -> int:
+        return self._result.step_count
+
+    def __getitem__(self, index: int) -> ProgramStep:
+        wanted = _check.integer(index, "index")
+        wanted += len(self) if wanted < 0 else 0
+        if not 0 <= wanted < len(self):
+            raise IndexError(f"there is no step {index}; the last is {len(self) - 1}")
+        return _step(self._result.step(wanted))
+
+    def __iter__(self) -> Iterator[ProgramStep]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        end = "" if self.converged else f", stopped: {self.message}"
+        return f"<pliant.ProgramResult of {self.model.robot.name!r}: {len(self)} steps{end}>"
+
+
+def run(
+    model: Model,
+    on_step: OnStep | None,
+    measured: PathLike | None,
+    checkpoint: PathLike | None,
+    checkpoint_every: int,
+    resume: bool,
+    progress: Progress | None,
+) -> ProgramResult:
+    """As :meth:`Model.run`."""
+    if on_step is not None and not callable(on_step):
+        raise TypeError(f"on_step must be callable, not {type(on_step).__name__}")
+    heard = None if on_step is None else lambda step: on_step(_step(step))
+    result = _pliant.run(
+        model._model,
+        heard,
+        "" if measured is None else _check.path(measured, "measured"),
+        "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
+        _check.integer(checkpoint_every, "checkpoint_every"),
+        bool(resume),
+        _check.progress(progress),
+    )
+    return ProgramResult(model, result)
+
+
+def _step(step: tuple[int, float, StepResult, dict[str, Any], Array]) -> ProgramStep:
+    index, time, result, seen, positions = step
+    return ProgramStep(index, time, result, observation(seen), positions)

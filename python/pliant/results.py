@@ -1,0 +1,91 @@
+"""What is read off a state. SI units throughout."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from ._check import Array
+
+
+class Cable(NamedTuple):
+    """A cable of an :class:`Observation`."""
+
+    #: m, along all its points
+    length_m: float
+    #: of that at rest
+    length_ratio: float
+    #: N, never negative
+    tension_N: float
+
+
+class Chamber(NamedTuple):
+    """A chamber of an :class:`Observation`."""
+
+    #: m^3, inside its walls
+    volume_m3: float
+    #: of that at rest
+    volume_ratio: float
+    #: Pa, above ambient
+    pressure_Pa: float
+
+
+class Spring(NamedTuple):
+    """A spring of an :class:`Observation`."""
+
+    #: m, between its ends
+    length_m: float
+    #: N, positive where it pulls
+    force_N: float
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What can be read off a state, by the names of the robot file."""
+
+    #: by name
+    cables: dict[str, Cable]
+    #: by name
+    chambers: dict[str, Chamber]
+    #: by name
+    springs: dict[str, Spring]
+    #: by name: (3,) position, m
+    markers: dict[str, Array]
+    #: by name: (3,) reaction on the robot, N
+    supports: dict[str, Array]
+    #: by name of the obstacle: (3,) pressure and friction on the robot, N
+    contacts: dict[str, Array]
+    #: N, sum of the sizes of the robot's forces on itself
+    self_contact_N: float
+    #: m, between surfaces that are near enough to act; infinite where none are
+    smallest_distance_m: float
+    #: J, elastic and contact energy, minus the work of loads and gravity
+    energy_J: float
+    #: J, of a motion in time
+    kinetic_energy_J: float
+    #: smallest ratio of volumes, now over rest, of any point
+    min_J: float
+
+
+@dataclass(frozen=True)
+class Fields:
+    """(tets,) one value for each tetrahedron: the mean over its integration points."""
+
+    #: det F
+    volume_ratio: Array
+    #: of the Cauchy stress, Pa
+    von_mises_Pa: Array
+    #: largest principal stretch
+    max_stretch: Array
+    #: J/m^3 of rest volume; 0 where the law has no energy
+    energy_density_Pa: Array
+
+
+def observation(seen: dict[str, Any]) -> Observation:
+    """From what the extension gives."""
+    named: dict[str, Any] = {
+        "cables": {name: Cable(*c) for name, c in seen["cables"].items()},
+        "chambers": {name: Chamber(*c) for name, c in seen["chambers"].items()},
+        "springs": {name: Spring(*s) for name, s in seen["springs"].items()},
+    }
+    return Observation(**{**seen, **named})

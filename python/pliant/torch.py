@@ -1,0 +1,62 @@
+"""Equilibria as functions of torch: values by :meth:`Model.solve`, derivatives by :meth:`Model.grad`.
+
+Needs torch; the rest of the module does not.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+
+from . import _check
+from .model import Model, State
+
+
+class _Positions(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx: Any, controls: Any, model: Model, start: State | None) -> Any:
+        ctx.state = model.solve(controls.detach().cpu().numpy().astype(np.float64), state=start)
+        return torch.from_numpy(ctx.state.positions.copy()).to(controls)
+
+    @staticmethod
+    def backward(ctx: Any, *grads: Any) -> Any:
+        found = ctx.state.model.grad(ctx.state, positions=grads[0].detach().cpu().numpy().astype(np.float64))
+        return torch.from_numpy(found.controls).to(grads[0]), None, None
+
+
+class _Markers(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx: Any, controls: Any, model: Model, start: State | None) -> Any:
+        ctx.state = model.solve(controls.detach().cpu().numpy().astype(np.float64), state=start)
+        return torch.from_numpy(ctx.state.markers()).to(controls)
+
+    @staticmethod
+    def backward(ctx: Any, *grads: Any) -> Any:
+        model = ctx.state.model
+        rows = grads[0].detach().cpu().numpy().astype(np.float64)
+        found = model.grad(ctx.state, markers=dict(zip(model.markers, rows)))
+        return torch.from_numpy(found.controls).to(grads[0]), None, None
+
+
+def positions(model: Model, controls: Any, state: State | None = None) -> Any:
+    """(nodes, 3) m: where the nodes are at these controls, with a gradient.
+
+    Args:
+        model: what is solved.
+        controls: tensor (cables + chambers,) in SI units, in the kinds of `state`.
+        state: from which it is solved; None: rest. Nothing flows back to it.
+    """
+    return _Positions.apply(*_given(model, controls, state))
+
+
+def markers(model: Model, controls: Any, state: State | None = None) -> Any:
+    """(markers, 3) m: where the markers are at these controls, with a gradient; otherwise as :func:`positions`."""
+    return _Markers.apply(*_given(model, controls, state))
+
+
+def _given(model: Model, controls: Any, state: State | None) -> tuple[Any, Model, State | None]:
+    if not isinstance(controls, torch.Tensor):
+        raise TypeError(f"controls must be a tensor, not {type(controls).__name__}")
+    return controls, _check.instance(model, Model, "model"), state

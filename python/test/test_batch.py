@@ -1,0 +1,104 @@
+"""Many robots at once."""
+
+import threading
+
+import numpy as np
+import pytest
+from robots import bar, block
+
+import pliant
+
+
+@pytest.fixture(scope="module")
+def model():
+    return bar()
+
+
+def lengths(robots):
+    return 0.06 - 1e-4 * np.arange(1, robots + 1)[:, None]
+
+
+def test_a_batch_has_the_bits_of_one_after_the_other(model):
+    robots = 12
+    one_by_one = []
+    for controls in lengths(robots):
+        state = model.rest()
+        for share in (0.5, 1):
+            model.step(state, 0.06 + share * (controls - 0.06))
+        one_by_one.append(state)
+    for threads in (1, 2, 5):
+        batch = pliant.Batch(model, robots, threads=threads)
+        assert len(batch) == robots and batch.threads == threads
+        states = batch.rest()
+        for share in (0.5, 1):
+            results = batch.step(states, 0.06 + share * (lengths(robots) - 0.06))
+            assert all(result.arrived for result in results)
+        assert states == one_by_one
+    seen = batch.observe(states)
+    assert seen[3].markers["tip"].tolist() == states[3].observe().markers["tip"].tolist()
+
+
+def test_robots_of_a_batch_may_differ(model):
+    other = block()
+    batch = pliant.Batch([model, other])
+    states = batch.rest()
+    batch.step(states, [{"flexor": {"shortening": "1 mm"}}, {"side": {"length_ratio": 0.95}}])
+    assert states[0] == model.solve({"flexor": {"shortening": "1 mm"}})
+    assert states[1] == other.solve({"side": {"length_ratio": 0.95}})
+    batch.step(states)
+    assert states[1].observe().cables["side"].length_ratio == pytest.approx(0.95, rel=1e-6)
+
+
+def test_mistakes_name_the_robot_and_leave_the_states(model):
+    batch = pliant.Batch(model, 3)
+    states = batch.rest()
+    mistakes = {
+        "robot 1: controls has shape (2,); it must have shape (1,)": lambda: batch.step(states, [[0.05], [1, 2], [0.05]]),
+        "robot 2: cable \"flexor\": nan": lambda: None,
+        "2 controls for 3 robots": lambda: batch.step(states, [[0.05]] * 2),
+        "2 states for 3 robots": lambda: batch.step(states[:2]),
+        "the same state is given for two robots": lambda: batch.step([states[0]] * 3),
+        "robot 0: the state is one of another model": lambda: batch.step([block().rest(), *states[1:]]),
+        "count goes with one model": lambda: pliant.Batch([model], 2),
+        "the number of threads is negative": lambda: pliant.Batch(model, 2, threads=-1),
+    }
+    del mistakes["robot 2: cable \"flexor\": nan"]
+    for text, slip in mistakes.items():
+        with pytest.raises(pliant.InputError) as caught:
+            slip()
+        assert str(caught.value).startswith(text)
+    with pytest.raises(pliant.InputError, match="^robot 1: .*not finite"):
+        batch.step(states, np.array([[0.05], [np.nan], [0.05]]))
+    assert states == batch.rest()
+
+
+def test_a_batch_of_none_does_nothing(model):
+    batch = pliant.Batch(model, 0)
+    assert batch.step(batch.rest()) == []
+
+
+def test_progress_cancels_a_batch_and_cannot_use_it(model):
+    batch = pliant.Batch(model, 4)
+    states = batch.rest()
+    with pytest.raises(pliant.Cancelled):
+        batch.step(states, lengths(4), progress=lambda stage, share: False)
+    with pytest.raises(pliant.InputError, match="at work"):
+        batch.step(states, lengths(4), progress=lambda stage, share: batch.observe(states))
+    assert all(result.arrived for result in batch.step(states, lengths(4)))
+
+
+def test_threads_wait_for_a_batch(model):
+    batch = pliant.Batch(model, 4)
+    found = []
+
+    def work():
+        states = batch.rest()
+        batch.step(states, lengths(4))
+        found.append(states)
+
+    threads = [threading.Thread(target=work) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 3 and found[0] == found[1] == found[2]

@@ -1,0 +1,95 @@
+"""Jacobians and gradients against differences, and what they are for."""
+
+import numpy as np
+import pytest
+from robots import bar
+
+import pliant
+
+
+@pytest.fixture(scope="module")
+def model():
+    return pliant.Model(bar().robot, tolerance=1e-10)
+
+
+@pytest.fixture(scope="module")
+def state(model):
+    return model.solve([0.058])
+
+
+def tip(model, length):
+    return model.solve([length]).markers()[0]
+
+
+def test_the_jacobian_is_how_markers_move(model, state):
+    h = 1e-6
+    measured = (tip(model, 0.058 + h) - tip(model, 0.058 - h)) / (2 * h)
+    jacobian = model.jacobian(state)
+    assert jacobian.shape == (1, 3, 1)
+    assert np.linalg.norm(jacobian[0, :, 0] - measured) < 1e-5 * np.linalg.norm(measured)
+    assert np.array_equal(jacobian, model.jacobian(state, ["tip"]))
+    assert model.jacobian(state, []).shape == (0, 3, 1)
+
+
+def test_the_gradient_agrees_with_the_jacobian(model, state):
+    weights = np.array([0.3, -1, 2])
+    gradient = model.grad(state, markers={"tip": weights})
+    assert gradient.controls == pytest.approx(weights @ model.jacobian(state)[0], rel=1e-9)
+    assert gradient.rest_positions.shape == (model.node_count, 3)
+    at = model.linearise(state)
+    assert len(gradient.inputs) == len(at.inputs) and len(gradient.parameters) == len(at.parameters)
+    assert at.inputs[0].name == 'cable "flexor": length' and at.inputs[0].value == pytest.approx(0.058)
+    by_positions = np.zeros((model.node_count, 3))
+    by_positions[5, 2] = 1
+    response = at.response('cable "flexor": length')
+    assert model.grad(state, positions=by_positions).controls[0] == pytest.approx(response.positions[5, 2], rel=1e-8)
+    tension = model.grad(state, tensions=[1]).controls[0]
+    assert tension == pytest.approx(response.tensions[0], rel=1e-8)
+    assert tension < 0
+
+
+def test_a_gradient_by_a_modulus_is_a_difference(model, state):
+    names = [p.name for p in model.linearise(state).parameters]
+    modulus = names.index('material "soft": youngs_modulus')
+    gradient = model.grad(state, tensions=[1]).parameters[modulus]
+    h = 1e3
+
+    def tension(youngs):
+        other = pliant.Model(model.robot.changed({"material.soft.youngs_modulus": f"{youngs} Pa"}), tolerance=1e-10)
+        return other.solve([0.058]).observe().cables["flexor"].tension_N
+
+    assert gradient == pytest.approx((tension(1e6 + h) - tension(1e6 - h)) / (2 * h), rel=1e-5)
+
+
+def test_products_and_solutions_belong_together(model, state):
+    at = model.linearise(state)
+    v = np.sin(np.arange(at.size))
+    assert np.allclose(at.solve(at.multiply(v)), v, rtol=1e-6, atol=1e-8)
+    assert np.allclose(at.solve_transposed(at.multiply_transposed(v)), v, rtol=1e-6, atol=1e-8)
+    assert at.change(v).positions.shape == (model.node_count, 3)
+
+
+def test_scipy_works_on_plain_functions(model):
+    optimize = pytest.importorskip("scipy.optimize")
+    wanted = tip(model, 0.0573)
+
+    def miss(lengths):
+        state = model.solve(lengths)
+        away = state.markers()[0] - wanted
+        return 1e6 * away @ away, 2e6 * model.grad(state, markers={"tip": away}).controls
+
+    found = optimize.minimize(miss, [0.059], jac=True, bounds=[(0.055, 0.06)], method="L-BFGS-B", tol=1e-12)
+    assert found.x[0] == pytest.approx(0.0573, abs=1e-6)
+
+
+def test_torch_goes_back_through_an_equilibrium(model):
+    torch = pytest.importorskip("torch")
+    lengths = torch.tensor([0.058], dtype=torch.float64, requires_grad=True)
+    markers = pliant.torch.markers(model, lengths)
+    assert markers.shape == (1, 3)
+    (markers * torch.tensor([[0.3, -1, 2]])).sum().backward()
+    weights = np.array([0.3, -1, 2])
+    assert lengths.grad.numpy() == pytest.approx(weights @ model.jacobian(model.solve([0.058]))[0], rel=1e-8)
+    assert torch.autograd.gradcheck(lambda x: 1e3 * pliant.torch.markers(model, x), [lengths], eps=1e-6, atol=1e-4)
+    positions = pliant.torch.positions(model, lengths)
+    assert positions.shape == (model.node_count, 3) and positions.requires_grad

@@ -1,0 +1,148 @@
+"""What people get wrong ends in one sentence, with its place."""
+
+import numpy as np
+import pytest
+from robots import BAR, BLOCK, bar, block, cube
+
+import pliant
+
+
+@pytest.fixture(scope="module")
+def model():
+    return bar()
+
+
+def without(key):
+    return {k: v for k, v in BAR.items() if k != key}
+
+
+def body(**changes):
+    return {**BAR, "body": [{**BAR["body"][0], **changes}]}
+
+
+SLIPS = {
+    "a unit is forgotten": (
+        lambda m: pliant.Robot({**BAR, "material": {"soft": {"youngs_modulus": 12}}}),
+        'material.soft.youngs_modulus: 12 has no unit; write a pressure such as "12 MPa"',
+    ),
+    "a key is misspelt": (
+        lambda m: pliant.Robot(body(geometri={"box": [[0, 0, 0], [1, 1, 1]]})),
+        'body[0].geometri: unknown key; did you mean "geometry"?',
+    ),
+    "a material is misspelt": (
+        lambda m: pliant.Robot(body(material="sofd")),
+        'body[0].material: no material "sofd"; did you mean "soft"?',
+    ),
+    "a file is given where keys are due": (
+        lambda m: pliant.Robot("finger.toml"),
+        "a Robot is made of keys, as Robot(name=...) or Robot({...}); a file is read by Robot.load(file), text by "
+        "Robot.parse(text)",
+    ),
+    "a file is not there": (lambda m: pliant.Robot.load("nowhere.toml"), "nowhere.toml: no such file"),
+    "a number does not say what it is": (
+        lambda m: m.step(m.rest(), {"flexor": 0.9}),
+        'cable "flexor": 0.9 does not say what it is; write {"length_ratio": 0.9}, {"shortening": "4 mm"} or '
+        '{"tension": "2 N"}',
+    ),
+    "a cable is misspelt": (
+        lambda m: m.step(m.rest(), {"flexer": {"length_ratio": 0.9}}),
+        "there is no cable or chamber 'flexer'; there are flexor",
+    ),
+    "a cable is inflated": (
+        lambda m: m.step(m.rest(), {"flexor": {"pressure": "2 kPa"}}),
+        "cable \"flexor\": 'pressure' is not known; write one of length, length_ratio, shortening, tension",
+    ),
+    "a unit does not fit": (
+        lambda m: m.step(m.rest(), {"flexor": {"shortening": "4 N"}}),
+        'cable "flexor": shortening: unknown unit "N"; here the units are mm, m, cm, um, µm, in',
+    ),
+    "too many controls": (
+        lambda m: m.step(m.rest(), [0.05, 0.05]),
+        "controls has shape (2,); it must have shape (1,)",
+    ),
+    "a control is no number": (
+        lambda m: m.step(m.rest(), [np.nan]),
+        'cable "flexor": driven by a number that is not finite',
+    ),
+    "a model is taken for a state": (lambda m: m.step(m, [0.05]), "state must be a pliant.State, not Model"),
+    "a robot is taken for a model": (
+        lambda m: pliant.Model("finger.toml"),
+        "robot must be a pliant.Robot, not str",
+    ),
+    "a state is of another model": (
+        lambda m: m.observe(block().rest()),
+        "the state is one of another model",
+    ),
+    "bytes are of another model": (
+        lambda m: m.state_from(b"nothing"),
+        "not a state that Pliant has written, or damaged",
+    ),
+    "a marker is misspelt": (
+        lambda m: m.grad(m.rest(), markers={"top": [0, 0, 1]}),
+        "there is no marker 'top'; there are tip",
+    ),
+    "a mesh has the wrong shape": (
+        lambda m: pliant.Mesh(np.zeros((3, 2)), [[0, 1, 2, 3]]),
+        "points has shape (3, 2); it must have shape (any, 3)",
+    ),
+    "a mesh names a point that is not there": (
+        lambda m: pliant.Model(pliant.Robot(BLOCK), pliant.Mesh(cube().points, [[0, 1, 2, 9]])),
+        "the mesh: ",
+    ),
+    "a mesh is forgotten": (
+        lambda m: pliant.Model(pliant.Robot(BLOCK)),
+        None,
+    ),
+    "a tolerance is impossible": (
+        lambda m: pliant.Model(m.robot, tolerance=2),
+        "a tolerance of 2 is not possible: it is between 0 and 1",
+    ),
+    "a value has no place in a robot file": (
+        lambda m: pliant.Robot({**BAR, "name": object()}),
+        "name: an object has no place in a robot file; write text, a number, True or False, a list or a dict",
+    ),
+    "a job is not there": (lambda m: pliant.plan("nowhere.zip"), None),
+    "progress cannot be called": (
+        lambda m: m.step(m.rest(), [0.05], progress=True),
+        "progress must be callable, as progress(stage, share), not bool",
+    ),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.replace(" ", "_"))
+def test_a_slip_ends_in_one_sentence(model, slip):
+    act, text = SLIPS[slip]
+    with pytest.raises((pliant.InputError, TypeError)) as caught:
+        act(model)
+    said = str(caught.value)
+    assert "\n" not in said and len(said) < 300 and "incompatible" not in said, said
+    if text is not None:
+        assert said.startswith(text), said
+    else:
+        assert len(said) > 20
+
+
+def test_errors_have_their_place(tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text(pliant.Robot(BAR).text.replace('"1 MPa"', "12"))
+    with pytest.raises(pliant.InputError) as caught:
+        pliant.Robot.load(file)
+    error = caught.value
+    assert (error.file, error.line, error.key, error.kind) == (str(file), 3, "material.soft.youngs_modulus", "input")
+    assert isinstance(error, ValueError) and isinstance(error, pliant.Failure)
+    with pytest.raises(pliant.InputError) as caught:
+        pliant.Robot({**BAR, "material": {"soft": {"youngs_modulus": 12}}})
+    assert (caught.value.file, caught.value.line) == ("", 0)
+    assert caught.value.key == "material.soft.youngs_modulus"
+    with pytest.raises(pliant.InputError, match="^robot text|robot text:1"):
+        pliant.Robot.parse("name = 3")
+
+
+def test_a_step_that_does_not_arrive_is_told():
+    model = pliant.Model(bar().robot, iteration_limit=1)
+    state = model.rest()
+    result = model.step(state, {"flexor": {"shortening": "20 mm"}})
+    assert not result.arrived and "iteration" in result.reason
+    with pytest.raises(pliant.Failure) as caught:
+        model.solve({"flexor": {"shortening": "20 mm"}})
+    assert caught.value.kind == "failed" and not isinstance(caught.value, ValueError)

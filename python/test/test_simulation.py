@@ -1,0 +1,252 @@
+"""Robots, models, states and steps: what goes in, what comes out, and what is kept."""
+
+import copy
+import json
+import os
+import pickle
+import subprocess
+import threading
+
+import numpy as np
+import pytest
+from robots import BAR, BLOCK, bar, block, cube
+
+import pliant
+
+FINGER = "examples/tutorial/finger.toml"
+
+
+@pytest.fixture(scope="module")
+def model():
+    return bar()
+
+
+def pulled(model, shortening="2 mm"):
+    state = model.rest()
+    assert model.step(state, {"flexor": {"shortening": shortening}}).arrived
+    return state
+
+
+def test_a_robot_is_the_same_from_a_file_from_text_and_from_python(tmp_path):
+    robot = pliant.Robot(BAR)
+    file = tmp_path / "bar.toml"
+    file.write_text(robot.text)
+    states = [pulled(pliant.Model(r)) for r in (robot, pliant.Robot.load(file), pliant.Robot.parse(robot.text))]
+    assert states[0].bytes() == states[1].bytes() == states[2].bytes()
+    assert (robot.name, robot.steps, robot.duration) == ("bar", 4, 1)
+
+
+def test_a_robot_is_changed_by_keys():
+    robot = pliant.Robot(BAR).changed({"program.steps": 7, "name": "other"})
+    assert (robot.steps, robot.name) == (7, "other")
+    assert pliant.Robot.load(FINGER, ["program.steps=3"]).steps == 3
+    assert pickle.loads(pickle.dumps(robot)).steps == 7
+
+
+def test_arrays_are_views_that_cannot_be_written(model):
+    state = pulled(model)
+    for array in (model.rest_positions, model.tets, model.regions, state.positions):
+        assert not array.flags.owndata and not array.flags.writeable
+        with pytest.raises(ValueError):
+            array[0] = 0
+    assert np.shares_memory(state.positions, state.positions)
+    assert state.positions.shape == (model.node_count, 3) == model.rest_positions.shape
+    assert model.tets.shape == (model.tet_count, 4)
+    before = state.positions
+    kept = before.copy()
+    model.step(state, {"flexor": {"shortening": "3 mm"}})
+    assert np.array_equal(before, kept) and not np.array_equal(before, state.positions)
+
+
+def test_arrays_outlive_what_they_belong_to():
+    array = block().rest_positions
+    state = block().rest()
+    positions = state.positions
+    del state
+    assert array.sum() == positions.sum() == pytest.approx(0.12)
+
+
+def test_the_surface_is_closed_and_holds_the_volume(model):
+    a, b, c = (model.rest_positions[model.surface()[:, k]] for k in range(3))
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(6e-6, rel=1e-9)
+
+
+def test_controls_say_the_same_in_many_ways(model):
+    rest = model.rest().inputs["flexor"].value
+    same = [
+        {"flexor": {"shortening": "2 mm"}},
+        {"flexor": {"shortening": 0.002}},
+        {"flexor": {"length": "58 mm"}},
+        {"flexor": {"length": rest - 0.002}},
+        {"flexor": {"length_ratio": 58 / 60}},
+        {"flexor": pliant.Drive("length", rest - 0.002)},
+        [rest - 0.002],
+        np.array([rest - 0.002]),
+        np.array([rest - 0.002], dtype=np.longdouble),
+    ]
+    for controls in same:
+        inputs = model.inputs(controls)
+        assert inputs["flexor"].by == "length"
+        assert inputs["flexor"].value == pytest.approx(0.058, rel=1e-12)
+    assert model.inputs({"flexor": {"tension": "2 N"}})["flexor"] == ("tension", 2.0)
+    assert list(model.inputs(None)) == ["flexor"]
+    assert model.inputs(same[0], time=0.5).time == 0.5
+
+
+def test_chambers_are_driven_in_the_words_of_the_robot_file():
+    table = {
+        **BAR,
+        "chamber": [{"name": "air", "geometry": {"box": [[10, 3, 3], [50, 7, 6]]}, "target": {"pressure": "5 kPa"}}],
+        "mesh": {"order": 1, "size": "3 mm"},
+    }
+    model = pliant.Model(pliant.Robot(table))
+    assert model.actuators == ("flexor", "air")
+    volume = model.rest().observe().chambers["air"].volume_m3
+    assert volume == pytest.approx(40 * 4 * 3 * 1e-9, rel=1e-9)
+    wanted = {
+        "pressure": ("4 kPa", "pressure", 4000),
+        "volume_ratio": (1.1, "volume", 1.1 * volume),
+        "volume_change": ("20 mm^3", "volume", volume + 20e-9),
+    }
+    for kind, (value, by, number) in wanted.items():
+        drive = model.inputs({"air": {kind: value}})["air"]
+        assert drive.by == by and drive.value == pytest.approx(number, rel=1e-12)
+    state = model.rest()
+    model.step(state, {"air": {"pressure": "2 kPa"}})
+    seen = state.observe().chambers["air"]
+    assert seen.pressure_Pa == pytest.approx(2000) and seen.volume_ratio > 1
+    assert state.observe().cables["flexor"].length_ratio == pytest.approx(1, abs=1e-6)
+
+
+def test_a_step_changes_the_state_and_solve_leaves_it(model):
+    state = model.rest()
+    rest = state.copy()
+    found = model.solve({"flexor": {"shortening": "2 mm"}}, state=state)
+    assert state == rest and found != rest
+    result = model.step(state, {"flexor": {"shortening": "2 mm"}})
+    assert result.arrived and result.iterations > 0 and 0 < result.residual < 1e-4
+    assert state == found
+    assert state.observe().cables["flexor"].length_m == pytest.approx(0.058, rel=1e-6)
+    assert np.allclose(state.markers()[0], state.observe().markers["tip"])
+    with pytest.raises(pliant.Failure, match="iteration"):
+        pliant.Model(model.robot, iteration_limit=1).solve({"flexor": {"shortening": "20 mm"}})
+
+
+def test_states_are_copied_saved_and_pickled(model, tmp_path):
+    state = pulled(model)
+    copies = [state.copy(), copy.copy(state), copy.deepcopy(state), model.state_from(state.bytes())]
+    state.save(tmp_path / "state")
+    copies.append(model.load_state(tmp_path / "state"))
+    for other in copies:
+        assert other == state
+        model.step(other, {"flexor": {"shortening": "3 mm"}})
+        assert other != state
+    assert all(other == copies[0] for other in copies)
+    again, same_model = pickle.loads(pickle.dumps((state, state.model)))
+    assert again.model is same_model
+    assert again.bytes() == state.bytes()
+    same_model.step(again, {"flexor": {"shortening": "3 mm"}})
+    assert again.bytes() == copies[0].bytes()
+
+
+def test_a_pickled_model_keeps_its_mesh_and_tolerance():
+    model = pliant.Model(pliant.Robot(BLOCK), cube(), tolerance=1e-8)
+    again = pickle.loads(pickle.dumps(model))
+    state = again.rest()
+    assert again.step(state, {"side": {"length_ratio": 0.95}}).residual < 1e-8
+
+
+def test_a_mesh_from_arrays_carries_a_load():
+    model = block()
+    assert (model.node_count, model.tet_count, model.order) == (8, 6, 1)
+    state = model.solve({"side": {"tension": 0}}, time=1)
+    assert state.observe().supports["bottom"][2] == pytest.approx(0.1, rel=1e-3)
+    assert state.observe().markers["top"][2] < 0.01
+    state = model.solve(model.program(1))
+    assert state.observe().cables["side"].length_ratio == pytest.approx(0.9, rel=1e-6)
+
+
+def test_fields_have_a_number_for_each_tet(model):
+    fields = pulled(model).fields()
+    assert fields.volume_ratio.shape == fields.von_mises_Pa.shape == (model.tet_count,)
+    assert np.allclose(fields.volume_ratio, 1, atol=0.1) and fields.von_mises_Pa.max() > 1e3
+    assert fields.max_stretch.max() > 1 and fields.energy_density_Pa.min() >= 0
+
+
+def test_paths_of_cables_go_along(model):
+    state = pulled(model)
+    path = model.cable_paths(state)["flexor"]
+    length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
+    assert length == pytest.approx(state.observe().cables["flexor"].length_m, rel=1e-12)
+
+
+def test_a_motion_in_time_goes_on_with_time():
+    model = bar(program={"duration": "0.2 s", "time_step": "0.01 s", "gravity": [0, 0, -9.81]})
+    state = model.rest()
+    for k in range(1, 3):
+        assert model.step(state, time=0.01 * k).arrived
+        assert state.velocities[:, 2].min() < -0.03
+        assert state.observe().kinetic_energy_J > 0
+    assert state.time == pytest.approx(0.02) and state.displacements[:, 2].min() < -5e-4
+    with pytest.raises(pliant.InputError, match="does not lead on"):
+        model.step(state, time=0.01)
+
+
+def test_what_runs_equals_the_command_line_to_the_last_bit(tmp_path):
+    program = os.environ["PLIANT_PROGRAM"]
+    out = tmp_path / "out"
+    subprocess.run(
+        [program, "simulate", FINGER, "--steps", "3", "--pictures", "none", "-q", "-o", str(out)], check=True
+    )
+    result = pliant.Model(pliant.Robot.load(FINGER, {"program.steps": 3})).run()
+    assert result.converged and len(result) == 4
+    told = json.loads((out / "summary.json").read_text())
+    for step, own, ours in zip(told["steps"], result.summary["steps"], list(result)[1:]):
+        for timed in (step, own):
+            timed.pop("wall_ms")
+        assert step == own
+        for name, place in ours.observed.markers.items():
+            assert step["markers"][name] == (1e3 * place).tolist()
+        for name, cable in ours.observed.cables.items():
+            assert step["cables"][name]["tension_N"] == cable.tension_N
+    assert result.positions.shape == (4, result.model.node_count, 3)
+    assert np.array_equal(result.positions[-1], result[-1].positions)
+    assert result.markers["tip"].shape == (4, 3) and result.times.tolist() == pytest.approx([0, 1 / 3, 2 / 3, 1])
+
+
+def test_a_program_writes_its_results_and_tells_its_steps(tmp_path):
+    seen = []
+    result = bar().run(on_step=lambda step: seen.append(step.index))
+    assert seen == [0, 1, 2, 3, 4]
+    result.write(tmp_path / "out", pictures="none")
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["converged"]
+    with pytest.raises(IndexError):
+        result[5]
+    with pytest.raises(pliant.InputError, match='"none", "few" or "all"'):
+        result.write(tmp_path / "out", pictures="many")
+
+
+def test_a_program_goes_on_from_its_checkpoint(tmp_path):
+    model = bar()
+    whole = model.run()
+
+    def stop(step):
+        if step.index == 2:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        model.run(checkpoint=tmp_path / "kept", on_step=stop)
+    resumed = model.run(checkpoint=tmp_path / "kept", resume=True)
+    assert resumed.converged and np.array_equal(resumed[-1].positions, whole[-1].positions)
+    resumed.remove_checkpoint()
+
+
+def test_threads_share_a_model_and_have_the_same_bits(model):
+    alone = pulled(model)
+    found = []
+    threads = [threading.Thread(target=lambda: found.append(pulled(model))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 4 and all(state == alone for state in found)

@@ -1,0 +1,105 @@
+// Many robots at once: the bits of one after the other.
+#include "pliant/batch.hpp"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "library/simulation/test_bar.hpp"
+
+using namespace pliant;
+using test::bar;
+
+namespace {
+
+/// Each robot is pulled by another length.
+std::vector<Inputs> pulled(const std::vector<State>& states, double shortening_m) {
+    std::vector<Inputs> inputs;
+    for (const State& state : states) {
+        inputs.push_back(state.inputs());
+        inputs.back().cables[0].value -= shortening_m * static_cast<double>(inputs.size());
+    }
+    return inputs;
+}
+
+}  // namespace
+
+TEST_CASE("a batch has the bits of its robots one after the other, on any number of threads") {
+    const Model one(bar()), other(bar("program.gravity = [0, 0, -9.81]\n"));
+    const std::vector<Model> models = {one, other, one, one, other};
+    std::vector<std::vector<State>> ends;
+    for (const int threads : {1, 2, 5}) {
+        Batch batch(models, {}, threads);
+        CHECK(batch.size() == 5);
+        CHECK(batch.threads() == threads);
+        std::vector<State> states = batch.rest();
+        for (int k = 0; k < 2; ++k)
+            for (const StepResult& result : batch.step(states, pulled(states, 2e-4))) CHECK(result.arrived);
+        ends.push_back(std::move(states));
+    }
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        Stepper stepper(models[i]);
+        State state = stepper.rest();
+        for (int k = 0; k < 2; ++k) {
+            Inputs inputs = state.inputs();
+            inputs.cables[0].value -= 2e-4 * static_cast<double>(i + 1);
+            (void)stepper.step(state, inputs);
+        }
+        for (const auto& states : ends) CHECK((states[i] == state));
+    }
+}
+
+TEST_CASE("a batch names the robot that cannot be stepped, and leaves all states") {
+    const Model model(bar());
+    Batch batch({model, model, model}, {}, 2);
+    std::vector<State> states = batch.rest();
+    std::vector<Inputs> inputs = pulled(states, 1e-4);
+    inputs[1].cables.clear();
+    const std::vector<State> before = states;
+    CHECK_THROWS_WITH_AS(batch.step(states, inputs),
+                         "robot 1: the inputs drive 0 cables and 0 chambers; the robot has 1 and 0", Failure);
+    CHECK((states[0] == before[0]));
+    inputs.pop_back();
+    CHECK_THROWS_WITH_AS(batch.step(states, inputs), "2 inputs for 3 robots", Failure);
+    CHECK_THROWS_WITH_AS(Batch({model}, {}, -1), "the number of threads is negative", Failure);
+    CHECK_THROWS_WITH_AS((void)batch.stepper(3), "there is no robot 3; there are 3", Failure);
+}
+
+TEST_CASE("a batch is asked to end on the thread that calls, and ends") {
+    const Model model(bar());
+    Batch batch({model, model, model, model}, {}, 3);
+    std::vector<State> states = batch.rest();
+    const std::thread::id here = std::this_thread::get_id();
+    std::atomic<int> elsewhere = 0;
+    const auto kind_of = [&](const Watch& watch) {
+        try {
+            (void)batch.step(states, pulled(states, 1e-3), watch);
+        } catch (const Failure& failure) {
+            return failure.kind();
+        }
+        return Failure::Kind::failed;
+    };
+    CHECK(kind_of([&](std::string_view, double) {
+              if (std::this_thread::get_id() != here) ++elsewhere;
+              return false;
+          }) == Failure::Kind::cancelled);
+    CHECK(elsewhere == 0);
+    CHECK_THROWS_AS(batch.step(states, pulled(states, 1e-3),
+                               [](std::string_view, double) -> bool { throw std::runtime_error("enough"); }),
+                    std::runtime_error);
+}
+
+TEST_CASE("work on each core tells what was thrown for the lowest number") {
+    std::atomic<int> done = 0;
+    on_each_core(
+        100, [&](std::size_t) { ++done; }, 3);
+    CHECK(done == 100);
+    on_each_core(0, [&](std::size_t) { ++done; });
+    CHECK(done == 100);
+    const auto odd = [](std::size_t i) {
+        if (i % 2 == 1) throw std::runtime_error(std::to_string(i));
+    };
+    for (int k = 0; k < 20; ++k) CHECK_THROWS_WITH_AS(on_each_core(50, odd, 4), "1", std::runtime_error);
+}
