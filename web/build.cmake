@@ -15,6 +15,7 @@ function(write_missing_page why)
        "std::span<const PageFile> page_files() {\n    static constexpr PageFile files[] = {"
        "{\"/\", \"text/html; charset=utf-8\", \"${content}\", false}};\n    return files;\n}\n\n"
        "}  // namespace pliant::studio\n")
+  file(WRITE ${BUILD}/viewer.js "document.getElementById('viewer').textContent = 'The viewer was not built: ${why}.';\n")
 endfunction()
 
 file(MAKE_DIRECTORY ${BUILD})
@@ -27,8 +28,8 @@ if(NOT NODE OR NOT NPM)
   return()
 endif()
 
-file(REMOVE_RECURSE ${BUILD}/src ${BUILD}/dist)
-foreach(name src index.html package.json package-lock.json .npmrc tsconfig.json vite.config.ts embed.mjs notices.mjs)
+file(REMOVE_RECURSE ${BUILD}/src ${BUILD}/dist ${BUILD}/dist_viewer)
+foreach(name src index.html package.json package-lock.json .npmrc tsconfig.json vite.config.ts viewer.config.ts embed.mjs notices.mjs)
   file(COPY ${SOURCE}/${name} DESTINATION ${BUILD})
 endforeach()
 
@@ -47,10 +48,16 @@ if(NOT installed STREQUAL lock)
   file(WRITE ${BUILD}/node_modules/.pliant_lock ${lock})
 endif()
 
-foreach(step "node_modules/typescript/bin/tsc;--noEmit" "node_modules/vite/bin/vite.js;build;--logLevel;warn" "notices.mjs;dist/notices.txt"
+foreach(step "node_modules/typescript/bin/tsc;--noEmit" "node_modules/vite/bin/vite.js;build;--logLevel;warn"
+        "node_modules/vite/bin/vite.js;build;--config;viewer.config.ts;--logLevel;warn" "notices.mjs;dist/notices.txt"
         "embed.mjs;dist;page.cpp")
   execute_process(COMMAND ${NODE} ${step} WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "building the studio's page failed: node ${step}")
   endif()
 endforeach()
+
+# The viewer of notebooks carries the notices of what it holds.
+file(READ ${BUILD}/dist_viewer/viewer.js viewer)
+file(READ ${BUILD}/dist/notices.txt notices)
+file(WRITE ${BUILD}/viewer.js "/*\n${notices}\n*/\n${viewer}")

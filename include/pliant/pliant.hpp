@@ -11,4 +11,5 @@
 #include "pliant/printing.hpp"       // IWYU pragma: export
 #include "pliant/program.hpp"        // IWYU pragma: export
 #include "pliant/simulation.hpp"     // IWYU pragma: export
+#include "pliant/view.hpp"           // IWYU pragma: export
 #include "pliant/workspace.hpp"      // IWYU pragma: export

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "arrays.hpp"
+#include "measures.hpp"
 #include "parts.hpp"
 
 namespace pliant::python {
@@ -36,6 +37,11 @@ py::tuple tuple_of(Change change) {
                           array_of(std::move(change.pressures_Pa)));
 }
 
+py::tuple tuple_of(Linearisation::Gradient g) {
+    return py::make_tuple(array_of(std::move(g.inputs)), array_of(std::move(g.parameters)),
+                          array_of(std::move(g.rest_positions)));
+}
+
 template <std::vector<double> (Linearisation::*Product)(std::span<const double>) const>
 py::array product(Shared& shared, const Numbers& v) {
     return array_of(locked(shared, [&](Linearisation& at) { return (at.*Product)(span_of(v)); }));
@@ -52,9 +58,12 @@ std::vector<double> list_of(const Numbers& numbers) {
 py::tuple gradient(Shared& shared, const Numbers& by_positions, const Numbers& by_tensions,
                    const Numbers& by_pressures) {
     const Quantity quantity{points_of(by_positions), list_of(by_tensions), list_of(by_pressures)};
-    Linearisation::Gradient g = locked(shared, [&](Linearisation& at) { return at.gradient(quantity); });
-    return py::make_tuple(array_of(std::move(g.inputs)), array_of(std::move(g.parameters)),
-                          array_of(std::move(g.rest_positions)));
+    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(quantity); }));
+}
+
+py::tuple gradient_of(Shared& shared, const MeasureTuple& measure) {
+    const Measure wanted = measure_of(measure);
+    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(wanted); }));
 }
 
 double dot(const std::vector<Point>& a, const std::vector<Point>& b) {
@@ -110,6 +119,12 @@ void add_linearisation(py::module_& module) {
                 return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_parameter(parameter); }));
             })
         .def("gradient", &gradient)
+        .def("gradient_of", &gradient_of)
+        .def("value",
+             [](Shared& shared, const MeasureTuple& measure) {
+                 const Measure wanted = measure_of(measure);
+                 return locked(shared, [&](Linearisation& at) { return at.value(wanted); });
+             })
         .def("marker_coordinate",
              [](Shared& shared, std::size_t marker, const Point& direction) {
                  return array_of(locked(

@@ -10,6 +10,8 @@ PYBIND11_MODULE(_pliant, module) {
     add_program(module);
     add_printing(module);
     add_batch(module);
+    add_inverse(module);
+    add_view(module);
     module.def("version", [] { return std::string(pliant::version()); });
     module.def("quantity", &pliant::quantity, py::arg("text"), py::arg("unit"));
 }

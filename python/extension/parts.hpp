@@ -17,5 +17,7 @@ void add_linearisation(py::module_& module);
 void add_program(py::module_& module);
 void add_printing(py::module_& module);
 void add_batch(py::module_& module);
+void add_inverse(py::module_& module);
+void add_view(py::module_& module);
 
 }  // namespace pliant::python

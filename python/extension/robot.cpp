@@ -18,8 +18,7 @@ Model meshed(const Robot& robot, py::object progress) {
     return Model(robot, watch);
 }
 
-Model with_mesh(const Robot& robot, const Numbers& points, const Indices& tets, const Indices& regions,
-                std::vector<std::string> names) {
+Mesh mesh_of(const Numbers& points, const Indices& tets, const Indices& regions, std::vector<std::string> names) {
     if (tets.ndim() != 2) throw Failure(Failure::Kind::input, "the mesh: tets must be an array (tets, 4 or 10)");
     Mesh mesh;
     mesh.points = points_of(points);
@@ -27,8 +26,7 @@ Model with_mesh(const Robot& robot, const Numbers& points, const Indices& tets, 
     mesh.nodes_per_tet = static_cast<int>(tets.shape(1));
     mesh.regions.assign(regions.data(), regions.data() + regions.size());
     if (!names.empty()) mesh.region_names = std::move(names);
-    const py::gil_scoped_release unlocked;
-    return Model(robot, mesh);
+    return mesh;
 }
 
 Shape rows(std::size_t numbers, std::size_t width) {
@@ -49,9 +47,10 @@ void add_robot(py::module_& module) {
         .def_property_readonly("name", &Robot::name)
         .def_property_readonly("duration", &Robot::duration)
         .def_property_readonly("steps", &Robot::steps);
+    py::class_<Mesh>(module, "Mesh").def(py::init(&mesh_of));
     py::class_<Model>(module, "Model")
+        .def(py::init<const Robot&, const Mesh&>(), py::call_guard<py::gil_scoped_release>())
         .def(py::init(&meshed))
-        .def(py::init(&with_mesh))
         .def_property_readonly("node_count", &Model::node_count)
         .def_property_readonly("tet_count", &Model::tet_count)
         .def_property_readonly("order", &Model::order)

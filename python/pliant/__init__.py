@@ -20,20 +20,26 @@ from ._pliant import StepResult
 from .batch import Batch
 from .controls import Drive, Inputs
 from .errors import Cancelled, Failure, InputError
-from .linearisation import Change, Gradient, Linearisation, Parameter
+from .identification import Comparison, Estimate, FitError, Identification, identify
+from .linearisation import Change, Gradient, Linearisation, Measure, Parameter
 from .model import Model, State
+from .notebook import Viewer, show
+from .objectives import ProgramGradient, gradient
 from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
 from .program import ProgramResult, ProgramStep
 from .results import Cable, Chamber, Fields, Observation, Spring
 from .robot import Mesh, Robot
+from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
 
 __version__ = _pliant.version()
 
 __all__ = [
-    "Batch", "Cable", "Cancelled", "Chamber", "Change", "CuredBlock", "Drive", "Failure", "Fields", "Gradient", "Inputs",
-    "InputError", "Linearisation", "Mesh", "Model", "Observation", "Parameter", "PrintPlan", "ProgramResult",
-    "ProgramStep", "Robot", "Spring", "State", "StepResult", "Vat", "VirtualPrint", "check", "plan", "print_virtually",
-    "quantity", "slice",
+    "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
+    "Fields", "FitError", "GoalResult", "Gradient", "Identification", "InputError", "Inputs", "InverseResult",
+    "Linearisation", "Measure", "Mesh", "Model", "Observation", "Parameter", "PrintPlan", "ProgramGradient",
+    "ProgramResult", "ProgramStep", "Robot", "Spring", "State", "SteeredInput", "StepResult", "Vat", "Viewer", "VirtualPrint",
+    "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
+    "show", "slice", "workspace",
 ]  # fmt: skip
 
 

@@ -27,6 +27,39 @@ class Parameter(NamedTuple):
     value: float
 
 
+class Measure(NamedTuple):
+    """Something that can be measured on a robot: one number, in SI units.
+
+    ============= ================================================================ ====
+    of            what it is                                                       unit
+    ============= ================================================================ ====
+    marker        its coordinate along `direction`                                 m
+    tension       of a cable                                                       N
+    pressure      of a chamber or a load that presses                              Pa
+    length        of a cable                                                       m
+    length_ratio  of a cable, over that at rest
+    volume        of a chamber                                                     m^3
+    volume_ratio  of a chamber, over that at rest
+    spring_length of a spring                                                      m
+    spring_force  of a spring, positive where it pulls                             N
+    reaction      force of a support on the robot along `direction`                N
+    contact_force force of an obstacle on the robot along `direction`, friction in N
+    self_contact  sum of the sizes of the robot's normal forces on itself; no name N
+    ============= ================================================================ ====
+    """
+
+    of: str
+    #: on which, as in the robot file
+    name: str = ""
+    #: (3,) of any length
+    direction: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def _tuple(self) -> tuple[str, str, list[float]]:
+        if not isinstance(self.of, str) or not isinstance(self.name, str):
+            raise TypeError('a Measure is made of texts, as Measure("marker", "tip", (0, 0, 1))')
+        return self.of, self.name, _check.numbers(self.direction, "direction", (3,)).tolist()
+
+
 @dataclass(frozen=True)
 class Change:
     """A small change of a state, for each unit of what causes it."""
@@ -156,6 +189,18 @@ class Linearisation:
             _vector_or_none(tensions, "tensions", len(model.cables)),
             _vector_or_none(pressures, "pressures", len(model.chambers)),
         )
+        return self._gradient(inputs, parameters, rest)
+
+    def value(self, measure: Measure) -> float:
+        """The number at this state."""
+        return self._at.value(_check.instance(measure, Measure, "measure")._tuple())
+
+    def gradient_of(self, measure: Measure) -> Gradient:
+        """Derivatives of what is measured. Unlike :meth:`gradient` it knows what the measure itself has of a parameter,
+        and with the rest shape lengths and volumes that are wanted as a share of what they are at rest follow."""
+        return self._gradient(*self._at.gradient_of(_check.instance(measure, Measure, "measure")._tuple()))
+
+    def _gradient(self, inputs: Array, parameters: Array, rest: Array) -> Gradient:
         controls = np.array([inputs[c] if c >= 0 else 0.0 for c in self._columns], dtype=np.float64)
         return Gradient(controls, inputs, parameters, rest)
 

@@ -157,12 +157,8 @@ class Model:
             None if tolerance is None else _check.number(tolerance, "tolerance"),
             None if iteration_limit is None else _check.integer(iteration_limit, "iteration_limit"),
         )
-        if self.mesh is None:
-            self._model = _pliant.Model(self.robot._robot, _check.progress(progress))
-        else:
-            regions = self.mesh.regions if self.mesh.regions is not None else np.empty(0, dtype=np.int32)
-            names = list(self.mesh.region_names)
-            self._model = _pliant.Model(self.robot._robot, self.mesh.points, self.mesh.tets, regions, names)
+        given = _check.progress(progress) if self.mesh is None else self.mesh._mesh()
+        self._model = _pliant.Model(self.robot._robot, given)
         self._engine = _pliant.Engine(self._model, *self._options)
         self.cables = tuple(self._model.cables)
         self.chambers = tuple(self._model.chambers)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Union
 
+import numpy as np
+
 from . import _check, _pliant, _toml
 from ._check import Array, IntArray, PathLike
 from .errors import InputError
@@ -186,3 +188,7 @@ class Mesh:
             if regions.shape != (len(tets),):
                 raise InputError(f"regions has shape {regions.shape}; it must have shape ({len(tets)},)")
             put(self, "regions", regions)
+
+    def _mesh(self) -> _pliant.Mesh:
+        regions = np.empty(0, dtype=np.int32) if self.regions is None else self.regions
+        return _pliant.Mesh(self.points, self.tets, regions, list(self.region_names))

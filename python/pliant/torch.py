@@ -14,7 +14,7 @@ from . import _check
 from .model import Model, State
 
 
-class _Positions(torch.autograd.Function):
+class _Positions(torch.autograd.Function):  # type: ignore[misc]
     @staticmethod
     def forward(ctx: Any, controls: Any, model: Model, start: State | None) -> Any:
         ctx.state = model.solve(controls.detach().cpu().numpy().astype(np.float64), state=start)
@@ -26,7 +26,7 @@ class _Positions(torch.autograd.Function):
         return torch.from_numpy(found.controls).to(grads[0]), None, None
 
 
-class _Markers(torch.autograd.Function):
+class _Markers(torch.autograd.Function):  # type: ignore[misc]
     @staticmethod
     def forward(ctx: Any, controls: Any, model: Model, start: State | None) -> Any:
         ctx.state = model.solve(controls.detach().cpu().numpy().astype(np.float64), state=start)

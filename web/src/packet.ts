@@ -1,4 +1,4 @@
-// Reads what src/presentation/studio/packet.hpp writes: a JSON head and views into the arrays behind it.
+// Reads what src/presentation/scene/packet.hpp writes: a JSON head and views into the arrays behind it.
 
 export interface Packet<Head> {
   head: Head;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "presentation/studio/actuator_kind.hpp"
+#include "presentation/scene/actuator_kind.hpp"
 #include "presentation/studio/led_marker.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
@@ -21,7 +21,7 @@ std::vector<sim::Steered> possible_inputs(const Built& built) {
 }
 
 /// Lengths, volumes and ratios have to stay above nothing, and no cable pushes.
-bool is_possible(const sim::Steered& input, const ActuatorKind& kind, double rest) {
+bool is_possible(const sim::Steered& input, const view::ActuatorKind& kind, double rest) {
     const std::string_view name = kind.name;
     if (name == "shortening_mm") return input.high < rest;
     if (name == "volume_change_mm3") return input.low > -rest;
@@ -33,7 +33,7 @@ Result<sim::Steered> steered(const Built& built, std::vector<sim::Steered> possi
     const auto found = std::ranges::find(possible, range.name, &sim::Steered::name);
     if (found == possible.end()) return input_error("{}: cannot be moved: there is no such actuator", range.name);
     const sim::Description& d = built.model.description();
-    const ActuatorKind kind = kind_of(d, found->actuator);
+    const view::ActuatorKind kind = view::kind_of(d, found->actuator);
     sim::Steered input = *found;
     input.low = range.low / kind.per_unit;
     input.high = range.high / kind.per_unit;
@@ -77,7 +77,7 @@ std::string goal_inputs_json(const Built& built) {
     const sim::Description& d = built.model.description();
     Json list = Json::array();
     for (const sim::Steered& input : possible_inputs(built)) {
-        const ActuatorKind kind = kind_of(d, input.actuator);
+        const view::ActuatorKind kind = view::kind_of(d, input.actuator);
         list.push_back({{"name", input.name},
                         {"kind", kind.name},
                         {"low", kind.per_unit * input.low},

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/core/files.hpp"
-#include "presentation/studio/packet.hpp"
+#include "presentation/scene/packet.hpp"
 #include "printing/host/journal_facts.hpp"
 #include "printing/operate/job_file.hpp"
 
@@ -157,7 +157,7 @@ std::string GrowingPart::packet(int known, std::size_t from) const {
         words.push_back(run.row);
         words.push_back(run.begin | static_cast<std::uint32_t>(run.end) << 16U);
     }
-    Packet packet;
+    view::Packet packet;
     packet.add("slabs", heights);
     packet.add("runs", words);
     return packet.finish(fmt::format(

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/stopwatch.hpp"
-#include "presentation/studio/actuator_kind.hpp"
+#include "presentation/scene/actuator_kind.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/scene/build_goals.hpp"
 
@@ -87,7 +87,7 @@ std::vector<ActuatorValue> LedMarker::actuators() const {
     std::vector<ActuatorValue> out;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const sim::Steered& input = drag_.inputs()[i];
-        const ActuatorKind kind = kind_of(d, input.actuator);
+        const view::ActuatorKind kind = view::kind_of(d, input.actuator);
         out.push_back({input.name, kind.name, kind.per_unit * values[i]});
     }
     return out;

@@ -16,7 +16,7 @@
 
 #include "presentation/studio/led_marker.hpp"
 #include "presentation/studio/message.hpp"
-#include "presentation/studio/scene.hpp"
+#include "presentation/scene/scene.hpp"
 #include "robot/description/robot.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/run/live.hpp"
@@ -44,7 +44,7 @@ struct Built {
     robot::Robot robot;
     sim::Model model;
     int revision;
-    Scene scene;
+    view::Scene scene;
     sim::Attacher attacher;
     double size_m;
     std::vector<std::string> warnings;  ///< at rest, see sim::warnings_at_rest()

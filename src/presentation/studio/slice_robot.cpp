@@ -1,7 +1,7 @@
 #include "presentation/studio/slice_robot.hpp"
 
 #include "presentation/draw/colour.hpp"
-#include "presentation/studio/scene.hpp"
+#include "presentation/scene/scene.hpp"
 #include "robot/file/robot_file.hpp"
 
 namespace pliant::studio {
@@ -11,7 +11,7 @@ namespace {
 std::string colour_of_material(const std::string& name, const robot::Robot& robot) {
     for (std::size_t m = 0; m < robot.materials.size(); ++m) {
         const std::string& known = robot.materials[m].name;
-        if (name == known || name.starts_with(known + " of ")) return colour_of(robot, m);
+        if (name == known || name.starts_with(known + " of ")) return view::colour_of(robot, m);
     }
     return "";
 }

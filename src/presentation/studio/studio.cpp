@@ -224,7 +224,7 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
     if (const auto* fields = std::get_if<FieldsMessage>(&*message)) {
         std::set<std::string> names;
         for (const std::string& name : fields->names)
-            if (is_field(name)) names.insert(name);
+            if (view::is_field(name)) names.insert(name);
         hub_.want_fields(connection, std::move(names));
         return simulation_->show_again();
     }

@@ -1,11 +1,11 @@
-#include "presentation/studio/packet.hpp"
+#include "presentation/scene/packet.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-using namespace pliant::studio;
+using namespace pliant::view;
 
 TEST_CASE("a packet holds its head and its arrays, every one on a multiple of four bytes") {
     for (const char* head : {"{}", R"({"a":1})", R"({"a":12})", R"({"a":123})", R"({"a":1234})"}) {

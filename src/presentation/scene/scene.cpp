@@ -1,4 +1,4 @@
-#include "presentation/studio/scene.hpp"
+#include "presentation/scene/scene.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 
 #include "base/core/share.hpp"
 #include "presentation/draw/colour.hpp"
-#include "presentation/studio/actuator_kind.hpp"
+#include "presentation/scene/actuator_kind.hpp"
 #include "simulation/run/fields.hpp"
 #include "simulation/run/simulate.hpp"
 
-namespace pliant::studio {
+namespace pliant::view {
 namespace {
 
 using Json = nlohmann::json;
@@ -283,4 +283,4 @@ std::string Scene::obstacle_offsets(double time) const {
     return offsets.dump();
 }
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

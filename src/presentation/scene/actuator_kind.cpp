@@ -1,6 +1,6 @@
-#include "presentation/studio/actuator_kind.hpp"
+#include "presentation/scene/actuator_kind.hpp"
 
-namespace pliant::studio {
+namespace pliant::view {
 
 ActuatorKind kind_of(const sim::CableTarget& target) {
     using Kind = sim::CableTarget::Kind;
@@ -36,4 +36,4 @@ ActuatorKind kind_of(const sim::Description& robot, std::size_t actuator) {
                              : kind_of(robot.chambers[actuator - cables].target);
 }
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

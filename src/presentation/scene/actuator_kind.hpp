@@ -5,7 +5,7 @@
 
 #include "simulation/parts/description.hpp"
 
-namespace pliant::studio {
+namespace pliant::view {
 
 struct ActuatorKind {
     const char* name;     ///< as in messages: length_ratio, shortening_mm, ...
@@ -17,4 +17,4 @@ struct ActuatorKind {
 /// `actuator`: first the cables, then the chambers.
 [[nodiscard]] ActuatorKind kind_of(const sim::Description& robot, std::size_t actuator);
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

@@ -1,11 +1,11 @@
-#include "presentation/studio/packet.hpp"
+#include "presentation/scene/packet.hpp"
 
 #include <fmt/format.h>
 
 #include <bit>
 #include <cstring>
 
-namespace pliant::studio {
+namespace pliant::view {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they lie in memory");
@@ -45,4 +45,4 @@ std::string Packet::finish(std::string_view head) const {
     return packet + json + bytes_;
 }
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

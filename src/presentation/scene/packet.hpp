@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pliant::studio {
+namespace pliant::view {
 
 class Packet {
 public:
@@ -28,4 +28,4 @@ private:
     std::string bytes_;
 };
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

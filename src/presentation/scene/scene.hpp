@@ -9,12 +9,12 @@
 #include "presentation/draw/obstacle.hpp"
 #include "presentation/draw/surface.hpp"
 #include "presentation/report/simulation.hpp"
-#include "presentation/studio/packet.hpp"
+#include "presentation/scene/packet.hpp"
 #include "robot/description/robot.hpp"
 #include "simulation/model/model.hpp"
 #include "simulation/run/trajectory.hpp"
 
-namespace pliant::studio {
+namespace pliant::view {
 
 /// Fields that a frame can carry beside positions; displacement is the page's own.
 [[nodiscard]] bool is_field(const std::string& name);
@@ -59,4 +59,4 @@ private:
 /// The colour a material is drawn in: its own, or the palette's.
 [[nodiscard]] std::string colour_of(const robot::Robot& robot, std::size_t material);
 
-}  // namespace pliant::studio
+}  // namespace pliant::view

@@ -1,0 +1,118 @@
+#!/usr/bin/python3
+"""Prints the figures of docs/reference/python.md: import, calls, batches.
+
+    PYTHONPATH=build/release/python bench/python.py [BUILD]
+
+On a computer that has nothing else to do. A call beside C++ needs a build with -DPLIANT_BENCH=ON.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "python" / "test"))
+
+import numpy as np  # noqa: E402
+from robots import block  # noqa: E402
+
+import pliant  # noqa: E402
+
+
+def import_time() -> None:
+    """Of a process that does nothing else."""
+    code = "import time; t = time.perf_counter(); import pliant; print(time.perf_counter() - t)"
+    times = [
+        float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
+        for _ in range(15)
+    ]
+    print(f"import pliant: {1e3 * min(times):.0f} ms at best, {1e3 * float(np.median(times)):.0f} ms mostly, numpy included")
+
+
+def call_time(build: Path) -> None:
+    """A step of six tetrahedra, in Python and in C++."""
+    model = block()
+    state = model.rest()
+    lengths = [np.array([0.0095]), np.array([0.0096])]
+    rounds = []
+    for _ in range(15):
+        begin = time.perf_counter()
+        for k in range(400):
+            model.step(state, lengths[k % 2])
+        rounds.append((time.perf_counter() - begin) / 400)
+    ours = 1e6 * min(rounds)
+    program = build / "bench" / "pliant_python_calls"
+    if not program.exists():
+        print(f"a step of 6 tets: {ours:.1f} us in Python; {program} is not built")
+        return
+    theirs = min(float(subprocess.run([program], check=True, capture_output=True, text=True).stdout) for _ in range(3))
+    print(f"a step of 6 tets: {ours:.1f} us in Python, {theirs:.1f} us in C++: the call costs {ours - theirs:.1f} us")
+    begin = time.perf_counter()
+    for _ in range(20000):
+        state.positions
+    print(f"positions of a state as an array: {(time.perf_counter() - begin) / 20000 * 1e6:.2f} us")
+
+
+def bar(size_mm: float, length_mm: float = 100) -> pliant.Model:
+    """A bar of linear tets with a cable along its upper side."""
+    return pliant.Model(
+        pliant.Robot(
+            name="bar",
+            length_unit="mm",
+            material={"soft": {"youngs_modulus": "1 MPa", "poisson_ratio": 0.45}},
+            mesh={"order": 1, "size": f"{size_mm} mm"},
+            body=[{"name": "bar", "material": "soft", "geometry": {"box": [[0, 0, 0], [length_mm, 12, 12]]}}],
+            fixed=[{"name": "clamp", "box": [[0, 0, 0], [0, 12, 12]]}],
+            cable=[
+                {
+                    "name": "flexor",
+                    "points": [[x, 6, 10.5] for x in np.linspace(0, length_mm, 6)],
+                    "target": {"shortening": "4 mm"},
+                }
+            ],
+        )
+    )
+
+
+def steps_a_second(model: pliant.Model, robots: int, threads: int, steps: int) -> tuple[float, list[pliant.State]]:
+    """Robots a second that go on by 1 % of the length of their cable, there and back."""
+    batch = pliant.Batch(model, robots, threads=threads)
+    states = batch.rest()
+    rest = states[0].inputs.values_SI[0]
+    spread = 1 - 0.002 * np.arange(robots)[:, None] / robots
+    batch.step(states, rest * spread)
+    begin = time.perf_counter()
+    for k in range(steps):
+        share = 1 - 0.01 * (1 + (k if k < steps // 2 else steps - k))
+        results = batch.step(states, rest * share * spread)
+        assert all(r.arrived for r in results)
+    return robots * steps / (time.perf_counter() - begin), states
+
+
+def batch_times() -> None:
+    """64 robots of 1,000 tets on one core and on all."""
+    model = bar(5.0)
+    cores = len(os.sched_getaffinity(0))
+    rates, ends = {}, []
+    for threads in (1, 2, cores) if cores > 2 else (1, cores):
+        found = [steps_a_second(model, 64, threads, 8) for _ in range(3)]
+        rates[threads] = max(rate for rate, _ in found)
+        ends.append(found[-1][1])
+    assert all(end == ends[0] for end in ends), "the bits depend on the number of threads"
+    print(f"64 robots of {model.tet_count} tets, a cable that goes on by 1 %:")
+    for threads, rate in rates.items():
+        print(f"  {threads} threads: {rate:.0f} robot-steps a second, {rate / rates[1]:.2f} times one")
+    large = bar(2.45)
+    rate, _ = steps_a_second(large, 2 * cores, 0, 4)
+    # What is published of SOFA's inverse: 50 ms for a time step with 7,400 tets, of one robot in one process.
+    print(f"{2 * cores} robots of {large.tet_count} tets: {rate:.1f} robot-steps a second, {rate / 20:.1f} times 1 / 50 ms")
+
+
+if __name__ == "__main__":
+    import_time()
+    call_time(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "build" / "release")
+    batch_times()

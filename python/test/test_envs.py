@@ -1,0 +1,159 @@
+"""Environments: the signatures of Gymnasium, seeds, states that are kept and set, many at once."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import pliant
+from pliant.envs import Crawl, Follow, Grasp, Reach, RobotEnv, Vector
+
+TASKS = [Reach, Follow, Grasp, Crawl]
+
+
+@pytest.fixture(scope="module", params=TASKS, ids=lambda task: task.__name__)
+def env(request):
+    return request.param()
+
+
+def played(env, seed, steps=6):
+    """Everything that comes out of some steps."""
+    random = np.random.default_rng(5)
+    out = [env.reset(seed=seed)[0]]
+    for _ in range(steps):
+        observation, reward, terminated, truncated, info = env.step(random.uniform(-0.2, 1, env.action_space.shape))
+        out += [observation, reward, terminated, truncated]
+    return out
+
+
+def same(a, b):
+    return all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
+
+
+def test_signatures_are_those_of_gymnasium(env):
+    observation, info = env.reset(seed=3)
+    assert observation.dtype == np.float32 and observation.shape == env.observation_space.shape
+    assert env.observation_space.contains(observation) and isinstance(info, dict)
+    assert env.action_space.shape == (len(env.model.actuators),)
+    observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+    assert env.observation_space.contains(observation) and isinstance(reward, float) and isinstance(info, dict)
+    assert type(terminated) is bool and type(truncated) is bool and "failed" not in info
+    assert env.unwrapped is env and env.render() is None
+
+
+def test_the_same_seed_gives_the_same_bits(env):
+    first = played(env, 7)
+    assert same(first, played(env, 7))
+    assert same(first, played(type(env)(env.model), 7))
+    assert not same(first, played(env, 8)) or isinstance(env, Crawl)  # which has nothing random
+
+
+def test_a_state_is_kept_and_set(env):
+    played(env, 4, 3)
+    action = np.full(env.action_space.shape, 0.4)
+    kept = env.get_state()
+    first = [env.step(action)[0] for _ in range(2)] + [env.reset()[0]]
+    for again in (kept, copy.deepcopy(kept), pickle.loads(pickle.dumps(kept))):
+        other = type(env)(env.model)
+        other.reset(seed=99)
+        other.set_state(again)
+        assert same(first, [other.step(action)[0] for _ in range(2)] + [other.reset()[0]])
+
+
+def test_many_at_once_have_the_numbers_of_each_alone(env):
+    task, count = type(env), 3
+    many = Vector(task, count, model=env.model)
+    random = np.random.default_rng(2)
+    actions = random.uniform(-0.2, 1, (4, count, *env.action_space.shape))
+    observations, infos = many.reset(seed=10)
+    assert observations.shape == (count, *env.observation_space.shape) and infos["steps"].tolist() == [0, 0, 0]
+    together = [observations] + [many.step(a) for a in actions]
+    for k in range(count):
+        alone = task(env.model)
+        assert np.array_equal(alone.reset(seed=10 + k)[0], together[0][k])
+        for a, (observed, rewards, terminated, truncated, _) in zip(actions, together[1:]):
+            observation, reward, *_ = alone.step(a[k])
+            assert np.array_equal(observation, observed[k]) and reward == rewards[k]
+            assert not terminated[k] and not truncated[k]
+
+
+def test_an_episode_that_is_over_begins_anew():
+    class Short(Reach):
+        max_steps = 2
+
+    many = Vector(Short, 2)
+    many.reset(seed=0)
+    many.step(np.zeros((2, 3)))
+    observations, _, terminated, truncated, infos = many.step(np.zeros((2, 3)))
+    assert truncated.all() and not terminated.any()
+    assert infos["_final_observation"].all() and infos["final_info"][0]["steps"] == 2
+    assert not np.array_equal(infos["final_observation"][0], observations[0])
+    assert infos["steps"].tolist() == [0, 0]
+
+
+def test_the_goal_of_reach_ends_the_episode():
+    env = Reach()
+    wanted = env.model.solve(env._inputs_at(np.array([0.3, 0, 0.15]), 0.0)).markers()[0]
+    env.reset(seed=0, options={"goal": wanted})
+    env.step([1, 0, 0.5])
+    observation, reward, terminated, truncated, info = env.step([1, 0, 0.5])
+    assert terminated and not truncated and info["is_success"] and reward > 0.9
+    assert np.abs(observation[3:6]).max() < 1e-3
+
+
+def test_a_grasp_presses_and_a_worm_feels_the_floor():
+    env = Grasp()
+    env.reset(seed=0, options={"force": 0.2})
+    infos = [env.step([1, 1])[4] for _ in range(6)]
+    assert infos[0]["force_N"] < 0.01 and infos[-1]["force_N"] > 0.05
+    env = Crawl()
+    env.reset()
+    for _ in range(5):
+        *_, info = env.step([0, 0])
+    assert env.episode.robot.observe().contacts["floor"][2] > 0.01
+    assert env.episode.robot.time == pytest.approx(0.1)
+
+
+def test_what_is_wrong_is_told():
+    env = Reach(TASKS[0].make_model())
+    with pytest.raises(pliant.InputError, match="call reset"):
+        env.step([0, 0, 0])
+    env.reset(seed=0)
+    wrong = {
+        "action has shape": lambda: env.step([0, 0]),
+        "not finite": lambda: env.step([np.nan, 0, 0]),
+        "action must be an array of numbers": lambda: env.step("up"),
+        "seed must be a whole number": lambda: env.reset(seed=1.5),
+        "goal has shape": lambda: env.reset(options={"goal": 3}),
+        "render_mode is None": lambda: Reach(env.model, render_mode="human"),
+        "count is 0": lambda: Vector(Reach, 0, model=env.model),
+    }
+    for text, slip in wrong.items():
+        with pytest.raises(pliant.InputError, match=text):
+            slip()
+    with pytest.raises(TypeError, match="a class of environments"):
+        Vector(env, 3)
+
+
+def test_gymnasium_knows_them():
+    gymnasium = pytest.importorskip("gymnasium")
+    from gymnasium.utils.env_checker import check_env
+
+    for task in TASKS:
+        env = gymnasium.make(f"pliant/{task.__name__}-v0")
+        assert isinstance(env.unwrapped, RobotEnv)
+        check_env(env.unwrapped, skip_render_check=True)
+
+
+def test_a_box_is_sampled_within_its_bounds():
+    from pliant.envs.spaces import OwnBox
+
+    box = OwnBox([-1, 0], [1, np.inf])
+    box.seed(3)
+    first = [box.sample() for _ in range(50)]
+    box.seed(3)
+    assert same(first, [box.sample() for _ in range(50)])
+    assert np.abs([f[0] for f in first]).max() <= 1 and first[0].dtype == np.float32
+    assert box.contains(np.zeros(2, np.float32)) and [0.0, 1.0] in OwnBox([-1, 0], [1, 2], dtype=np.float64)
+    assert not box.contains(np.array([2, 0], np.float32)) and not box.contains(np.zeros(3, np.float32))
