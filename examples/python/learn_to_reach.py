@@ -3,8 +3,7 @@
 
     PYTHONPATH=build/release/python examples/python/learn_to_reach.py [--generations 15] [--picture learning.png]
 
-The policy is linear: the change of each cable's pull from where the tip is, the way to the goal, and how far the cables
-are pulled. Every generation draws policies around the mean, lets all of them play the same goals side by side, and goes
+The policy is linear: the change of each cable's pull from the way to the goal and from how far the cables are pulled. Every generation draws policies around the mean, lets all of them play the same goals side by side, and goes
 to the mean of the best (de Boer et al., A Tutorial on the Cross-Entropy Method, 2005). In the end the policy reaches for
 goals that it has never seen.
 """
@@ -20,9 +19,9 @@ from pliant.envs import Reach, Vector
 
 
 def act(policies: np.ndarray, observations: np.ndarray) -> np.ndarray:
-    """(count, 3) actions of (count, 3, 10) policies at (count, 9) observations."""
-    seen = np.concatenate([observations, np.ones((len(observations), 1))], axis=1)
-    seen[:, 0] -= 1  # the tip as it is away from rest
+    """(count, 3) actions of (count, 3, 7) policies at (count, 9) observations."""
+    way_cm, pulled = 10 * observations[:, 3:6], observations[:, 6:9]
+    seen = np.concatenate([way_cm, pulled, np.ones((len(observations), 1))], axis=1)
     return np.tanh(np.einsum("kij,kj->ki", policies, seen))
 
 
@@ -63,11 +62,12 @@ def learn(
     model = Endless.make_model() if model is None else model
     envs = Vector(Endless, population * goals_each, model=model)
     random = np.random.default_rng(seed)
-    mean, spread = np.zeros((3, 10)), np.full((3, 10), 1.0)
+    mean, spread = np.zeros((3, 7)), np.ones((3, 7))
+    goals = goals_of(model, goals_each, seed)
     curve = []
     for generation in range(generations):
-        policies = mean + spread * random.standard_normal((population, 3, 10))
-        returns, away = play(envs, policies, goals_of(model, goals_each, seed + 1000 * (generation + 1)), steps)
+        policies = mean + spread * random.standard_normal((population, 3, 7))
+        returns, away = play(envs, policies, goals, steps)
         best = policies[np.argsort(-returns.mean(axis=1))[: max(2, population // 5)]]
         mean, spread = best.mean(axis=0), best.std(axis=0) + 0.02
         curve.append((float(away.mean()), float(away.mean(axis=1).min())))
@@ -96,8 +96,8 @@ def main() -> None:
     """As the command line says."""
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--generations", type=int, default=15)
-    options.add_argument("--population", type=int, default=20)
-    options.add_argument("--goals", type=int, default=3, help="that every policy plays in a generation")
+    options.add_argument("--population", type=int, default=24)
+    options.add_argument("--goals", type=int, default=6, help="that every policy plays")
     options.add_argument("--steps", type=int, default=12, help="of an episode")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--picture", help="file of the learning curve")

@@ -88,6 +88,14 @@ def path(value: Any, what: str) -> Path:
     raise InputError(f"{what} must be a path, not {_shown(value)}")
 
 
+def one_of(value: Any, options: Iterable[str], what: str) -> str:
+    """One of some words."""
+    known = list(options)
+    if isinstance(value, str) and value in known:
+        return value
+    raise InputError(f"{what} is {', '.join(known[:-1])} or {known[-1]}, not {_shown(value)}")
+
+
 def texts(value: Any, what: str) -> list[str]:
     """A list of texts; one alone stands for a list of it."""
     if isinstance(value, str):

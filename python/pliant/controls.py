@@ -49,10 +49,12 @@ class Inputs(Mapping[str, Drive]):
     time: float
 
     def __init__(self, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> None:
-        self.names = names
-        self.time = time
-        self._by = list(by)
-        self._values = list(values)
+        self.names = tuple(names)
+        self.time = _check.number(time, "time")
+        self._by = _check.texts(by, "the kinds of drives")
+        self._values = _check.numbers(values, "the values of drives", (len(self._by),)).tolist()
+        if len(self.names) != len(self._by):
+            raise InputError(f"{len(self._by)} drives for {len(self.names)} cables and chambers")
 
     @property
     def values_SI(self) -> Array:
@@ -83,6 +85,14 @@ class Inputs(Mapping[str, Drive]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Inputs, (self.names, self.time, self._by, self._values)
+
+    @classmethod
+    def _known(cls, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> Inputs:
+        """Without a look: they come from the library."""
+        inputs = cls.__new__(cls)
+        inputs.names, inputs.time = names, time
+        inputs._by, inputs._values = list(by), list(values)
+        return inputs
 
     def _tuple(self) -> tuple[float, list[str], list[float]]:
         return self.time, self._by, self._values

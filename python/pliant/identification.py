@@ -170,8 +170,7 @@ def identify(
     else:
         path = _check.path(measured, "measured")
         csv, file = _read(path), str(path)
-    if not isinstance(judge, str):
-        raise InputError(f'judge is "nothing", "every_second" or "second_half", not {judge!r}')
+    _check.one_of(judge, ("nothing", "every_second", "second_half"), "judge")
     found = _pliant.identify(
         _check.instance(robot, Robot, "robot")._robot,
         _check.texts(unknowns, "unknowns"),

@@ -181,6 +181,8 @@ class Linearisation:
         by = np.zeros((model.node_count, 3))
         if positions is not None:
             by += _check.numbers(positions, "positions", (model.node_count, 3))
+        if markers is not None and not isinstance(markers, Mapping):
+            raise TypeError('markers must be a mapping, as {"tip": [0, 0, 1]}')
         for name, weights in (markers or {}).items():
             index, direction = self._marker(name), _check.numbers(weights, f"markers[{name!r}]", (3,))
             by += self._at.marker_coordinate(index, direction.tolist())
@@ -208,7 +210,7 @@ class Linearisation:
         return _check.numbers(v, what, (self.size,))
 
     def _marker(self, name: str) -> int:
-        if name in self.model.markers:
+        if isinstance(name, str) and name in self.model.markers:
             return self.model.markers.index(name)
         there = ", ".join(self.model.markers) or "none"
         raise InputError(f"there is no marker {name!r}; there are {there}", key=str(name))

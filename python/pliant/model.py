@@ -267,7 +267,7 @@ class Model:
         by, numbers = list(known[1]), list(known[2])
         rest = self._rest_measures()
         for name, wanted in controls.items():
-            if name not in rest:
+            if not isinstance(name, str) or name not in rest:
                 raise InputError(self._no_actuator(name), key=str(name))
             index = self._actuators.index(name)
             by[index], numbers[index] = drive_of(name, rest[name], wanted)
@@ -425,7 +425,7 @@ class Model:
         return state
 
     def _inputs_of(self, known: tuple[float, Any, Any]) -> Inputs:
-        return Inputs(self._actuators, *known)
+        return Inputs._known(self._actuators, *known)
 
     def _rest_measures(self) -> dict[str, Rest]:
         if self._rest is None:

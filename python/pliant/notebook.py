@@ -82,8 +82,7 @@ def show(what: Shown, *, field: str = "material", height_px: int = 420) -> Viewe
     Returns:
         What a notebook shows as the value of a cell. ``show(state).write("robot.html")`` keeps the page.
     """
-    if field not in _FIELDS:
-        raise InputError(f"field is {', '.join(_FIELDS)}, not {field!r}")
+    _check.one_of(field, _FIELDS, "field")
     model, frames = _frames(what)
     shown = {
         "scene": _text(_pliant.View(model._model).scene()),

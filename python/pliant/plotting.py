@@ -47,6 +47,7 @@ def plot(
 
     state = _state(what)
     axes = plt.figure().add_subplot(projection="3d") if ax is None else ax
+    axes.computed_zorder = False  # cables and markers are seen through the body
     triangles = state.model.surface()
     corners = 1e3 * state.positions[triangles]
     colours, values = _colours(state, triangles, field)
@@ -58,10 +59,10 @@ def plot(
     )
     axes.add_collection3d(body)
     for path in state.model.cable_paths(state).values():
-        axes.plot(*(1e3 * path).T, color="#cc1a24", linewidth=1.5)
+        axes.plot(*(1e3 * path).T, color="#cc1a24", linewidth=1.5, zorder=5)
     markers = 1e3 * state.markers()
     if len(markers):
-        axes.scatter(*markers.T, color="#11161d", s=14, depthshade=False)
+        axes.scatter(*markers.T, color="#11161d", s=14, depthshade=False, zorder=6)
     _frame(axes, corners.reshape(-1, 3), view)
     if values is not None and field is not None:
         _colour_bar(axes, values, field)
@@ -120,8 +121,7 @@ def _state(what: Any) -> State:
 
 def field_values(state: State, field: str) -> Array:
     """(tets,) of one of FIELDS, in the unit of its label."""
-    if field not in FIELDS:
-        raise InputError(f"field is {', '.join(FIELDS)}, not {field!r}")
+    _check.one_of(field, FIELDS, "field")
     scale = FIELDS[field][2]
     if field == "displacement":
         away = np.linalg.norm(state.displacements, axis=1)
@@ -177,6 +177,8 @@ def _frame(axes: Any, points: Array, view: Any) -> None:
     for set_limits, a, b in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), low - margin, high + margin):
         set_limits(a, b)
     axes.set_box_aspect(high - low + 2 * margin)
+    for axis, extent in zip((axes.xaxis, axes.yaxis, axes.zaxis), (high - low) / (high - low).max()):
+        axis.get_major_locator().set_params(nbins=max(1, round(6 * float(extent))))
     axes.set_xlabel("x (mm)")
     axes.set_ylabel("y (mm)")
     axes.set_zlabel("z (mm)")

@@ -116,8 +116,7 @@ class ProgramResult:
             view: (3,) direction from the robot to the eye; None: from where its motion shows best.
             progress: called with (stage, share) some times a second; False cancels.
         """
-        if not isinstance(pictures, str):
-            raise InputError(f'pictures are "none", "few" or "all", not {pictures!r}')
+        _check.one_of(pictures, ("none", "few", "all"), "pictures")
         size = (0, 0) if picture_size_px is None else _check.integers(picture_size_px, "picture_size_px").tolist()
         if len(size) != 2:
             raise InputError("picture_size_px must be (width, height)")

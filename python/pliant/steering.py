@@ -214,7 +214,7 @@ class Workspace:
 
     def sheets(self, marker: str) -> tuple[Array, IntArray]:
         """(points, 3) m and (triangles, 3): the surfaces on which two inputs vary and all others stand at an end."""
-        if marker not in self.model.markers:
+        if not isinstance(marker, str) or marker not in self.model.markers:
             raise InputError(f"there is no marker {marker!r}; there are {', '.join(self.model.markers) or 'none'}")
         return self._space.sheets(self.model.markers.index(marker))
 

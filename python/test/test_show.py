@@ -68,7 +68,7 @@ def test_models_states_and_programs_are_shown(model, states):
             pliant.show(wrong)
     with pytest.raises(pliant.InputError, match="not all of one model"):
         pliant.show([states[0], bar().rest()])
-    with pytest.raises(pliant.InputError, match="field is material"):
+    with pytest.raises(pliant.InputError, match="field is material, displacement"):
         pliant.show(model, field="colour")
 
 

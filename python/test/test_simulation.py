@@ -222,7 +222,7 @@ def test_a_program_writes_its_results_and_tells_its_steps(tmp_path):
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["converged"]
     with pytest.raises(IndexError):
         result[5]
-    with pytest.raises(pliant.InputError, match='"none", "few" or "all"'):
+    with pytest.raises(pliant.InputError, match="pictures is none, few or all, not 'many'"):
         result.write(tmp_path / "out", pictures="many")
 
 

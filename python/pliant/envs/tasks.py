@@ -37,7 +37,7 @@ class _Arm(RobotEnv):
             Robot(
                 name="arm",
                 length_unit="mm",
-                material=_SOFT,
+                material={"soft": {**_SOFT["soft"], "youngs_modulus": "0.4 MPa"}},
                 mesh={"order": 1, "size": "6 mm"},
                 body=[{"name": "arm", "material": "soft", "geometry": {"box": [[0, -6, -6], [100, 6, 6]]}}],
                 fixed=[{"name": "clamp", "box": [[0, -6, -6], [0, 6, 6]]}],
