@@ -1,7 +1,10 @@
 """Environments: the signatures of Gymnasium, seeds, states that are kept and set, many at once."""
 
 import copy
+import os
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -144,6 +147,30 @@ def test_gymnasium_knows_them():
         env = gymnasium.make(f"pliant/{task.__name__}-v0")
         assert isinstance(env.unwrapped, RobotEnv)
         check_env(env.unwrapped, skip_render_check=True)
+
+
+def test_they_are_registered_where_gymnasium_is_installed(tmp_path):
+    """On a stand-in with the names of Gymnasium 0.29 that the module uses."""
+    package = tmp_path / "gymnasium"
+    (package / "envs").mkdir(parents=True)
+    (package / "__init__.py").write_text("from . import spaces\nclass Env:\n    pass\n")
+    (package / "envs" / "__init__.py").write_text("")
+    (package / "envs" / "registration.py").write_text(
+        "registry = {}\ndef register(id, entry_point):\n    registry[id] = entry_point\n"
+    )
+    (package / "spaces.py").write_text(
+        "class Box:\n    def __init__(self, low, high, shape, dtype):\n        self.shape = shape\n"
+    )
+    code = (
+        "import gymnasium, pliant.envs\n"
+        "from gymnasium.envs.registration import registry\n"
+        "assert sorted(registry) == ['pliant/' + n + '-v0' for n in ('Crawl', 'Follow', 'Grasp', 'Reach')], registry\n"
+        "env = pliant.envs.Reach()\n"
+        "assert isinstance(env, gymnasium.Env) and isinstance(env.action_space, gymnasium.spaces.Box)\n"
+        "assert registry['pliant/Reach-v0'] == 'pliant.envs:Reach' and env.action_space.shape == (3,)\n"
+    )
+    path = os.pathsep.join([str(tmp_path), os.environ["PYTHONPATH"]])
+    subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "PYTHONPATH": path})
 
 
 def test_a_box_is_sampled_within_its_bounds():
