@@ -12,7 +12,8 @@
 namespace pliant {
 
 /// Surfaces of every material, cables, chambers, supports, obstacles and markers, as the viewer of web/src/viewer.ts
-/// reads them: a head in JSON and arrays of numbers behind it. docs/reference/studio.md says what is in these packets. Lengths in mm.
+/// reads them: a head in JSON and arrays of numbers behind it. docs/reference/studio.md says what is in these packets.
+/// Lengths in mm.
 class PLIANT_API View {
 public:
     /// Finds the surfaces.

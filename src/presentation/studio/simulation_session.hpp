@@ -14,9 +14,9 @@
 #include <thread>
 #include <vector>
 
+#include "presentation/scene/scene.hpp"
 #include "presentation/studio/led_marker.hpp"
 #include "presentation/studio/message.hpp"
-#include "presentation/scene/scene.hpp"
 #include "robot/description/robot.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/run/live.hpp"
