@@ -178,11 +178,13 @@ py::dict dict_of(ProgramGradient g) {
     return py::dict("value"_a = g.value, "values"_a = g.values, "parameters"_a = list_of(g.parameters),
                     "by_parameters"_a = array_of(std::move(g.by_parameters)),
                     "by_rest_positions"_a = array_of(std::move(g.by_rest_positions)), "by_tets"_a = tets,
-                    "inputs"_a = list_of(g.inputs), "instants"_a = instants);
+                    "by_numbers"_a = array_of(std::move(g.by_numbers)), "inputs"_a = list_of(g.inputs),
+                    "instants"_a = instants);
 }
 
 py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& measures, py::object judge,
-                          bool rest_positions, bool tets, int kept, py::object progress) {
+                          bool rest_positions, bool tets, const std::vector<std::string>& numbers, int kept,
+                          py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
     Objective objective;
@@ -192,7 +194,9 @@ py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& m
     std::optional<ProgramGradient> found;
     try {
         const py::gil_scoped_release unlocked;
-        found.emplace(gradient(model, objective, {rest_positions, tets, kept}, watch));
+        found.emplace(gradient(model, objective,
+                               {.rest_positions = rest_positions, .tets = tets, .numbers = numbers, .kept = kept},
+                               watch));
     } catch (const Failure&) {
         watcher.rethrow();
         throw;

@@ -239,6 +239,7 @@ def program_gradient(
     judge: Callable[[int, _Floats], tuple[float, Sequence[float]]],
     rest_positions: bool,
     tets: bool,
+    numbers: list[str],
     kept: int,
     progress: _Progress,
 ) -> dict[str, Any]: ...

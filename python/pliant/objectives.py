@@ -56,6 +56,8 @@ class ProgramGradient:
     by_rest_positions: Array
     #: where wanted
     by_tets: list[TetGradient]
+    #: (numbers,) in the units of the robot file, where wanted
+    by_numbers: Array
     #: what drives the robot; values are those at rest
     inputs: list[Parameter]
     #: in the order of time
@@ -69,6 +71,7 @@ def gradient(
     *,
     rest_positions: bool = False,
     tets: bool = False,
+    numbers: Iterable[str] = (),
     kept: int = 8,
     progress: Progress | None = None,
 ) -> ProgramGradient:
@@ -85,6 +88,8 @@ def gradient(
         judge: called once or more for a step, in any order; must say the same each time.
         rest_positions: also by the rest positions of the nodes.
         tets: also by what each tetrahedron is made of.
+        numbers: also by these names of ``[parameters]`` of the robot file: through shapes, whose mesh moves along,
+            places, constants and targets. For programs at rest without friction.
         kept: states that are kept on the way where steps depend on those before; others are solved again.
         progress: called with (stage, share) some times a second; False cancels.
 
@@ -109,6 +114,7 @@ def gradient(
         judged,
         bool(rest_positions),
         bool(tets),
+        _check.texts(numbers, "numbers"),
         _check.integer(kept, "kept"),
         _check.progress(progress),
     )

@@ -30,6 +30,7 @@ class Fuzz:
     def __init__(self, seed: int) -> None:
         self.random = np.random.default_rng(seed)
         self.folder = tempfile.TemporaryDirectory(prefix="pliant_fuzz")
+        os.chdir(self.folder.name)  # what is saved under any name lies there
         self.calls = 0
         self.answers = 0
         self.kept: list[Any] = []

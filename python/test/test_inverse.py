@@ -131,6 +131,25 @@ def test_the_gradient_of_a_program_is_a_difference():
     assert len(found.instants) >= 4 and found.instants[-1].by_inputs.shape == (len(found.inputs),)
 
 
+def test_numbers_of_the_drawing_have_derivatives():
+    tip = pliant.Measure("marker", "tip", (0, 0, 1))
+
+    def judge(step, values):
+        return (1e3 * values[0], [1e3]) if step == 2 else (0.0, [0.0])
+
+    def of(ratio, **options):
+        cable = [{**BAR["cable"][0], "target": {"length_ratio": "= ratio"}}]
+        model = bar(parameters={"ratio": ratio}, cable=cable, program={"steps": 2, "tolerance": 1e-10})
+        return pliant.gradient(model, [tip], judge, **options)
+
+    found = of(0.95, numbers=["ratio"])
+    difference = (of(0.9501).value - of(0.9499).value) / 2e-4
+    assert found.by_numbers == pytest.approx([difference], rel=1e-5)
+    assert of(0.95).by_numbers.shape == (0,)
+    with pytest.raises(pliant.InputError, match='has no number "ration"; did you mean "ratio"'):
+        of(0.95, numbers="ration")
+
+
 def test_a_measure_and_its_gradient_at_a_state():
     model = bar()
     state = model.solve({"flexor": {"shortening": "2 mm"}})

@@ -50,7 +50,7 @@ public:
                               planes[2].data(), ignored.data(), palette.colours_.data()) == GIF_ERROR)
             return failure("film: its colours could not be chosen");
         palette.count_ = count;
-        palette.nearest_.assign(std::size_t{1} << 24, -1);
+        palette.settle(planes);
         return palette;
     }
 
@@ -71,6 +71,32 @@ public:
     [[nodiscard]] const GifColorType* colours() const { return colours_.data(); }
 
 private:
+    using Planes = std::array<std::vector<GifByteType>, 3>;
+
+    /// giflib counts in five bits, which tints what is grey: each colour becomes the mean of those that it stands for
+    /// (Lloyd's iteration).
+    void settle(const Planes& planes) {
+        constexpr int rounds = 3;
+        for (int round = 0; round < rounds; ++round) {
+            nearest_.assign(std::size_t{1} << 24, -1);
+            std::array<std::array<std::uint64_t, 4>, 256> sums{};
+            for (std::size_t p = 0; p < planes[0].size(); ++p) {
+                const std::array<std::uint8_t, 3> rgb{planes[0][p], planes[1][p], planes[2][p]};
+                auto& sum = sums[nearest(rgb.data())];
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += rgb[c];
+                ++sum[3];
+            }
+            const auto mean = [](std::uint64_t sum, std::uint64_t count) {
+                return static_cast<GifByteType>((sum + count / 2) / count);
+            };
+            for (std::size_t k = 0; k < sums.size(); ++k) {
+                const auto& [r, g, b, n] = sums[k];
+                if (n > 0) colours_[k] = {mean(r, n), mean(g, n), mean(b, n)};
+            }
+        }
+        nearest_.assign(std::size_t{1} << 24, -1);
+    }
+
     std::array<GifColorType, 256> colours_{};
     int count_ = 0;
     std::vector<std::int16_t> nearest_;  ///< (2^24), -1: not asked for yet
