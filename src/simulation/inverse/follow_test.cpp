@@ -82,7 +82,7 @@ TEST_CASE("a path of 20 waypoints is followed, and the program that was found le
     CHECK(result.reached);
     int forward = 0;
     for (std::size_t k = 1; k < result.waypoints.size(); ++k) forward += result.waypoints[k].work.forward;
-    CHECK(forward <= 3 * 19);  // warm: hardly more than the waypoints themselves
+    CHECK(forward < 2 * 19);  // warm: hardly more than the waypoints themselves
     for (std::size_t c = 0; c < 3; ++c) {
         Curve keys{{0}, {1}};
         for (std::size_t k = 0; k < 20; ++k) {

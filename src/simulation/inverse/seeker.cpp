@@ -11,6 +11,7 @@ constexpr double first_radius = 0.25;  // shares of the ranges
 constexpr double largest_radius = 1, smallest_radius = 1e-6;
 constexpr double no_gain = 0.01;                         // of a tolerance: the next step would bring no more
 constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // decrease found over that expected
+constexpr double most_bent = 3;                          // of the step that showed how residuals bend: the next one
 constexpr double quick = 0.15;      // cost left by a step of a linearisation that may be used again
 constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
@@ -37,6 +38,7 @@ struct Seeker::Search {
     Eigen::VectorXd gradient{};  ///< at `now`, where fresh
     std::string no_state{};      ///< why the last move led nowhere; empty if it did not
     bool cancelled = false;
+    int trials = 0;  ///< equilibria that were solved for
     [[nodiscard]] bool is_priced() const { return price.factor > 0; }
 };
 
@@ -90,7 +92,10 @@ Found Seeker::seek(const Point& start, const Point& before, std::size_t waypoint
     Search search{waypoint, &bounds, before, start, {}};
     search.cost = cost_of(search, search.now, search.residuals);
     radius_ = std::max(radius_, first_radius);
+    if (last_end_.size() == 0 || start.inputs != last_end_) bend_.reset();
     minimise(search, progress);
+    is_proven_ = has_memory_ || search.trials <= 1;  // no linearisation knows what friction does: what was learnt does
+    last_end_ = search.now.inputs;
     Found found;
     const auto all_reached = [&] {
         found.goals = rows_.goals(search.now.robot, waypoint);
@@ -197,7 +202,10 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     Trial trial;
     Point to{from.robot, wanted};
     ++work_.forward;
-    const StepReport report = stepper_->drive(to.robot, space_.inputs(wanted, task_->times[search.waypoint]), progress);
+    std::optional<State> expected;  // friction depends on where a step begins to look, as in the program later
+    if (!has_memory_) expected = sensitivity_->expected(*stepper_, search.now.robot.now.state, step);
+    const Inputs inputs = space_.inputs(wanted, task_->times[search.waypoint]);
+    const StepReport report = stepper_->drive(to.robot, inputs, progress, expected ? &*expected : nullptr);
     trial.arrived = report.arrived;
     trial.reason = report.reason;
     if (!report.arrived) {
@@ -220,11 +228,23 @@ BoundedStep Seeker::best_step(const Search& search) {
         // One that is only taken for taut does nothing when it is let go.
         if (space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
     }
-    constexpr double accuracy = 1e-3;
-    return bounded_step(
-        search.residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
-        [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, accuracy,
-        search.is_priced() ? 0 : 0.1 * aim);
+    constexpr double accuracy = 1e-4;
+    const auto least = [&](const Eigen::VectorXd& residuals) {
+        return bounded_step(
+            residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
+            [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, accuracy,
+            search.is_priced() ? 0 : 0.1 * aim);
+    };
+    const BoundedStep straight = least(search.residuals);
+    if (has_memory_ || search.is_priced() || search.trials > 0 || !bend_) return straight;
+    const double share = bend_->step.dot(straight.step) / bend_->step.squaredNorm();
+    if (!(std::fabs(share) < most_bent)) return straight;
+    // What the residuals do beside what is linear, as they did along the way to this waypoint.
+    const Eigen::VectorXd beside = search.residuals + share * share * bend_->miss;
+    BoundedStep bent = least(beside);
+    bent.decrease = search.cost - 0.5 * (beside + bent.change).squaredNorm();
+    bent.gradient = straight.gradient;
+    return bent.decrease > good * straight.decrease ? bent : straight;
 }
 
 /// Takes the trial if it is better, and adapts the trust region. True: the sensitivity serves for another step.
@@ -240,7 +260,12 @@ bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
     search.no_state = trial.arrived ? "" : trial.reason;
     if (!(ratio > none)) return search.fresh;
     const bool as_asked = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
-    if (as_asked) sensitivity_->learn(step.step, residuals - search.residuals - step.change);
+    if (as_asked) {
+        const Eigen::VectorXd miss = residuals - search.residuals - step.change;
+        // The slope at the end of a parabola misses by twice as much as the chord.
+        sensitivity_->learn(step.step, 2 * miss);
+        if (search.trials == 1) bend_ = Bend{step.step, miss};
+    }
     const bool was_quick = cost <= quick * search.cost;
     search.now = std::move(*trial.point);
     search.residuals = std::move(residuals);
@@ -252,7 +277,7 @@ bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
 void Seeker::minimise(Search& search, const Progress& progress) {
     search.fresh = false;
     search.no_state.clear();
-    bool usable = sensitivity_ && price_factor_ == search.price.factor && treats_as_it_is(search.now);
+    bool usable = sensitivity_ && is_proven_ && price_factor_ == search.price.factor && treats_as_it_is(search.now);
     for (int moves = 0; moves < most_moves && radius_ > smallest_radius;) {
         if (!search.is_priced() && distance(search.cost) <= aim) return;
         if ((search.cancelled = progress.cancelled())) return;
@@ -268,6 +293,7 @@ void Seeker::minimise(Search& search, const Progress& progress) {
             continue;
         }
         ++moves;
+        ++search.trials;
         Trial trial = attempt(search, step.step, progress);
         if (progress.cancelled() && !trial.arrived) {
             search.cancelled = true;

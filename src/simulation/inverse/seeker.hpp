@@ -101,6 +101,13 @@ private:
     std::optional<Sensitivity> sensitivity_;
     std::vector<bool> pulls_;  ///< (inputs) cables that the sensitivity takes for taut, and all other inputs
     double price_factor_ = 0;  ///< that the sensitivity's rows have
+    bool is_proven_ = false;   ///< one step led to the last waypoint: the sensitivity may serve for the next one
+    struct Bend {
+        Eigen::VectorXd step;  ///< (inputs)
+        Eigen::VectorXd miss;  ///< (rows) what was found beyond what is linear
+    };
+    std::optional<Bend> bend_;  ///< of the step that led off from the waypoint before
+    Eigen::VectorXd last_end_;  ///< (inputs) where the last search ended
     double radius_ = 0;
     Work work_;
 };

@@ -4,8 +4,14 @@
 #include <limits>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/solver/body_rotation.hpp"
 
 namespace pliant::sim::inverse {
+namespace {
+
+constexpr double already_solved = 1e-9;  // of a direction: what is left of it without those that are known
+
+}  // namespace
 
 Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace& space, const RobotState& robot,
                                         const std::vector<bool>& pulled) {
@@ -14,7 +20,7 @@ Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace
         double& tension = state.multiplier[static_cast<Eigen::Index>(space.input(i).actuator)];
         if (pulled[static_cast<std::size_t>(i)]) tension = std::max(tension, std::numeric_limits<double>::min());
     }
-    constexpr double residual = 1e-6;  // a step is tried in any case
+    constexpr double residual = 1e-5;  // a step is tried in any case
     const KnownPattern known = known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get());
     Result<Linearisation> at = Linearisation::create(stepper.system(), state, robot.controls, known, residual);
     if (!at) return tl::unexpected(at.error());
@@ -26,30 +32,85 @@ Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace
 void Sensitivity::use(RowGradients rows) {
     rows_ = std::move(rows);
     learnt_.clear();
+    direct_.clear();
+    transposed_.clear();
+    changes_.clear();
+}
+
+/// Of v, where `solve` does it for what is not a combination of known directions.
+template <class Solve>
+Eigen::VectorXd Sensitivity::product(std::vector<Known>& known, const Eigen::VectorXd& v, Eigen::Index size,
+                                     const Solve& solve) {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(size), rest = v;
+    for (int pass = 0; pass < 2; ++pass) {  // twice, or rounding would leave something
+        for (const Known& one : known) {
+            const double share = one.direction.dot(rest);
+            rest -= share * one.direction;
+            result += share * one.product;
+        }
+    }
+    const double left = rest.norm();
+    if (!(left > already_solved * v.norm())) return result;
+    known.push_back({rest / left, solve(Eigen::VectorXd(rest / left))});
+    return result + left * known.back().product;
 }
 
 Eigen::VectorXd Sensitivity::multiply(const Eigen::VectorXd& inputs) {
-    Eigen::VectorXd result = rows_.by_inputs * inputs;
-    Derivative by = by_.front();
-    by.equations *= inputs[0];
-    by.direct.positions *= inputs[0];
-    by.direct.multipliers *= inputs[0];
-    for (Eigen::Index i = 1; i < inputs.size(); ++i) {
-        if (inputs[i] == 0) continue;
-        const Derivative& one = by_[static_cast<std::size_t>(i)];
-        by.equations += inputs[i] * one.equations;
-        by.direct.positions += inputs[i] * one.direct.positions;
-        by.direct.multipliers += inputs[i] * one.direct.multipliers;
-    }
-    ++solutions_;
-    const Result<Change> change = at_.response(by);
-    if (!change) {
-        status_ = tl::unexpected(change.error());
-        return Eigen::VectorXd::Zero(result.size());
-    }
-    result += rows_.by_positions * change->positions + rows_.by_multipliers * change->multipliers;
+    Eigen::VectorXd result = product(direct_, inputs, rows_.by_inputs.rows(),
+                                     [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
     for (const Learnt& more : learnt_) result += more.rows * more.inputs.dot(inputs);
     return result;
+}
+
+Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
+    Derivative by = by_.front();
+    by.equations *= direction[0];
+    by.direct.positions *= direction[0];
+    by.direct.multipliers *= direction[0];
+    for (Eigen::Index i = 1; i < direction.size(); ++i) {
+        if (direction[i] == 0) continue;
+        const Derivative& one = by_[static_cast<std::size_t>(i)];
+        by.equations += direction[i] * one.equations;
+        by.direct.positions += direction[i] * one.direct.positions;
+        by.direct.multipliers += direction[i] * one.direct.multipliers;
+    }
+    ++solutions_;
+    Result<Change> change = at_.response(by);
+    if (!change) {
+        status_ = tl::unexpected(change.error());
+        const Eigen::VectorXd& x = at_.state().x;
+        changes_.push_back({Eigen::VectorXd::Zero(x.size()), Eigen::VectorXd::Zero(at_.state().multiplier.size())});
+        return Eigen::VectorXd::Zero(rows_.by_inputs.rows());
+    }
+    changes_.push_back(*std::move(change));
+    return rows_.by_inputs * direction + rows_.by_positions * changes_.back().positions +
+           rows_.by_multipliers * changes_.back().multipliers;
+}
+
+State Sensitivity::expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) const {
+    const Equilibrium& system = stepper.system();
+    State next = now;
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(now.x.size());
+    for (std::size_t k = 0; k < direct_.size(); ++k) {
+        const double share = direct_[k].direction.dot(inputs);
+        motion += share * changes_[k].positions;
+        next.multiplier += share * changes_[k].multipliers;
+    }
+    Eigen::MatrixXd turned = system.restrict_to_free(motion);
+    if (now.x != at_.state().x) {
+        BodyRotation rotation(system, stepper.laplacian());
+        rotation.begin(at_.state().x);
+        rotation.follow(now.x);
+        rotation.push_forward_motions(turned);
+    }
+    Eigen::VectorXd end = now.x;
+    system.add_free(turned.col(0), 1, end);
+    next.x = stepper.laplacian().rotate(system, {.now = now.x.data(), .end = end.data()});
+    for (std::size_t a = 0; a < system.actuators().size(); ++a) {
+        double& multiplier = next.multiplier[static_cast<Eigen::Index>(a)];
+        if (system.actuators()[a].only_pulls()) multiplier = std::max(multiplier, 0.0);
+    }
+    return next;
 }
 
 std::optional<Adjoint> Sensitivity::adjoint(const Eigen::VectorXd& rows) {
@@ -62,10 +123,14 @@ std::optional<Adjoint> Sensitivity::adjoint(const Eigen::VectorXd& rows) {
 }
 
 Eigen::VectorXd Sensitivity::multiply_transposed(const Eigen::VectorXd& rows) {
-    Eigen::VectorXd result = rows_.by_inputs.transpose() * rows;
-    const std::optional<Adjoint> solved = adjoint(rows);
-    if (!solved) return Eigen::VectorXd::Zero(result.size());
-    for (Eigen::Index i = 0; i < result.size(); ++i) result[i] += solved->derivative(by_[static_cast<std::size_t>(i)]);
+    const Eigen::Index size = rows_.by_inputs.cols();
+    Eigen::VectorXd result = product(transposed_, rows, size, [&](const Eigen::VectorXd& direction) {
+        Eigen::VectorXd by_inputs = rows_.by_inputs.transpose() * direction;
+        const std::optional<Adjoint> solved = adjoint(direction);
+        if (!solved) return Eigen::VectorXd(Eigen::VectorXd::Zero(size));
+        for (Eigen::Index i = 0; i < size; ++i) by_inputs[i] += solved->derivative(by_[static_cast<std::size_t>(i)]);
+        return by_inputs;
+    });
     for (const Learnt& more : learnt_) result += more.inputs * more.rows.dot(rows);
     return result;
 }

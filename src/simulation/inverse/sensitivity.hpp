@@ -1,5 +1,6 @@
 // What residuals do with small changes of the inputs at one state, by products alone: a product takes one solution with
 // the linearised equations, its transpose one with their transpose, and no matrix of residuals by inputs is formed.
+// What has been solved for is remembered, so that along combinations of it nothing is solved again.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,6 +35,9 @@ public:
     /// `miss`: what the product with `inputs` falls short of what was found. Corrects it by the smallest change that
     /// does (Broyden 1965).
     void learn(const Eigen::VectorXd& inputs, const Eigen::VectorXd& miss);
+    /// About the state that a robot, which is near, goes to with a change of its inputs: along what has been solved for
+    /// by multiply() since create().
+    [[nodiscard]] State expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) const;
     /// How often the linearised equations were solved.
     [[nodiscard]] int solutions() const { return solutions_; }
 
@@ -41,12 +45,23 @@ private:
     explicit Sensitivity(Linearisation at) : at_(std::move(at)) {}
     [[nodiscard]] std::optional<Adjoint> adjoint(const Eigen::VectorXd& rows);
 
+    [[nodiscard]] Eigen::VectorXd solved_product(const Eigen::VectorXd& direction);
+
     struct Learnt {
         Eigen::VectorXd rows, inputs;  ///< adds rows (inputs . v)
     };
+    /// A direction of length 1, orthogonal to all others, with its product.
+    struct Known {
+        Eigen::VectorXd direction, product;
+    };
+    template <class Solve>
+    [[nodiscard]] static Eigen::VectorXd product(std::vector<Known>& known, const Eigen::VectorXd& v, Eigen::Index size,
+                                                 const Solve& solve);
     Linearisation at_;
     RowGradients rows_;
     std::vector<Derivative> by_;
+    std::vector<Known> direct_, transposed_;
+    std::vector<Change> changes_;  ///< of the state, along each of direct_
     std::vector<Learnt> learnt_;
     Status status_;
     int solutions_ = 0;

@@ -26,6 +26,7 @@ constexpr double column_residual = 1e-11;  // of the columns of the Schur comple
 constexpr double off_at_most = 0.1;        // of a quick way's answer to what it makes largest
 constexpr double singular = 1e-14;         // smallest over largest singular value, in balanced units
 constexpr double redundant = 1e-11;        // pivots of the Schur complement
+constexpr double nearly_redundant = 1e-3;  // likewise, of one in single precision
 constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
 
 using linalg::view;
@@ -140,30 +141,27 @@ linalg::Cholesky& SystemSolver::factor(linalg::Precision precision) {
     return *factor_;
 }
 
-/// v (3 free) <- K^-1 v, as well as the preconditioner can; on two levels within level_tolerance of it, in the norm of
-/// K. False: not as well as that.
-bool SystemSolver::apply_body(Eigen::VectorXd& v) const {
-    if (levels_) return levels_->solve(view(v), 1, level_tolerance, level_limit) == linalg::TwoLevel::Outcome::solved;
-    factor_->solve(view(v), 1);
+/// Columns (3 free, k) <- K^-1 columns, as well as the preconditioner can; on two levels within level_tolerance of
+/// that, in the norm of K. False: not as well as that.
+bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
+    const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
+    const auto count = static_cast<int>(columns.cols());
+    if (levels_) return levels_->solve(all, count, level_tolerance, level_limit) == linalg::TwoLevel::Outcome::solved;
+    factor_->solve(all, count);
     return true;
 }
 
 /// K^-1 of columns, to nearly all digits. False: that is more than the quick ways can do.
 bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
-    if (columns.cols() == 0) return true;
-    const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
-    if (way_ == Way::double_) {
-        factor_->solve(all, static_cast<int>(columns.cols()));
-        return true;
-    }
+    if (way_ == Way::double_) return apply_body(columns);
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
         const Eigen::VectorXd b = columns.col(k);
         const int rounds = levels_ ? level_rounds : most_rounds;
         Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
         for (int round = 0; round < rounds && residual.norm() > column_residual * b.norm(); ++round) {
-            Eigen::VectorXd step = residual;
+            Eigen::MatrixXd step = residual;
             if (!apply_body(step)) return false;
-            x += step;
+            x += step.col(0);
             residual = b;
             linalg::add_product(system_->layout->pattern, system_->symmetric, view(std::as_const(x)), -1,
                                 view(residual));
@@ -174,14 +172,23 @@ bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
     return true;
 }
 
-/// False: only double precision can tell.
+/// The preconditioner is the inverse of a matrix with what stands in for K, so that its columns need be no better than
+/// that, unless actuators do so nearly the same that rounding hides which. False: only double precision can tell.
 bool SystemSolver::take_schur_complement() {
+    const bool quick = way_ == Way::single_;
+    if (quick && take_schur_complement([&](Eigen::MatrixXd& columns) { return apply_body(columns); }, nearly_redundant))
+        return true;
+    return take_schur_complement([&](Eigen::MatrixXd& columns) { return solve_body(columns); }, redundant);
+}
+
+template <class Solve>
+bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
     from_forces_ = forces_;
-    if (!solve_body(from_forces_)) return false;
+    if (!solve(from_forces_)) return false;
     from_constraints_ = from_forces_;
     if (system_->forces != system_->constraints) {
         from_constraints_ = constraints_;
-        if (!solve_body(from_constraints_)) return false;
+        if (!solve(from_constraints_)) return false;
     }
     Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
     S.diagonal() += compliance_;
@@ -191,7 +198,7 @@ bool SystemSolver::take_schur_complement() {
     Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt();
     for (double& s : scale) s = s > 0 ? 1 / s : 1;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(redundant);
+    decomposition.setThreshold(threshold);
     decomposition.compute(scale.asDiagonal() * S * scale.asDiagonal());
     schur_inverse_ = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
     if (decomposition.rank() == S.cols()) return true;
@@ -313,15 +320,15 @@ Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) 
     const Eigen::Index n = forces_.rows(), m = forces_.cols();
     const bool direct = side == Side::direct;
     if (whole_) return direct ? Eigen::VectorXd(whole_->solve(v)) : Eigen::VectorXd(whole_->transpose().solve(v));
-    Eigen::VectorXd motion = v.head(n);
+    Eigen::MatrixXd motion = v.head(n);
     (void)apply_body(motion);  // a residual tells
     const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;
-    const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion;
+    const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion.col(0);
     const Eigen::VectorXd multiplier =
         direct ? Eigen::VectorXd(schur_inverse_ * left) : Eigen::VectorXd(schur_inverse_.transpose() * left);
-    motion -= (direct ? from_forces_ : from_constraints_) * multiplier;
+    motion.col(0) -= (direct ? from_forces_ : from_constraints_) * multiplier;
     Eigen::VectorXd result(n + m);
-    result << motion, multiplier;
+    result << motion.col(0), multiplier;
     return result;
 }
 

@@ -82,8 +82,10 @@ private:
     [[nodiscard]] linalg::Cholesky& factor(linalg::Precision precision);
     [[nodiscard]] bool factorise();
     [[nodiscard]] bool solve_body(Eigen::MatrixXd& columns) const;
-    [[nodiscard]] bool apply_body(Eigen::VectorXd& v) const;
+    [[nodiscard]] bool apply_body(Eigen::MatrixXd& columns) const;
     [[nodiscard]] bool take_schur_complement();
+    template <class Solve>
+    [[nodiscard]] bool take_schur_complement(const Solve& solve, double threshold);
     [[nodiscard]] bool is_far_from_singular() const;
     [[nodiscard]] bool is_content() const;
     [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side) const;

@@ -103,6 +103,16 @@ Prediction predict(const Equilibrium& system, const FactoredLaplacian& laplacian
     return p;
 }
 
+std::optional<Prediction> start_from(const Equilibrium& system, const RobotState& from, const State& expected,
+                                     const Controls& wanted) {
+    Prediction p{expected, {}, {}};
+    system.place_supports(wanted, p.state.x);
+    if (!passes(system, from, p.state, wanted)) return std::nullopt;
+    p.evaluation = system.evaluate(p.state, wanted);
+    if (!p.evaluation.possible() || !(p.evaluation.error() < worst_start)) return std::nullopt;
+    return p;
+}
+
 State follow_supports(const Equilibrium& system, const FactoredLaplacian& laplacian, const State& from,
                       const Controls& controls) {
     State next = from;

@@ -22,6 +22,11 @@ struct Prediction {
 [[nodiscard]] Prediction predict(const Equilibrium& system, const FactoredLaplacian& laplacian, const RobotState& from,
                                  const Controls& wanted, std::optional<double> along, const Progress& progress);
 
+/// A state that somebody expects, with the supports at their place. Nothing: it is far from equilibrium, it turns a tet
+/// inside out, or the straight way there passes through something.
+[[nodiscard]] std::optional<Prediction> start_from(const Equilibrium& system, const RobotState& from,
+                                                   const State& expected, const Controls& wanted);
+
 /// A state whose supports stand as `controls` want, and whose other nodes follow as smoothly as possible.
 [[nodiscard]] State follow_supports(const Equilibrium& system, const FactoredLaplacian& laplacian, const State& from,
                                     const Controls& controls);

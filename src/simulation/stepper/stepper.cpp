@@ -35,6 +35,7 @@ struct Stepper::Target {
     double along;
     Controls controls;
     bool onward;
+    const State* expected;  ///< there; null: not known
 };
 
 Stepper::Stepper(const Model& model, const StepperOptions& options)
@@ -100,7 +101,7 @@ bool Stepper::set_course(RobotState& robot, const Inputs& wanted) const {
     return known;
 }
 
-StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress) {
+StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress, const State* expected) {
     for (std::size_t a = 0; a < steered(); ++a) {
         Drive& drive = robot.inputs.drives[a];
         if (drive.kind == wanted.drives[a].kind) continue;
@@ -120,7 +121,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     const double from = robot.now.along;
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
     const Way way{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
-                  smallest_share * length, onward};
+                  smallest_share * length, onward, expected};
     StepReport report = step(robot, way, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
     if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
@@ -135,7 +136,8 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
     while (robot.now.along < way.end) {
         const double along = robot.now.along + piece;
         const double end = along >= way.end - rounding * way.shortest_piece ? way.end : along;
-        const StepOutcome outcome = go(robot, {end, way.at(end), way.onward}, report, progress);
+        const State* expected = end == way.end ? way.expected : nullptr;
+        const StepOutcome outcome = go(robot, {end, way.at(end), way.onward, expected}, report, progress);
         if (outcome.converged) {
             in_vain = 0;
             if (way.after_piece) way.after_piece(robot);
@@ -154,7 +156,7 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
 StepReport Stepper::leap(RobotState& robot, const Way& way, const Progress& progress) {
     recall(robot);
     StepReport report;
-    const StepOutcome outcome = go(robot, {way.end, way.at(way.end), way.onward}, report, progress);
+    const StepOutcome outcome = go(robot, {way.end, way.at(way.end), way.onward, way.expected}, report, progress);
     report.arrived = outcome.converged;
     if (!outcome.converged) report.reason = outcome.reason;
     remember(robot);
@@ -194,7 +196,9 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Cont
                              const Progress& progress) {
     if (motion_) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along);
     const std::optional<double> along = target.onward ? std::optional(target.along) : std::nullopt;
-    Prediction start = predict(system_, laplacian_, robot, controls, along, progress);
+    std::optional<Prediction> expected;
+    if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
+    Prediction start = expected ? *std::move(expected) : predict(system_, laplacian_, robot, controls, along, progress);
     if (!start.reason.empty()) {
         StepOutcome outcome;
         outcome.reason = std::move(start.reason);

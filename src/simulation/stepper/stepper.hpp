@@ -29,8 +29,9 @@ struct StepperOptions {
 struct Way {
     double end = 0;  ///< how far the step goes; Moment::along says where it begins
     std::function<Controls(double along)> at;
-    double shortest_piece = 0;  ///< shorter ones are not tried
-    bool onward = true;         ///< it goes on as the last steps did, so that they tell where it leads
+    double shortest_piece = 0;        ///< shorter ones are not tried
+    bool onward = true;               ///< it goes on as the last steps did, so that they tell where it leads
+    const State* expected = nullptr;  ///< about what the state at its end will be; null: not known
     /// Called with every state that a step passes, its end too. May be empty.
     std::function<void(const RobotState&)> after_piece{};
 };
@@ -81,8 +82,9 @@ public:
     /// To where the inputs are wanted, on a straight way from where they are, halving what does not converge; what is
     /// driven by another kind than before begins as it is. With
     /// dynamics the step takes the time until `wanted.time`, which must be later. Where it does not arrive `robot` and
-    /// its inputs are as far as they got.
-    [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress);
+    /// its inputs are as far as they got. `expected`: about what the state will be; null: not known.
+    [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress,
+                                   const State* expected = nullptr);
     /// An equilibrium at `controls` from `state`, as a trial. False: none was found, and `state` is of no use.
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
