@@ -37,7 +37,8 @@ Result<Times> gradient_times(const Stepper& stepper, const RobotState& robot) {
         return spent;
     };
     auto at = Linearisation::create(stepper.system(), robot.now.state, robot.controls,
-                                    known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get()));
+                                    known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get()),
+                                    gradient_residual);
     if (!at) return tl::unexpected(at.error());
     const Slope tip = slope(*at, {Measure::Kind::marker, 0, {0, 0, 1}});
     times.system_s = lap();

@@ -112,7 +112,7 @@ private:
             result_.instants.push_back({k, piece.time, {}});
             return {};
         }
-        auto at = Linearisation::create(stepper_.system(), piece.state, piece.controls, pattern_);
+        auto at = Linearisation::create(stepper_.system(), piece.state, piece.controls, pattern_, gradient_residual);
         if (!at) return tl::unexpected(at.error());
         auto by = go_back_over(*at, own ? *own : no_slope(stepper_.system()), options_.by, carried_);
         if (!by) return failure("step {} of {} has no derivative: {}", k, program_.steps, by.error().message);

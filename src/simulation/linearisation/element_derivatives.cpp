@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t tets_at_once = 512;
 
 using linalg::Matrix3;
+using linalg::Matrix9;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 using linalg::view;
@@ -71,6 +72,22 @@ Eigen::MatrixXd law_products(const Elements& elements, const Description& descri
         }
     });
     return products;
+}
+
+void add_tangent_product(const Elements& elements, const std::vector<bool>& wanted, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+    for (std::size_t t = 0; t < elements.tet_count(); ++t) {
+        bool any = false;
+        for (int a = 0; a < static_cast<int>(elements.nodes_per_tet()) && !any; ++a)
+            any = wanted[static_cast<std::size_t>(elements.node_of(t, a))];
+        if (!any) continue;
+        for (int q = 0; q < elements.points_per_tet(); ++q) {
+            const Matrix3 dF = elements.deformation_gradient(t, q, view(motion));
+            const Matrix9 H = material::tangent(elements.law(t), elements.deformation_gradient(t, q, view(x)));
+            const Vector9 dP = H * Eigen::Map<const Vector9>(dF.data());
+            add_stress(elements, t, q, elements.point_volume(t, q) * Eigen::Map<const Matrix3>(dP.data()), forces);
+        }
+    }
 }
 
 Masses masses_at(const Description& d, const Controls& controls, const Eigen::VectorXd& x) {

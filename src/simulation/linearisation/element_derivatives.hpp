@@ -23,6 +23,11 @@ void add_law_force(const Elements& elements, const Eigen::MatrixXd& direction, c
 [[nodiscard]] Eigen::MatrixXd law_products(const Elements& elements, const Description& description,
                                            const Eigen::VectorXd& x, const Eigen::VectorXd& weights);
 
+/// forces += K motion of the tets that have any of the `wanted` nodes (n), which is all of it at those. Precondition:
+/// laws with an energy.
+void add_tangent_product(const Elements& elements, const std::vector<bool>& wanted, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& motion, Eigen::VectorXd& forces);
+
 /// What acts on masses.
 struct Masses {
     std::vector<double> density_kg_m3;  ///< (materials)

@@ -19,8 +19,10 @@ constexpr double allowed_beside_wanted = 10;
 constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
 constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
 constexpr int most_rounds = 8, most_products = 200;
-// On two levels: of x in the norm of K, each round again; a residual that is beyond the other has not been solved for.
-constexpr double level_tolerance = 1e-4, level_residual = 1e-3;
+// On two levels: of x in the norm of K, each round again, or at once where less is wanted. Residuals are larger than
+// that; one that is so many times larger has not been solved for.
+constexpr double round_tolerance = 1e-4, round_residual = 1e-3;
+constexpr double least_tolerance = 1e-6, tolerance_beside_residual = 10, residual_beside_tolerance = 1000;
 constexpr int level_rounds = 2, level_limit = 200;
 constexpr double column_residual = 1e-11;  // of the columns of the Schur complement
 constexpr double off_at_most = 0.1;        // of a quick way's answer to what it makes largest
@@ -141,12 +143,12 @@ linalg::Cholesky& SystemSolver::factor(linalg::Precision precision) {
     return *factor_;
 }
 
-/// Columns (3 free, k) <- K^-1 columns, as well as the preconditioner can; on two levels within level_tolerance of
-/// that, in the norm of K. False: not as well as that.
+/// Columns (3 free, k) <- K^-1 columns, as well as the preconditioner can; on two levels within
+/// level_tolerance() of that, in the norm of K. False: not as well as that.
 bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
     const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
     const auto count = static_cast<int>(columns.cols());
-    if (levels_) return levels_->solve(all, count, level_tolerance, level_limit) == linalg::TwoLevel::Outcome::solved;
+    if (levels_) return levels_->solve(all, count, level_tolerance(), level_limit) == linalg::TwoLevel::Outcome::solved;
     factor_->solve(all, count);
     return true;
 }
@@ -259,6 +261,18 @@ bool SystemSolver::is_content() const {
     return system_->wanted_residual > inner_tolerance;
 }
 
+/// Of a solution on two levels, in the norm of K.
+double SystemSolver::level_tolerance() const {
+    if (!is_content()) return round_tolerance;
+    return std::max(least_tolerance, tolerance_beside_residual * system_->wanted_residual);
+}
+
+/// Beside the right-hand side: beyond it nothing has been solved for.
+double SystemSolver::allowed_residual() const {
+    if (!levels_) return allowed_beside_wanted * system_->wanted_residual;
+    return is_content() ? residual_beside_tolerance * level_tolerance() : round_residual;
+}
+
 Status SystemSolver::prepare() {
     if (way_ == Way::none) begin();
     if (!singular_) return {};
@@ -363,9 +377,10 @@ Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double
 std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
     double left = b.norm();
-    const double wanted = system_->wanted_residual * left;
+    const double wanted = system_->wanted_residual * left, allowed = allowed_residual() * left;
+    const double enough = levels_ && is_content() ? allowed : wanted;
     const int rounds = levels_ ? level_rounds : most_rounds;
-    for (int round = 0; round < rounds && left > wanted; ++round) {
+    for (int round = 0; round < rounds && left > enough; ++round) {
         const Eigen::VectorXd next = x + correction(residual, wanted, side);
         const Eigen::VectorXd rest = b - multiply(next, side);
         if (!(rest.norm() < left)) break;
@@ -375,8 +390,7 @@ std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Si
         left = rest.norm();
         if (slow) break;
     }
-    const double allowed = levels_ ? level_residual : allowed_beside_wanted * system_->wanted_residual;
-    if (!(left <= allowed * b.norm()) && !(left <= rounding_of(x, side))) return std::nullopt;
+    if (!(left <= allowed) && !(left <= rounding_of(x, side))) return std::nullopt;
     return x;
 }
 

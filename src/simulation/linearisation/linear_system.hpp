@@ -18,8 +18,9 @@ namespace pliant::sim {
 
 enum class Side { direct, transposed };
 
-/// Of a solution, beside the right-hand side: about as good as can be had.
-inline constexpr double best_residual = 1e-13;
+/// Of a solution, beside the right-hand side: about as good as can be had; and enough for gradients, whose states are
+/// known to fewer digits.
+inline constexpr double best_residual = 1e-13, gradient_residual = 1e-8;
 
 ///     A = | K    B |     K  tangent over the free nodes, N/m: symmetric + skew
 ///         | C^T  D |     B  force of the unit of each multiplier; C  gradient of each constraint; D  compliances
@@ -67,9 +68,9 @@ public:
 
     /// x with A x = b, or A^T x = b, to |b - A x| <= 10 |b| times what is wanted, in balanced units; or, where x is so
     /// much larger than b that rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8
-    /// of x in the norm of K. Of several solutions, where cables do the same, the one with the smallest multipliers.
-    /// Errors: nothing solves it, since cables that do the same are asked for different things; the matrix is singular
-    /// (a limit point, a bifurcation, a part that can move freely).
+    /// of x in the norm of K, or to ten times what is wanted, 1e-6 at best. Of several solutions, where cables do the
+    /// same, the one with the smallest multipliers. Errors: nothing solves it, since cables that do the same are asked
+    /// for different things; the matrix is singular (a limit point, a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
 
 private:
@@ -88,6 +89,8 @@ private:
     [[nodiscard]] bool take_schur_complement(const Solve& solve, double threshold);
     [[nodiscard]] bool is_far_from_singular() const;
     [[nodiscard]] bool is_content() const;
+    [[nodiscard]] double level_tolerance() const;
+    [[nodiscard]] double allowed_residual() const;
     [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side) const;
     [[nodiscard]] Eigen::VectorXd correction(const Eigen::VectorXd& residual, double wanted, Side side) const;
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v, Side side) const;

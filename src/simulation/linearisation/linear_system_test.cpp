@@ -73,3 +73,50 @@ TEST_CASE("on two levels products with a solution are those of the exact one to 
         CHECK(found == near(told, {.relative = 1e-6, .absolute = all_moves ? 1e-8 : 0}));
     }
 }
+
+TEST_CASE("where fewer digits are wanted, by a factor or on two levels, gradients have no fewer than six") {
+    const Case c(driven());
+    const FactoredLaplacian laplacian(c.system);
+    const State state = settle(c.system, 3, 0.1, 1e-8).state;
+    const Controls controls = c.system.controls(0.3);
+    Linearisation exact = c.at(state, controls);
+    const Quantity tip = marker_coordinate(c.system, 0, {0, 0, 1});
+    const auto told = exact.adjoint(tip);
+    REQUIRE(told);
+    for (const bool two_levels : {false, true}) {
+        KnownPattern pattern = known_pattern(c.system, laplacian, nullptr);
+        pattern.two_levels = two_levels;
+        auto at = Linearisation::create(c.system, state, controls, pattern, gradient_residual);
+        REQUIRE(at);
+        const auto found = at->adjoint(tip);
+        REQUIRE(found);
+        const Eigen::VectorXd right = exact.multiply_transposed(told->weights);
+        const double left = (at->multiply_transposed(found->weights) - right).norm() / right.norm();
+        CHECK(left < (two_levels ? 1e-3 : 10 * gradient_residual));
+        for (const Parameter& p : inputs(exact)) {
+            CAPTURE(p.name);
+            const double wanted = told->derivative(derivative(exact, p));
+            CHECK(found->derivative(derivative(*at, p)) == near(wanted, {.relative = 1e-6, .absolute = 1e-14}));
+        }
+    }
+}
+
+TEST_CASE("cables that do nearly the same are told apart") {
+    Description d = driven();
+    d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, 0};
+    d.cables.push_back(d.cables[0]);
+    d.cables[1].name = "beside";
+    for (Attachment& point : d.cables[1].points) {  // a hair away from the other
+        if (point.nodes.size() == 1) continue;
+        point.weights[0] += 1e-4;
+        point.weights[1] -= 1e-4;
+    }
+    const Case c(std::move(d));
+    const State state = disturbed(c.system, 0.5, 2e3);
+    Linearisation at = c.at(state, c.system.controls(0.7));
+    Noise noise(3);
+    const Eigen::VectorXd v = some_direction(at, Side::direct, noise);
+    const auto x = at.solve(at.multiply(v));
+    REQUIRE_MESSAGE(x, x.error().message);
+    CHECK((at.multiply(*x) - at.multiply(v)).norm() < 1e-11 * at.multiply(v).norm());
+}

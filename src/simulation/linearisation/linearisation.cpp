@@ -9,7 +9,9 @@
 
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
+#include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
 
 namespace pliant::sim {
@@ -50,6 +52,8 @@ Parts assembled(const Equilibrium& system, const State& state, const Controls& c
     Parts parts;
     parts.symmetric.assign(layout.pattern.entries(), 0.0);
     system.add_tangent(state, controls, layout, parts.symmetric, false);
+    if (layout.nodes == TangentNodes::free && !system.has_skew() && system.model().elements().has_energy())
+        return parts;
     parts.skew.assign(layout.pattern.entries(), 0.0);
     system.add_skew(state, layout, parts.skew);
     const auto is_zero = [](double entry) { return entry == 0; };
@@ -239,6 +243,57 @@ Eigen::VectorXd Linearisation::motion_weights(const Eigen::VectorXd& weights) {
     Eigen::VectorXd result = whole().constraints * weights.tail(weights.size() - n);
     add_stiffness(full, Side::transposed, result);
     return result;
+}
+
+/// Inertia and gap elements couple the nodes of tets, and laws without an energy have a skew part of theirs.
+bool Linearisation::is_tets_and_more() const {
+    const auto has_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
+    return !controls_.inertia && system_->model().elements().has_energy() &&
+           std::ranges::none_of(system_->actuators(), has_gaps);
+}
+
+bool Linearisation::has_more_than_tets() const {
+    return !system_->actuators().empty() || !system_->plates().empty() || !system_->springs().empty() ||
+           system_->model().contact(controls_.met) != nullptr;
+}
+
+Eigen::VectorXd Linearisation::held_motion_weights(const Eigen::VectorXd& weights) {
+    const Model& model = system_->model();
+    std::vector<bool> held(static_cast<std::size_t>(model.node_count()));
+    for (std::size_t node = 0; node < held.size(); ++node) held[node] = model.held().is_fixed(static_cast<int>(node));
+    for (const HeldNodes::Roller& roller : model.held().rollers()) held[static_cast<std::size_t>(roller.node)] = true;
+    Eigen::VectorXd result;
+    if (whole_ || !is_tets_and_more()) {
+        result = motion_weights(weights);
+    } else {
+        const Eigen::Index n = matrix_->free_size();
+        Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
+        system_->add_free(weights.head(n), 1, full);
+        result = Eigen::VectorXd::Zero(full.size());
+        add_tangent_product(model.elements(), held, state_.x, full, result);
+        for (std::size_t k = 0; k < solved_.size(); ++k) {
+            const std::size_t a = solved_[k];
+            if (!slack_[a])
+                system_->actuators()[a].add_measure_gradient(view(state_.x), weights[n + static_cast<Eigen::Index>(k)],
+                                                             view(result), controls_.shares[a]);
+        }
+        if (has_more_than_tets()) add_stiffness_beside_tets(full, result);
+    }
+    for (std::size_t node = 0; node < held.size(); ++node) {
+        if (!held[node]) result.segment<3>(3 * static_cast<Eigen::Index>(node)).setZero();
+    }
+    return result;
+}
+
+/// K^T v without what the tets and inertia have in it.
+void Linearisation::add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::VectorXd& result) const {
+    const TangentLayout layout =
+        system_->lay_out_tangent_beside_tets(system_->contact_cliques(state_, controls_, TangentNodes::all));
+    std::vector<double> symmetric(layout.pattern.entries(), 0.0), skew(layout.pattern.entries(), 0.0);
+    system_->add_tangent_beside_tets(state_, controls_, layout, symmetric, false);
+    system_->add_skew(state_, layout, skew);
+    linalg::add_product(layout.pattern, symmetric, view(v), 1, view(result));
+    add_skew_product(layout.pattern, skew, v, -1, result);
 }
 
 Result<Change> Linearisation::response(const Derivative& by) {

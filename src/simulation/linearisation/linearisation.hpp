@@ -139,6 +139,8 @@ public:
     [[nodiscard]] Eigen::VectorXd equations_of_motion(const Eigen::VectorXd& motion);
     /// (3n) its transpose times weights (unknowns).
     [[nodiscard]] Eigen::VectorXd motion_weights(const Eigen::VectorXd& weights);
+    /// The same at nodes that a support holds, zero at others: next to nothing is assembled for it.
+    [[nodiscard]] Eigen::VectorXd held_motion_weights(const Eigen::VectorXd& weights);
 
     /// What the whole state does for each unit of p: the direct part, and -A^-1 dF/dp.
     [[nodiscard]] Result<Change> response(const Derivative& by);
@@ -156,8 +158,12 @@ private:
     void find_unknowns();
     void assemble(const KnownPattern& known);
     [[nodiscard]] const Whole& whole();
+    /// K is the sum of the stiffness of the tets and of what knows its own nodes.
+    [[nodiscard]] bool is_tets_and_more() const;
+    [[nodiscard]] bool has_more_than_tets() const;
     /// result (3n) += K v of all nodes, or K^T v.
     void add_stiffness(const Eigen::VectorXd& v, Side side, Eigen::VectorXd& result);
+    void add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::VectorXd& result) const;
     [[nodiscard]] SystemSolver& solver();
 
     const Equilibrium* system_ = nullptr;

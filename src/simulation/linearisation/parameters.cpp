@@ -321,7 +321,7 @@ Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span
     const auto moves = [](const Parameter& p) { return is_of_support(p.kind); };
     const Eigen::VectorXd held =
         std::ranges::any_of(by, moves)
-            ? Eigen::VectorXd(adjoint.quantity.by_positions - at.motion_weights(adjoint.weights))
+            ? Eigen::VectorXd(adjoint.quantity.by_positions - at.held_motion_weights(adjoint.weights))
             : Eigen::VectorXd();
     std::optional<double> plates;
     Eigen::VectorXd all(static_cast<Eigen::Index>(by.size()));

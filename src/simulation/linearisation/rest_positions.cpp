@@ -130,7 +130,7 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
     visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
         gaps.add_rest_weights(system.model().elements(), view(at.state().x), multiplier, view(weights), view(sum));
     });
-    return held_weights(at, adjoint.quantity.by_positions - at.motion_weights(adjoint.weights)) + sum;
+    return held_weights(at, adjoint.quantity.by_positions - at.held_motion_weights(adjoint.weights)) + sum;
 }
 
 Eigen::VectorXd rest_measure_gradient(const Equilibrium& system, std::size_t actuator) {

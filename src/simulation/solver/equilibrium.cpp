@@ -486,10 +486,7 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
 TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& touching, TangentNodes nodes) const {
     const std::vector<int>& index = index_of(nodes);
     auto cliques = model_->elements().cliques(index);
-    for (const Actuator& actuator : actuators_) actuator.append_cliques(index, cliques);
-    for (const Plate& plate : plates_) plate.append_clique(index, cliques);
-    for (const SpringPath& spring : springs_) spring.append_clique(index, cliques);
-    for (const std::vector<int>& clique : touching) cliques.push_back(clique);
+    append_cliques_beside_tets(index, touching, cliques);
     const bool all = nodes == TangentNodes::all;
     TangentLayout layout{
         linalg::make_pattern(all ? model_->node_count() : model_->free_count(), 3, cliques), {}, nodes};
@@ -500,11 +497,32 @@ TangentLayout Equilibrium::lay_out_tangent(const std::vector<std::vector<int>>& 
     return layout;
 }
 
+void Equilibrium::append_cliques_beside_tets(const std::vector<int>& index,
+                                             const std::vector<std::vector<int>>& touching,
+                                             linalg::Lists& cliques) const {
+    for (const Actuator& actuator : actuators_) actuator.append_cliques(index, cliques);
+    for (const Plate& plate : plates_) plate.append_clique(index, cliques);
+    for (const SpringPath& spring : springs_) spring.append_clique(index, cliques);
+    for (const std::vector<int>& clique : touching) cliques.push_back(clique);
+}
+
+TangentLayout Equilibrium::lay_out_tangent_beside_tets(const std::vector<std::vector<int>>& touching) const {
+    linalg::Lists cliques;
+    append_cliques_beside_tets(all_nodes_, touching, cliques);
+    return {linalg::make_pattern(model_->node_count(), 3, cliques), {}, TangentNodes::all};
+}
+
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
+    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
+    add_tangent_beside_tets(state, controls, layout, values, project);
+    if (layout.nodes == TangentNodes::free) decouple_rollers(layout.pattern, values);
+}
+
+void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
+                                          std::span<double> values, bool project) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
     const std::vector<int>& index = index_of(layout.nodes);
-    model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
     for (const SpringPath& spring : springs_) spring.add_hessian(view(state.x), index, pattern, values, project);
     if (controls.inertia) controls.inertia->add_hessian(index, pattern, values);
@@ -524,7 +542,6 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
         if (multiplier != 0 || actuators_[a].gaps() != nullptr)
             actuators_[a].add_hessian(view(state.x), multiplier, index, pattern, values, project, controls.shares[a]);
     }
-    if (layout.nodes == TangentNodes::free) decouple_rollers(pattern, values);
 }
 
 void Equilibrium::add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const {

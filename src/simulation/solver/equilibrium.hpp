@@ -112,11 +112,16 @@ public:
     /// For the body, its actuators and these cliques.
     [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {},
                                                 TangentNodes nodes = TangentNodes::free) const;
+    /// Over all nodes, for what is beside the tets. Preconditions: no inertia, no gap elements; they need those, too.
+    [[nodiscard]] TangentLayout lay_out_tangent_beside_tets(const std::vector<std::vector<int>>& touching) const;
     /// Adds the symmetric part of the tangent at fixed multipliers, without the constraints and the compressibility of
     /// gas. With `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes,
     /// rollers are decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project) const;
+    /// The same without that of the tets: of plates, springs, inertia, contact and actuators alone.
+    void add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
+                                 std::span<double> values, bool project) const;
     /// Adds what add_tangent leaves out, of a law without an energy and of pressure on patches with a free rim (over
     /// all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below the
     /// diagonal.
@@ -175,6 +180,8 @@ private:
     [[nodiscard]] const std::vector<int>& index_of(TangentNodes nodes) const {
         return nodes == TangentNodes::all ? all_nodes_ : model_->free_index();
     }
+    void append_cliques_beside_tets(const std::vector<int>& index, const std::vector<std::vector<int>>& touching,
+                                    linalg::Lists& cliques) const;
     void add_actuators();
     /// Where a node is held in a direction, the tangent couples that direction to nothing else.
     void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
