@@ -14,14 +14,18 @@
 
 namespace pliant::sim::testing {
 
-/// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else.
+/// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else. A
+/// tangent that brings the error down by a lot serves again.
 inline bool converge(const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
     double before = 1e300;
+    Result<Linearisation> at = failure("none yet");
     for (int k = 0; k < 30; ++k) {
-        auto at = Linearisation::create(system, state, controls);
-        if (!at) return false;
-        state.multiplier = at->state().multiplier;
+        if (!at) {
+            at = Linearisation::create(system, state, controls);
+            if (!at) return false;
+            state.multiplier = at->state().multiplier;
+        }
         const auto step = at->solve(at->equations(state, controls));
         if (!step) return false;
         const Change change = at->change_of(*step);
@@ -30,6 +34,7 @@ inline bool converge(const Equilibrium& system, const Controls& controls, State&
             state.multiplier[static_cast<Eigen::Index>(a)] -= change.multipliers[static_cast<Eigen::Index>(a)];
         const double size = change.positions.norm();
         if (size < 1e-14 * state.x.norm() || (k > 3 && size > 0.5 * before)) return size < 1e-11 * state.x.norm();
+        if (!(size < 0.01 * before)) at = failure("left behind");
         before = size;
     }
     return false;
@@ -78,8 +83,10 @@ inline Eigen::VectorXd sizes_of(const Linearisation& at, const std::vector<Slope
 /// beside what a change of the whole number by its size would make of the measure's.
 inline double gradient_error(const Eigen::VectorXd& told, const Eigen::VectorXd& sizes, double size,
                              const std::function<Eigen::VectorXd(double change)>& values_at) {
+    constexpr double clearly_right = 1e-7;  // no shorter step need be tried
     std::vector<double> best(static_cast<std::size_t>(told.size()), 1e300);
-    for (double h = 0.02 * size; h > 2e-7 * size; h /= 8) {
+    const auto worst = [&] { return *std::max_element(best.begin(), best.end()); };
+    for (double h = 0.02 * size; h > 2e-7 * size && worst() > clearly_right; h /= 8) {
         const Eigen::VectorXd by_difference = difference(values_at, h);
         for (Eigen::Index k = 0; k < told.size(); ++k) {
             const double hidden = 1e-5 * sizes[k] / size;
@@ -89,7 +96,7 @@ inline double gradient_error(const Eigen::VectorXd& told, const Eigen::VectorXd&
             if (error < least) least = error;
         }
     }
-    return *std::max_element(best.begin(), best.end());
+    return worst();
 }
 
 /// Everything that can be measured on a robot, forces and positions along some direction.
