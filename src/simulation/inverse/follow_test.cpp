@@ -198,3 +198,18 @@ TEST_CASE("a search that is cancelled keeps the waypoints that it has") {
     CHECK(result.waypoints.size() < 5);
     CHECK(result.message == "cancelled at waypoint 3 of 5");
 }
+
+TEST_CASE("what a step that lowers prices showed is no measure for the way to the next waypoint") {
+    const Model model = made(bar(2));
+    InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
+    task.inputs[0].effort_price = task.inputs[1].effort_price = 1;
+    task.inputs[0].rest = task.inputs[1].rest = 0.95;  // both pull where it begins, and need not
+    const Vec3 begin = tip_under(model, task, {0.95, 0.95}), end = tip_under(model, task, {0.9, 1});
+    task.goals = {at_point(begin, 1e-3)};
+    task.goals[0].wanted = {{begin}, {end}};
+    task.times = {1, 1};
+    const InverseResult result = solve(model, task);
+    REQUIRE(result.waypoints.size() == 2);
+    CHECK(result.reached);
+    CHECK(result.waypoints[1].work.forward < 30);
+}

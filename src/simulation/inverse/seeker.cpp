@@ -264,7 +264,7 @@ bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
         const Eigen::VectorXd miss = residuals - search.residuals - step.change;
         // The slope at the end of a parabola misses by twice as much as the chord.
         sensitivity_->learn(step.step, 2 * miss);
-        if (search.trials == 1) bend_ = Bend{step.step, miss};
+        if (search.trials == 1 && !search.is_priced()) bend_ = Bend{step.step, miss};
     }
     const bool was_quick = cost <= quick * search.cost;
     search.now = std::move(*trial.point);
