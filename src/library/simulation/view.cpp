@@ -54,7 +54,7 @@ std::string View::frame(const State& state) const {
 }
 
 std::string View::frame(const std::vector<Point>& positions, double time) const {
-    if (positions.size() != work_->model->scene.model.node_count())
+    if (static_cast<int>(positions.size()) != work_->model->scene.model.node_count())
         throw Failure(Failure::Kind::input, fmt::format("{} positions for {} nodes", positions.size(),
                                                         work_->model->scene.model.node_count()));
     std::vector<Vec3> points;
