@@ -183,7 +183,7 @@ py::dict dict_of(ProgramGradient g) {
 }
 
 py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& measures, py::object judge,
-                          bool rest_positions, bool tets, const std::vector<std::string>& numbers, int kept,
+                          bool rest_positions, bool tets, std::vector<std::string> numbers, int kept,
                           py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
@@ -191,12 +191,11 @@ py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& m
     for (const MeasureTuple& measure : measures) objective.measures.push_back(measure_of(measure));
     const Judge asked(std::move(judge), watcher);
     objective.judge = [&asked](int step, std::span<const double> values) { return asked(step, values); };
+    const GradientOptions options{rest_positions, tets, std::move(numbers), kept};
     std::optional<ProgramGradient> found;
     try {
         const py::gil_scoped_release unlocked;
-        found.emplace(gradient(model, objective,
-                               {.rest_positions = rest_positions, .tets = tets, .numbers = numbers, .kept = kept},
-                               watch));
+        found.emplace(gradient(model, objective, options, watch));
     } catch (const Failure&) {
         watcher.rethrow();
         throw;

@@ -57,10 +57,11 @@ Pictures pictures_of(const std::string& name) {
 }
 
 bool write(ProgramResult& result, const std::filesystem::path& folder, const std::string& pictures,
-           std::array<int, 2> size_px, std::optional<Point> towards_eye, py::object progress) {
+           std::array<int, 2> size_px, bool film, std::optional<Point> towards_eye, py::object progress) {
     ResultsOptions options;
     options.pictures = pictures_of(pictures);
     options.picture_size_px = size_px;
+    options.film = film;
     options.towards_eye = towards_eye;
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();

@@ -139,7 +139,13 @@ class ProgramResult:
     def deviations(self) -> list[str]: ...
     def summary_json(self) -> str: ...
     def write(
-        self, folder: Path, pictures: str, size: Sequence[int], eye: list[float] | None, progress: _Progress
+        self,
+        folder: Path,
+        pictures: str,
+        size: Sequence[int],
+        film: bool,
+        eye: list[float] | None,
+        progress: _Progress,
     ) -> bool: ...
     def remove_checkpoint(self) -> None: ...
 

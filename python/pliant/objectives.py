@@ -56,7 +56,7 @@ class ProgramGradient:
     by_rest_positions: Array
     #: where wanted
     by_tets: list[TetGradient]
-    #: (numbers,) in the units of the robot file, where wanted
+    #: (numbers,) in the units of the robot file
     by_numbers: Array
     #: what drives the robot; values are those at rest
     inputs: list[Parameter]
@@ -88,8 +88,9 @@ def gradient(
         judge: called once or more for a step, in any order; must say the same each time.
         rest_positions: also by the rest positions of the nodes.
         tets: also by what each tetrahedron is made of.
-        numbers: also by these names of ``[parameters]`` of the robot file: through shapes, whose mesh moves along,
-            places, constants and targets. For programs at rest without friction.
+        numbers: names of [parameters] of the robot file that are numbers, not formulas of others: also by those. What
+            follows from one counts: the shape, whose mesh moves along, places, constants, targets. For programs at rest
+            without friction.
         kept: states that are kept on the way where steps depend on those before; others are solved again.
         progress: called with (stage, share) some times a second; False cancels.
 
@@ -98,6 +99,7 @@ def gradient(
     """
     owned = _check.instance(model, Model, "model")
     listed = [_check.instance(m, Measure, "each of measures") for m in measures]
+    names = _check.texts(numbers, "numbers")
     if not callable(judge):
         raise TypeError(f"judge must be callable, as judge(step, values), not {type(judge).__name__}")
 
@@ -114,7 +116,7 @@ def gradient(
         judged,
         bool(rest_positions),
         bool(tets),
-        _check.texts(numbers, "numbers"),
+        names,
         _check.integer(kept, "kept"),
         _check.progress(progress),
     )

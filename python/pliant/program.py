@@ -104,6 +104,7 @@ class ProgramResult:
         *,
         pictures: str = "few",
         picture_size_px: tuple[int, int] | None = None,
+        film: bool = False,
         view: Any = None,
         progress: Progress | None = None,
     ) -> None:
@@ -113,6 +114,7 @@ class ProgramResult:
             folder: its path.
             pictures: "none", "few" or "all".
             picture_size_px: width and height.
+            film: also film.gif, the motion as an animated GIF.
             view: (3,) direction from the robot to the eye; None: from where its motion shows best.
             progress: called with (stage, share) some times a second; False cancels.
         """
@@ -121,7 +123,7 @@ class ProgramResult:
         if len(size) != 2:
             raise InputError("picture_size_px must be (width, height)")
         eye = None if view is None else _check.numbers(view, "view", (3,)).tolist()
-        self._result.write(_check.path(folder, "folder"), pictures, size, eye, _check.progress(progress))
+        self._result.write(_check.path(folder, "folder"), pictures, size, bool(film), eye, _check.progress(progress))
 
     def remove_checkpoint(self) -> None:
         """Deletes the checkpoint of the run, if it has one."""
