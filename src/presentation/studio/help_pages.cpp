@@ -15,12 +15,17 @@ constexpr std::string_view prefix = "/help/";
 
 /// What browsers are told; a file of any other kind is no part of the pages.
 std::string_view type_of(const fs::path& file) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 11> types{{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> types{{
         {".html", "text/html; charset=utf-8"},
         {".css", "text/css; charset=utf-8"},
         {".js", "text/javascript; charset=utf-8"},
         {".json", "application/json"},
         {".txt", "text/plain; charset=utf-8"},
+        {".toml", "text/plain; charset=utf-8"},
+        {".csv", "text/plain; charset=utf-8"},
+        {".ini", "text/plain; charset=utf-8"},
+        {".cpp", "text/plain; charset=utf-8"},
+        {".py", "text/plain; charset=utf-8"},
         {".png", "image/png"},
         {".gif", "image/gif"},
         {".svg", "image/svg+xml"},

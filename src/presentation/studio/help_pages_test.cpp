@@ -21,6 +21,7 @@ struct Installation {
         REQUIRE(write_file(root / "share/doc/pliant/html/index.html", "first"));
         REQUIRE(write_file(root / "share/doc/pliant/html/reference/robot.html", "keys"));
         REQUIRE(write_file(root / "share/doc/pliant/html/style.css", "css"));
+        REQUIRE(write_file(root / "share/doc/pliant/html/robot.toml", "name"));
         REQUIRE(write_file(root / "share/doc/pliant/html/notes.cgi", "no"));
         REQUIRE(write_file(root / "share/doc/pliant/secret.html", "outside"));
         std::filesystem::create_symlink("../../../../bin/shared.js", root / "share/doc/pliant/html/shared.js");
@@ -40,6 +41,7 @@ TEST_CASE("the pages are found from the program's folder and served with their t
     CHECK(help_page(folder, "/help/reference/robot.html").body == "keys");
     CHECK(help_page(folder, "/help/style.css").type == "text/css; charset=utf-8");
     CHECK(help_page(folder, "/help/shared.js").body == "js");
+    CHECK(help_page(folder, "/help/robot.toml").type == "text/plain; charset=utf-8");
     CHECK(help_page(folder, "/help").status == 302);
     CHECK(help_page(folder, "/help").location == "/help/");
 }
