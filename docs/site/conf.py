@@ -38,6 +38,7 @@ html_show_sourcelink = False
 html_copy_source = False
 html_show_sphinx = False
 html_show_search_summary = False  # a browser does not fetch pages from a folder
+html_domain_indices = False  # its page has a script inside
 html_show_copyright = False
 html_favicon = "_static/pliant.svg"
 html_theme_options = {

@@ -115,7 +115,12 @@ int find_material(Reader& reader, Context& context) {
         names.push_back(materials[i].name);
         if (names.back() == wanted) return static_cast<int>(i);
     }
-    if (wanted.empty()) return 0;
+    if (wanted.empty()) {  // what is missing, or no text, has been told already
+        const config::Value* given = reader.raw("material");
+        if (given != nullptr && std::holds_alternative<std::string>(given->data))
+            reader.problem("material", "is empty; name a material of this file or of the library");
+        return 0;
+    }
     if (Result<LibraryMaterial> found = library_material(wanted)) {
         materials.push_back(std::move(found->spec));
         return static_cast<int>(materials.size()) - 1;

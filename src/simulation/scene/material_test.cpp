@@ -145,6 +145,7 @@ TEST_CASE("a body may name a material of the library") {
     CHECK(std::get<material::Yeoh>(m.law).c10_Pa == near(0.11e6, {.relative = 1e-12}));
     CHECK(m.resin == "elastosil-m4601");
     check_problem("", "no material \"elastosil\" in the library", "elastosil");
+    check_problem("", "material: is empty; name a material of this file or of the library", "");
     check_problem("", "elastosil-m4601", "elastosil");
     check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"", "and the library", "unobtainium");
 }
