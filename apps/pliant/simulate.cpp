@@ -179,6 +179,8 @@ Status check_options(const Options& options, const std::vector<sim::Solver>& sol
     if (kept && options.folder.empty())
         return input_error("--{} needs --output: the checkpoint stands beside that folder",
                            options.resume ? "resume" : "checkpoint-every");
+    if (options.film && options.folder.empty())
+        return input_error("--film needs --output: film.gif goes into that folder");
     if (kept && solvers.size() > 1)
         return input_error("a comparison of solvers keeps no checkpoint; leave --checkpoint-every and --resume out");
     return expect(FileKind::robot, options.robot);
