@@ -1,4 +1,4 @@
-// The only file that includes toml++ and muParser.
+// The only file that includes muParser, and with toml_edit.cpp toml++.
 #include <muParser.h>
 #include <toml++/toml.h>
 

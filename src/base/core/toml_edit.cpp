@@ -1,0 +1,200 @@
+#include "base/core/toml_edit.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+
+#include "base/core/letters.hpp"
+
+namespace pliant::config {
+namespace {
+
+Result<toml::table> parsed(std::string_view text) {
+    try {
+        return toml::parse(text);
+    } catch (const toml::parse_error& error) {
+        return input_error_at("", static_cast<int>(error.source().begin.line), "not valid TOML: {}",
+                              error.description());
+    }
+}
+
+/// Where a line begins, counted from 1; past the last one the end of the text.
+std::size_t start_of_line(std::string_view text, std::size_t line) {
+    std::size_t at = 0;
+    for (; line > 1 && at < text.size(); --line) at = std::min(text.find('\n', at), text.size() - 1) + 1;
+    return at;
+}
+
+/// The byte at which a place is; columns count letters, however many bytes they take.
+std::size_t offset_of(std::string_view text, const toml::source_position& place) {
+    std::size_t at = start_of_line(text, place.line);
+    const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U; };
+    for (std::size_t column = 1; column < place.column && at < text.size(); ++column) {
+        ++at;
+        while (at < text.size() && continues(at)) ++at;
+    }
+    return at;
+}
+
+/// The last line that a node, or anything in it, stands on.
+std::size_t last_line(const toml::node& node) {
+    std::size_t last = std::max(node.source().begin.line, node.source().end.line);
+    if (const auto* table = node.as_table()) {
+        for (const auto& [key, value] : *table) last = std::max(last, last_line(value));
+    } else if (const auto* list = node.as_array()) {
+        for (const toml::node& item : *list) last = std::max(last, last_line(item));
+    }
+    return last;
+}
+
+/// The last line of a table's own keys: tables under headers of their own are not its lines.
+std::size_t last_own_line(const toml::table& table) {
+    std::size_t last = table.source().begin.line;
+    for (const auto& [key, value] : table) {
+        const bool headed = (value.is_table() && !value.as_table()->is_inline()) || value.is_array_of_tables();
+        if (!headed) last = std::max(last, last_line(value));
+    }
+    return last;
+}
+
+/// Every own line ends with a line break.
+std::string insert_line(std::string_view text, std::size_t after, std::string_view line) {
+    std::string out(text);
+    if (!out.empty() && out.back() != '\n') out += '\n';
+    out.insert(start_of_line(out, after + 1), std::string(line) + "\n");
+    return out;
+}
+
+/// Before the bracket that closes a list or an inline table.
+std::string insert_before_end(std::string_view text, const toml::node& node, bool empty, const std::string& more) {
+    std::string out(text);
+    std::size_t close = offset_of(text, node.source().end);
+    while (close > 0 && out[close] != ']' && out[close] != '}') --close;
+    std::size_t at = close;
+    while (at > 0 && (out[at - 1] == ' ' || out[at - 1] == '\n' || out[at - 1] == '\t')) --at;
+    const bool comma = at > 0 && out[at - 1] == ',';
+    out.insert(at, (empty ? " " : comma ? " " : ", ") + more);
+    return out;
+}
+
+toml::node* entry_named(toml::array& list, std::string_view name) {
+    for (toml::node& item : list) {
+        toml::table* table = item.as_table();
+        if (table != nullptr && (*table)["name"].value<std::string_view>() == name) return &item;
+    }
+    if (!name.empty() && std::all_of(name.begin(), name.end(), is_digit)) {
+        const std::size_t index = std::stoul(std::string(name.substr(0, 9)));
+        if (index < list.size()) return list.get(index);
+    }
+    return nullptr;
+}
+
+std::vector<std::string> parts_of(std::string_view path) {
+    std::vector<std::string> parts;
+    while (true) {
+        const std::size_t dot = path.find('.');
+        parts.emplace_back(path.substr(0, dot));
+        if (dot == std::string_view::npos) return parts;
+        path.remove_prefix(dot + 1);
+    }
+}
+
+/// A header for a table that is not there yet, at the end.
+std::string with_new_table(std::string_view text, const std::vector<std::string>& parts, std::string_view value) {
+    std::string header;
+    for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
+        if (k > 0) header += '.';
+        header += key_text(parts[k]);
+    }
+    std::string out(text);
+    if (!out.empty() && out.back() != '\n') out += '\n';
+    return out + fmt::format("\n[{}]\n{} = {}\n", header, key_text(parts.back()), value);
+}
+
+Status is_value(std::string_view value) {
+    const auto alone = parsed(fmt::format("v = {}\n", value));
+    if (alone && alone->size() == 1 && value.find('\n') == std::string_view::npos) return {};
+    return input_error("\"{}\" is no value as TOML has them", value);
+}
+
+/// A change must leave a text that can be read.
+Result<std::string> checked(std::string text) {
+    if (auto again = parsed(text); !again) return tl::unexpected(again.error());
+    return text;
+}
+
+}  // namespace
+
+std::string key_text(std::string_view key) {
+    const auto bare = [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; };
+    if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return std::string(key);
+    std::string quoted = "\"";
+    for (const char c : key) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        quoted += c;
+    }
+    return quoted + '"';
+}
+
+Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value) {
+    if (Status status = is_value(value); !status) return tl::unexpected(status.error());
+    Result<toml::table> root = parsed(text);
+    if (!root) return tl::unexpected(root.error());
+    const std::vector<std::string> parts = parts_of(path);
+    toml::node* at = &*root;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (toml::array* list = at->as_array()) {
+            at = entry_named(*list, parts[k]);
+            if (at == nullptr) return input_error("{}: there is no \"{}\"", path, parts[k]);
+            continue;
+        }
+        toml::table* table = at->as_table();
+        if (table == nullptr) return input_error("{}: \"{}\" is not a table", path, parts[k - 1]);
+        toml::node* next = table->get(parts[k]);
+        if (next != nullptr) {
+            at = next;
+            continue;
+        }
+        if (k + 1 < parts.size()) {
+            if (at != &*root) return input_error("{}: there is no \"{}\"", path, parts[k]);
+            return checked(with_new_table(text, parts, value));
+        }
+        const std::string line = fmt::format("{} = {}", key_text(parts[k]), value);
+        if (table->is_inline()) return checked(insert_before_end(text, *table, table->empty(), line));
+        // Of the top level no header tells where it begins.
+        const std::size_t after = at == &*root && table->source().begin.line <= 1 ? 0 : table->source().begin.line;
+        return checked(insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), line));
+    }
+    if (at->is_table() && !at->as_table()->is_inline()) return input_error("{} is a table", path);
+    const toml::array* list = at->as_array();
+    if (list != nullptr && at->is_array_of_tables() && !list->get(0)->as_table()->is_inline())
+        return input_error("{} is a list of tables", path);
+    const std::size_t begin = offset_of(text, at->source().begin), end = offset_of(text, at->source().end);
+    return checked(std::string(text.substr(0, begin)) + std::string(value) + std::string(text.substr(end)));
+}
+
+Result<std::string> with_entry(std::string_view text, std::string_view list, const EntryText& entry) {
+    Result<toml::table> root = parsed(text);
+    if (!root) return tl::unexpected(root.error());
+    std::string lines = fmt::format("\n[[{}]]", key_text(list)), inlined;
+    for (const auto& [key, value] : entry) {
+        if (Status status = is_value(value); !status) return tl::unexpected(status.error());
+        lines += fmt::format("\n{} = {}", key_text(key), value);
+        inlined += fmt::format("{}{} = {}", inlined.empty() ? "" : ", ", key_text(key), value);
+    }
+    const toml::node* there = root->get(list);
+    if (there == nullptr) {
+        std::string out(text);
+        if (!out.empty() && out.back() != '\n') out += '\n';
+        return checked(out + lines + "\n");
+    }
+    const toml::array* all = there->as_array();
+    if (all == nullptr) return input_error("{} is not a list", list);
+    const toml::table* first = all->empty() ? nullptr : all->get(0)->as_table();
+    const bool headed = first != nullptr && !first->is_inline();
+    if (headed) return checked(insert_line(text, last_line(*all), lines));
+    return checked(insert_before_end(text, *all, all->empty(), "{ " + inlined + " }"));
+}
+
+}  // namespace pliant::config

@@ -1,0 +1,104 @@
+#include "base/core/toml_edit.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/core/test_text.hpp"
+
+using namespace pliant;
+using config::with_entry;
+using config::with_value;
+using pliant::test::holds;
+
+namespace {
+
+constexpr const char* robot = R"(name = "größe"  # a name with more bytes than letters
+[parameters]  # numbers
+notches = 4   # how many
+"odd key" = 1
+
+[material.soft]
+youngs_modulus = "1 MPa"  # measured
+material_note = { a = 1, b = [2, 3] }
+[material]
+stiff = { youngs_modulus = "9 MPa" }
+
+# the first one
+[[cable]]
+name = "flexor"
+points = [[0, 1, 2],
+          [3, 4, 5]]   # two lines
+target = { length_ratio = 0.8 }
+
+[[cable]]
+name = "other"
+[cable.target]
+tension = "1 N"
+# the end
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, what.size(), with);
+}
+
+}  // namespace
+
+TEST_CASE("a value is replaced, and nothing else") {
+    for (const auto& [path, value, what, with] :
+         {std::array<const char*, 4>{"name", "\"x\"", "\"größe\"", "\"x\""},
+          {"parameters.notches", "7", "= 4   #", "= 7   #"},
+          {"parameters.odd key", "2.5", "key\" = 1", "key\" = 2.5"},
+          {"material.soft.youngs_modulus", "\"2 MPa\"", "\"1 MPa\"", "\"2 MPa\""},
+          {"material.soft.material_note.b", "[7]", "[2, 3]", "[7]"},
+          {"material.stiff.youngs_modulus", "\"8 MPa\"", "\"9 MPa\"", "\"8 MPa\""},
+          {"cable.flexor.target.length_ratio", "0.75", "= 0.8", "= 0.75"},
+          {"cable.flexor.points", "[[1, 1, 1], [2, 2, 2]]", "[[0, 1, 2],\n          [3, 4, 5]]",
+           "[[1, 1, 1], [2, 2, 2]]"},
+          {"cable.1.target.tension", "\"2 N\"", "\"1 N\"", "\"2 N\""}}) {
+        INFO(path);
+        const auto text = with_value(robot, path, value);
+        REQUIRE(text);
+        CHECK(*text == replaced(robot, what, with));
+    }
+}
+
+TEST_CASE("a value that is not there yet comes to the others of its table, or gets one") {
+    CHECK(with_value(robot, "parameters.width", "3").value() ==
+          replaced(robot, "\"odd key\" = 1\n", "\"odd key\" = 1\nwidth = 3\n"));
+    CHECK(with_value(robot, "material.stiff.density", "\"1 g/cm^3\"").value() ==
+          replaced(robot, "\"9 MPa\" }", "\"9 MPa\", density = \"1 g/cm^3\" }"));
+    CHECK(with_value(robot, "cable.flexor.friction", "0.1").value() ==
+          replaced(robot, "length_ratio = 0.8 }\n", "length_ratio = 0.8 }\nfriction = 0.1\n"));
+    CHECK(with_value(robot, "mesh.size", "\"2 mm\"").value() == std::string(robot) + "\n[mesh]\nsize = \"2 mm\"\n");
+    const std::string first = with_value("a = 1", "b", "2").value();
+    CHECK(with_value(first, "b", "3").value() == replaced(first, "b = 2", "b = 3"));
+}
+
+TEST_CASE("an entry comes after the last of its list, as the list is written") {
+    const config::EntryText entry = {{"name", "\"tip\""}, {"point", "[1, 2, 3]"}};
+    CHECK(
+        with_entry(robot, "cable", entry).value() ==
+        replaced(robot, "tension = \"1 N\"\n", "tension = \"1 N\"\n\n[[cable]]\nname = \"tip\"\npoint = [1, 2, 3]\n"));
+    CHECK(with_entry(robot, "marker", entry).value() ==
+          std::string(robot) + "\n[[marker]]\nname = \"tip\"\npoint = [1, 2, 3]\n");
+    CHECK(with_entry("m = [{ name = \"a\" }]  # one\n", "m", entry).value() ==
+          "m = [{ name = \"a\" }, { name = \"tip\", point = [1, 2, 3] }]  # one\n");
+    CHECK(with_entry("m = []\n", "m", entry).value() == "m = [ { name = \"tip\", point = [1, 2, 3] }]\n");
+}
+
+TEST_CASE("what cannot be is refused with a reason") {
+    const auto why = [](const Result<std::string>& text) {
+        REQUIRE_FALSE(text);
+        return text.error().message;
+    };
+    CHECK(holds(why(with_value("a = ", "a", "1")), "not valid TOML"));
+    CHECK(holds(why(with_value(robot, "name", "one two")), "no value as TOML has them"));
+    CHECK(holds(why(with_value(robot, "name", "1\nb = 2")), "no value as TOML has them"));
+    CHECK(holds(why(with_value(robot, "cable.nobody.friction", "1")), "there is no \"nobody\""));
+    CHECK(holds(why(with_value(robot, "name.first", "1")), "\"name\" is not a table"));
+    CHECK(holds(why(with_value(robot, "material.none.density", "1")), "there is no \"none\""));
+    CHECK(holds(why(with_value(robot, "parameters", "1")), "is a table"));
+    CHECK(holds(why(with_value(robot, "cable", "1")), "is a list of tables"));
+    CHECK(holds(why(with_entry(robot, "name", {{"a", "1"}})), "is not a list"));
+}
