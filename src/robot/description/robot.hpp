@@ -132,6 +132,14 @@ struct LoadSpec {
     int line = 0;
 };
 
+/// A mass at a point of the robot.
+struct MassSpec {
+    std::string name;
+    Vec3 point;
+    double mass_kg = 0;
+    int line = 0;
+};
+
 /// Which end of a cable or spring is fixed in space.
 enum class Anchor { none, first, last };
 
@@ -193,6 +201,18 @@ struct ObstacleSpec {
     int line = 0;
 };
 
+/// A rigid thing with mass that nothing holds.
+struct ObjectSpec {
+    std::string name;
+    std::variant<mesh::Solid, SurfaceFile> shape;
+    mesh::Placement placement{};  ///< of either, where it starts; lengths in length units
+    double density_kg_m3 = 0;     ///< 0: its mass is given
+    double mass_kg = 0;
+    Vec3 velocity_m_s, angular_velocity_rad_s;
+    double friction = 0;  ///< against all that it touches
+    int line = 0;
+};
+
 struct ContactSpec {
     bool self = true;
     double distance = 0;                 ///< length units; 0: a thousandth of the robot's size
@@ -218,12 +238,14 @@ struct Robot {
     std::vector<FixedSpec> fixed;
     std::vector<PlateSpec> plates;
     std::vector<LoadSpec> loads;
+    std::vector<MassSpec> masses;
     std::vector<CableSpec> cables;
     std::vector<SpringSpec> springs;
     std::vector<ChamberSpec> chambers;
     std::vector<GapSpec> gaps;
-    std::optional<ContactSpec> contact;  ///< where the file has [contact] or an obstacle
+    std::optional<ContactSpec> contact;  ///< where the file has [contact], an obstacle or an object
     std::vector<ObstacleSpec> obstacles;
+    std::vector<ObjectSpec> objects;
     std::vector<MarkerSpec> markers;
     std::vector<GoalSpec> goals;
     Vec3 gravity_m_s2;
@@ -231,5 +253,10 @@ struct Robot {
     double ambient_pressure_Pa = 101325;
     Program program;
 };
+
+/// Whether pieces that nothing holds are no mistake: they move in time, or something is there that may hold them.
+[[nodiscard]] inline bool may_be_free(const Robot& robot) {
+    return robot.program.dynamics.has_value() || !robot.obstacles.empty();
+}
 
 }  // namespace pliant::robot

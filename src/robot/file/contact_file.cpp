@@ -1,5 +1,7 @@
 #include "robot/file/contact_file.hpp"
 
+#include <algorithm>
+
 namespace pliant::robot {
 namespace {
 
@@ -34,6 +36,36 @@ void read_obstacle(Reader& reader, Context& context, ObstacleSpec& obstacle) {
     obstacle.move = reader.vector("move", Vec3{});
 }
 
+std::variant<mesh::Solid, SurfaceFile> read_object_shape(Reader& reader, Context& context) {
+    const bool drawn = reader.has("geometry");
+    if (drawn == reader.has("surface")) reader.problem("", "takes one of geometry (a shape) and surface (a file)");
+    std::variant<mesh::Solid, SurfaceFile> shape = SurfaceFile{};
+    if (drawn)
+        shape = read_shape(reader, context);
+    else if (reader.has("surface"))
+        shape = SurfaceFile{need_file(reader, "surface", reader.text("surface"), context)};
+    for (const char* key : {"geometry", "surface"}) (void)reader.raw(key);
+    return shape;
+}
+
+/// Either of the two; the other one is 0.
+void read_weight(Reader& reader, ObjectSpec& object) {
+    object.density_kg_m3 = reader.quantity("density", Dimension::density, 0);
+    object.mass_kg = reader.quantity("mass", Dimension::mass, 0);
+    if (reader.has("density") == reader.has("mass")) return reader.problem("", "takes one of density and mass");
+    const char* key = reader.has("mass") ? "mass" : "density";
+    if (!(std::max(object.density_kg_m3, object.mass_kg) > 0)) reader.problem(key, "must be above zero");
+}
+
+void read_object(Reader& reader, Context& context, ObjectSpec& object) {
+    object.shape = read_object_shape(reader, context);
+    object.placement = read_placement(reader, "place");
+    read_weight(reader, object);
+    object.velocity_m_s = reader.vector("velocity", Vec3{});
+    object.angular_velocity_rad_s = reader.vector("angular_velocity", Vec3{});
+    object.friction = read_friction(reader);
+}
+
 ContactSpec read_rules(Reader reader, const Robot& robot) {
     ContactSpec contact;
     contact.line = reader.line();
@@ -59,7 +91,8 @@ void read_contact(Reader& root, Context& context) {
     Robot& robot = context.robot;
     const ContactSpec rules = read_rules(root.table("contact", false), robot);
     read_each(root, context, "obstacle", "obstacles", robot.obstacles, read_obstacle);
-    if (has_rules || !robot.obstacles.empty()) robot.contact = rules;
+    read_each(root, context, "object", "objects", robot.objects, read_object);
+    if (has_rules || !robot.obstacles.empty() || !robot.objects.empty()) robot.contact = rules;
 }
 
 }  // namespace pliant::robot

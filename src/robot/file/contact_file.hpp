@@ -1,11 +1,11 @@
-// [contact] and [[obstacle]] of a robot file.
+// [contact], [[obstacle]] and [[object]] of a robot file.
 #pragma once
 
 #include "robot/file/reading.hpp"
 
 namespace pliant::robot {
 
-/// Reads both into the robot; an obstacle alone switches contact on.
+/// Reads them into the robot; an obstacle or an object alone switches contact on.
 void read_contact(config::Reader& root, Context& context);
 
 }  // namespace pliant::robot

@@ -137,14 +137,19 @@ void read_marker(Reader& reader, Context&, MarkerSpec& marker) {
     }
 }
 
+void read_mass(Reader& reader, Context&, MassSpec& mass) {
+    mass.point = reader.vector("point");
+    mass.mass_kg = reader.quantity("mass", Dimension::mass);
+    if (reader.has("mass") && !(mass.mass_kg > 0)) reader.problem("mass", "must be above zero");
+}
+
 }  // namespace
 
 void read_places(Reader& root, Context& context) {
     read_each(root, context, "fixed", "[[fixed]]", context.robot.fixed, read_support);
-    if (context.robot.fixed.empty())
-        root.problem("", "nothing is fixed; add [[fixed]] with a box that holds one end of the robot");
     read_each(root, context, "plate", "plates", context.robot.plates, read_plate);
     read_each(root, context, "load", "loads", context.robot.loads, read_load);
+    read_each(root, context, "mass", "masses", context.robot.masses, read_mass);
 }
 
 void read_markers(Reader& root, Context& context) {

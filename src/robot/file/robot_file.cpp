@@ -61,6 +61,10 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_markers(root, context);
     read_goals(root, context);
     read_program(root, robot);
+    if (robot.fixed.empty() && !may_be_free(robot))
+        root.problem("",
+                     "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "
+                     "stand on, or program.time_step for a motion in time");
     root.finish();
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());
     return robot;

@@ -67,15 +67,29 @@ void Contact::visit_hessian(const Pairs& pairs, std::span<const double> x, bool 
     }
 }
 
-Friction Contact::freeze(const Pairs& pairs, std::span<const double> frozen, std::span<const double> step_start) const {
+Friction Contact::freeze(const Pairs& pairs, std::span<const double> frozen, std::span<const double> step_start,
+                         const Friction* before) const {
     std::vector<FrozenPair> result;
     for (const Pair& pair : pairs) {
-        const double coefficient = pair.obstacle < 0 ? settings_.friction : obstacles_[pair.obstacle].friction;
+        const double coefficient = friction_of(pair);
         if (coefficient == 0) continue;
         FrozenPair f = contact::freeze(pair, coefficient, settings_.stiffness_Pa, stencil_of(pair, frozen));
         if (f.limit_N > 0) result.push_back(f);
     }
+    if (before != nullptr) carry_over(*before, step_start, result);
     return {std::move(result), {step_start.begin(), step_start.end()}, settings_.slip_m};
+}
+
+double Contact::friction_of(const Pair& pair) const {
+    double coefficient = pair.obstacle < 0 ? 0 : obstacles_[pair.obstacle].friction;
+    bool rigid = false;
+    for (int i = 0; i < pair.node_count(); ++i) {
+        const int part = part_of(pair.nodes[i]);
+        if (part == 0) continue;
+        rigid = true;
+        coefficient = std::max(coefficient, rigid_[static_cast<std::size_t>(part) - 1].friction);
+    }
+    return pair.obstacle < 0 && !rigid ? settings_.friction : coefficient;
 }
 
 double Contact::smallest_distance(const Pairs& pairs, std::span<const double> x) const {
@@ -90,7 +104,7 @@ double Contact::smallest_distance(const Pairs& pairs, std::span<const double> x)
 double Contact::add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const {
     double sum = 0;
     for (const Pair& pair : pairs) {
-        if (pair.obstacle >= 0) continue;
+        if (pair.obstacle >= 0 || part_of(pair.nodes[0]) > 0 || part_of(pair.nodes[3]) > 0) continue;
         const Stencil stencil = stencil_of(pair, x);
         sum += normal_force(pair, settings_.stiffness_Pa, stencil);
         const Vector12 change = normal_force_gradient(pair, settings_.stiffness_Pa, stencil);
@@ -102,16 +116,20 @@ double Contact::add_self_force(const Pairs& pairs, std::span<const double> x, st
 }
 
 Forces Contact::forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const {
-    Forces result{std::vector<Vec3>(obstacles_.size()), 0, std::vector<double>(static_cast<std::size_t>(robot_nodes_)),
-                  smallest_distance(pairs, x)};
+    Forces result{std::vector<Vec3>(obstacles_.size()), std::vector<Vec3>(rigid_.size()), 0,
+                  std::vector<double>(static_cast<std::size_t>(robot_nodes_)), smallest_distance(pairs, x)};
     std::vector<Vec3> at_node(static_cast<std::size_t>(node_count()));
     for (const Pair& pair : pairs) {
         const Vector12 gradient = potential_gradient(pair, settings_.stiffness_Pa, stencil_of(pair, x));
-        if (pair.obstacle < 0) result.self_N += normal_force(pair, settings_.stiffness_Pa, stencil_of(pair, x));
+        const bool self = pair.obstacle < 0 && part_of(pair.nodes[0]) == 0 && part_of(pair.nodes[3]) == 0;
+        if (self) result.self_N += normal_force(pair, settings_.stiffness_Pa, stencil_of(pair, x));
         for (int i = 0; i < pair.node_count(); ++i) {
             const Vec3 force{-gradient[3 * i], -gradient[3 * i + 1], -gradient[3 * i + 2]};
             at_node[pair.nodes[i]] += force;
-            if (pair.obstacle >= 0 && pair.nodes[i] < robot_nodes_) result.on_robot_N[pair.obstacle] += force;
+            if (const int part = part_of(pair.nodes[i]); part > 0)
+                result.on_rigid_N[static_cast<std::size_t>(part) - 1] += force;
+            else if (pair.obstacle >= 0 && pair.nodes[i] < robot_nodes_)
+                result.on_robot_N[pair.obstacle] += force;
         }
     }
     for (std::size_t i = 0; i < robot_.surface.points.size(); ++i) {
@@ -121,8 +139,13 @@ Forces Contact::forces(const Pairs& pairs, std::span<const double> x, const Fric
     if (friction == nullptr) return result;
     for (std::size_t k = 0; k < friction->pairs().size(); ++k) {
         const FrozenPair& pair = friction->pairs()[k];
-        if (pair.obstacle >= 0)
-            result.on_robot_N[pair.obstacle] += (pair.robot_first ? 1.0 : -1.0) * friction->force(k, x);
+        const int first = part_of(pair.nodes[0]);
+        const int second = part_of(pair.nodes[static_cast<std::size_t>(pair.first_count)]);
+        const Vec3 force = friction->force(k, x);
+        if (first > 0) result.on_rigid_N[static_cast<std::size_t>(first) - 1] += force;
+        if (second > 0) result.on_rigid_N[static_cast<std::size_t>(second) - 1] += -1.0 * force;
+        if (pair.obstacle >= 0 && first == 0 && second == 0)
+            result.on_robot_N[pair.obstacle] += (pair.robot_first ? 1.0 : -1.0) * force;
     }
     return result;
 }

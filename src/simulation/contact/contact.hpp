@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -46,13 +47,21 @@ struct Settings {
     double distance_m = 0;    ///< forces act below this distance; of the order of an element or less, for speed
     double stiffness_Pa = 0;  ///< pressure is about four times this at half the distance; Young's modulus / 10 is usual
     double friction = 0;      ///< coefficient μ of the robot against itself
-    double slip_m = 1e-5;     ///< slip per step that counts as none
+    double slip_m = 1e-5;     ///< slip that counts as sticking
     bool self = true;         ///< whether the robot can touch itself
+};
+
+/// Nodes of the robot's surface from `first` up to `end`: an object that never touches itself, but all else.
+struct RigidPart {
+    std::string name;
+    int first = 0, end = 0;
+    double friction = 0;  ///< coefficient; of two things that have one, the larger counts
 };
 
 /// What contact does to the robot, for results.
 struct Forces {
-    std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot
+    std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot, without objects
+    std::vector<Vec3> on_rigid_N;     ///< (rigid parts) of all that touches it
     double self_N = 0;                ///< sum of the sizes of all normal forces of the robot on itself
     std::vector<double> pressure_Pa;  ///< (robot nodes) normal force over the area of the node; 0 inside
     double smallest_distance_m = 0;   ///< as of smallest_distance()
@@ -74,9 +83,11 @@ struct Crossing {
 /// among themselves.
 class Contact {
 public:
-    /// `rest`: (3 robot nodes). Refused: obstacles that touch or cross the robot at rest, numbers that make no sense.
+    /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. Refused: obstacles and rigid parts
+    /// that touch or cross what they may touch at rest (on a plane it may stand), numbers that make no sense.
     [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
-                                                const Settings& settings, std::span<const double> rest);
+                                                const Settings& settings, std::span<const double> rest,
+                                                std::vector<RigidPart> rigid = {});
 
     /// Rest positions of all nodes, (3 nodes); obstacles as they act, drawn in.
     [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
@@ -107,9 +118,10 @@ public:
     /// is worth knowing: steps from there are then answered quickly.
     void note_clearance(std::span<const double> x) const;
 
-    /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`.
+    /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`; `before`: of
+    /// the step that has ended there, which what sticks remembers. Null: there was none.
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
-                                  std::span<const double> step_start) const;
+                                  std::span<const double> step_start, const Friction* before = nullptr) const;
 
     /// Sum of the sizes of the robot's normal forces on itself, N; adds its gradient, N/m, to `gradient` (3 nodes).
     double add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
@@ -125,7 +137,7 @@ public:
     [[nodiscard]] std::optional<Crossing> crossing_at_rest() const;
 
 private:
-    /// The robot's surface, or all meshes among the obstacles.
+    /// The robot's surface, that of one rigid part, or all meshes among the obstacles.
     struct Side {
         Surface surface;
         SurfaceAreas areas;
@@ -150,6 +162,27 @@ private:
     void add_obstacles();
     void draw_in_obstacles();
     [[nodiscard]] int obstacle_of(std::span<const int> nodes) const;  ///< of a pair's four nodes
+    /// 0: the robot or an obstacle, else 1 + the rigid part.
+    [[nodiscard]] int part_of(int node) const { return part_of_node_.empty() ? 0 : part_of_node_[node]; }
+    /// The robot, the obstacles, then the rigid parts.
+    [[nodiscard]] const Side& side(std::size_t k) const { return k == 0 ? robot_ : k == 1 ? others_ : parts_[k - 2]; }
+    [[nodiscard]] std::size_t side_of(int node) const {
+        if (obstacle_of_node_[node] >= 0) return 1;
+        const int part = part_of(node);
+        return part == 0 ? 0 : static_cast<std::size_t>(part) + 1;
+    }
+    /// All but the obstacles.
+    template <class Visit>
+    void visit_moving_sides(const Visit& visit) const {
+        visit(robot_);
+        for (const Side& part : parts_) visit(part);
+    }
+    /// The sides, by index, that may touch; {0, 0}, the robot itself, last.
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> meetings(bool self) const;
+    void make_sides(const Surface& robot);
+    [[nodiscard]] double friction_of(const Pair& pair) const;
+    void number_parts(std::vector<RigidPart> rigid);
+    [[nodiscard]] Status check_parts_at_rest() const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
     [[nodiscard]] std::optional<int> obstacle_touched_at_rest() const;
     [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
@@ -157,6 +190,8 @@ private:
     [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;
     [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
     void find_planes(std::span<const double> x, Pairs& pairs) const;
+    void find_planes(const Side& side, std::span<const double> x, Pairs& pairs) const;
+    void shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx, double& step) const;
     [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
 
     Settings settings_;
@@ -164,12 +199,15 @@ private:
     std::vector<double> drawn_in_m_;     ///< (obstacles)
     std::vector<int> first_node_;        ///< (obstacles + 1)
     std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
+    std::vector<RigidPart> rigid_;
+    std::vector<int> part_of_node_;  ///< (nodes) as part_of(); empty without rigid parts
     std::vector<double> rest_;
     int robot_nodes_ = 0;
     double seen_m_ = 0;      ///< how far a look at what is near goes, where it is to hold for many states
     double touching_m_ = 0;  ///< distances up to this are zero but for rounding
     Belonging belonging_;
     Side robot_, others_;
+    std::vector<Side> parts_;  ///< (rigid parts)
     std::vector<Plane> planes_;
     std::shared_ptr<Memory> memory_;
 };

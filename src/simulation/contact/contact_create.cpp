@@ -89,7 +89,7 @@ Contact::Side Contact::make_side(Surface surface, std::span<const double> rest) 
 }
 
 Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, const Settings& settings,
-                                std::span<const double> rest) {
+                                std::span<const double> rest, std::vector<RigidPart> rigid) {
     if (auto status = check_settings(settings); !status) return tl::unexpected(status.error());
     if (auto status = check_triangles(robot.triangles, rest.size() / 3, "contact surface"); !status)
         return tl::unexpected(status.error());
@@ -102,16 +102,35 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.robot_nodes_ = static_cast<int>(rest.size() / 3);
     contact.obstacle_of_node_.assign(rest.size() / 3, -1);
     contact.obstacles_ = std::move(obstacles);
+    contact.number_parts(std::move(rigid));
     contact.touching_m_ = 1e-9 * diagonal(rest);
     contact.belonging_ = Belonging(robot, rest, contact.touching_m_);
     contact.seen_m_ = std::max(seen_edges * mean_edge(robot, rest), seen_distances * settings.distance_m);
-    contact.robot_ = make_side(std::move(robot), contact.rest_);
+    contact.make_sides(robot);
     contact.add_obstacles();
     if (const auto touched = contact.obstacle_touched_at_rest())
         return input_error("obstacle \"{}\" touches or crosses the robot at rest: leave a gap, or hold the robot there",
                            contact.obstacles_[*touched].name);
+    if (!contact.rigid_.empty())
+        if (auto status = contact.check_parts_at_rest(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();
     return contact;
+}
+
+void Contact::make_sides(const Surface& robot) {
+    std::vector<std::vector<std::array<int, 3>>> triangles(1 + rigid_.size());
+    for (const auto& t : robot.triangles) triangles[static_cast<std::size_t>(part_of(t[0]))].push_back(t);
+    robot_ = make_side(rigid_.empty() ? robot : make_surface(triangles[0]), rest_);
+    for (std::size_t k = 1; k < triangles.size(); ++k) parts_.push_back(make_side(make_surface(triangles[k]), rest_));
+}
+
+void Contact::number_parts(std::vector<RigidPart> rigid) {
+    rigid_ = std::move(rigid);
+    if (rigid_.empty()) return;
+    part_of_node_.assign(static_cast<std::size_t>(robot_nodes_), 0);
+    for (std::size_t k = 0; k < rigid_.size(); ++k)
+        std::fill(part_of_node_.begin() + rigid_[k].first, part_of_node_.begin() + rigid_[k].end,
+                  static_cast<int>(k) + 1);
 }
 
 void Contact::draw_in_obstacles() {
@@ -149,6 +168,7 @@ void Contact::add_obstacles() {
         }
         for (const Vec3& p : points) rest_.insert(rest_.end(), {p.x, p.y, p.z});
         obstacle_of_node_.insert(obstacle_of_node_.end(), points.size(), static_cast<int>(k));
+        if (!part_of_node_.empty()) part_of_node_.insert(part_of_node_.end(), points.size(), 0);
     }
     first_node_.push_back(node_count());
     others_ = make_side(make_surface(triangles), rest_);

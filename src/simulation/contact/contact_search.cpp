@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -63,24 +64,19 @@ public:
     /// `margin`: how far apart features may be and still be found; with `dx` those that come so near on the way from x
     /// to x + dx.
     Search(const Contact& contact, std::span<const double> x, std::span<const double> dx, double margin, What what,
-           bool self) {
-        const Side &robot = contact.robot_, &others = contact.others_;
-        const auto points = [&](const Side& s) { return group(s.points, s.surface.points, x, dx, margin / 2); };
-        const auto edges = [&](const Side& s) { return group(s.edges, s.surface.edges, x, dx, margin / 2); };
-        const auto triangles = [&](const Side& s) {
-            return group(s.triangles, s.surface.triangles, x, dx, margin / 2);
-        };
-        const bool crossings = what == What::crossings;
-        groups_[0] = {crossings ? edges(robot) : points(robot), crossings ? edges(others) : points(others)};
-        groups_[1] = {triangles(robot), triangles(others)};
-        const Kind kind = crossings ? Kind::edge_triangle : Kind::point_triangle;
-        if (self) add(kind, robot, robot, groups_[0][0], groups_[1][0]);
-        add(kind, robot, others, groups_[0][0], groups_[1][1]);
-        add(kind, others, robot, groups_[0][1], groups_[1][0]);
-        if (crossings) return;
-        groups_[2] = {edges(robot), edges(others)};
-        if (self) add(Kind::edge_edge, robot, robot, groups_[2][0], groups_[2][0]);
-        add(Kind::edge_edge, robot, others, groups_[2][0], groups_[2][1]);
+           bool self)
+        : contact_(contact), x_(x), dx_(dx), margin_(margin) {
+        const Kind first = what == What::crossings ? Kind::edge_triangle : Kind::point_triangle;
+        std::vector<std::pair<std::size_t, std::size_t>> meetings = contact.meetings(self);
+        // The robot itself comes first.
+        std::ranges::rotate(meetings, meetings.end() - (self ? 1 : 0));
+        std::erase_if(meetings, [&](const auto& m) { return !are_near(m.first, m.second); });
+        for (const auto& [a, b] : meetings) {
+            add(first, a, b);
+            if (a != b) add(first, b, a);
+        }
+        if (what == What::crossings) return;
+        for (const auto& [a, b] : meetings) add(Kind::edge_edge, a, b);
     }
 
     enum class Kind { point_triangle, edge_edge, edge_triangle };
@@ -147,18 +143,49 @@ private:
         std::size_t first_leaf;  ///< leaves of all families are numbered through
     };
 
+    enum class Shape { points, edges, triangles };
+
     template <class Nodes>
-    static Group group(const BoxTree& tree, const std::vector<Nodes>& features, std::span<const double> x,
-                       std::span<const double> dx, double margin) {
-        Group group{&tree, {tree.fit(boxes_of(features, x, {}, margin)), {}}};
-        if (!dx.empty()) group.fit.end = tree.fit(boxes_of(features, x, dx, margin));
+    [[nodiscard]] Group fitted(const BoxTree& tree, const std::vector<Nodes>& features) const {
+        Group group{&tree, {tree.fit(boxes_of(features, x_, {}, margin_ / 2)), {}}};
+        if (!dx_.empty()) group.fit.end = tree.fit(boxes_of(features, x_, dx_, margin_ / 2));
         return group;
     }
 
-    void add(Kind kind, const Side& first_side, const Side& second_side, const Group& first, const Group& second) {
-        if (first.tree->leaf_count() == 0 || second.tree->leaf_count() == 0) return;
-        families_.push_back({kind, &first_side, &second_side, &first, &second, leaf_count_});
-        leaf_count_ += first.tree->leaf_count();
+    /// Made when it is first asked for.
+    const Group& group(Shape shape, std::size_t k) {
+        const auto [entry, fresh] = groups_.try_emplace({shape, k});
+        if (!fresh) return entry->second;
+        const Side& side = contact_.side(k);
+        entry->second = shape == Shape::points  ? fitted(side.points, side.surface.points)
+                        : shape == Shape::edges ? fitted(side.edges, side.surface.edges)
+                                                : fitted(side.triangles, side.surface.triangles);
+        return entry->second;
+    }
+
+    void add(Kind kind, std::size_t a, std::size_t b) {
+        const Side &first = contact_.side(a), &second = contact_.side(b);
+        if (first.surface.triangles.empty() || second.surface.triangles.empty()) return;
+        const Group& firsts = group(kind == Kind::point_triangle ? Shape::points : Shape::edges, a);
+        const Group& seconds = group(kind == Kind::edge_edge ? Shape::edges : Shape::triangles, b);
+        families_.push_back({kind, &first, &second, &firsts, &seconds, leaf_count_});
+        leaf_count_ += firsts.tree->leaf_count();
+    }
+
+    /// Rigid parts are many and far from each other: false if two sides stay so, as their boxes tell.
+    [[nodiscard]] bool are_near(std::size_t a, std::size_t b) {
+        return contact_.rigid_.empty() || a == b || box(a).overlaps(box(b));
+    }
+    const Bounds& box(std::size_t k) {
+        const auto [entry, fresh] = boxes_.try_emplace(k);
+        if (!fresh) return entry->second;
+        for (const int point : contact_.side(k).surface.points) {
+            const Vec3 p = node_at(x_, point);
+            entry->second.add(p);
+            if (!dx_.empty()) entry->second.add(p + node_at(dx_, point));
+        }
+        entry->second.widen(margin_ / 2);
+        return entry->second;
     }
 
     /// Calls visit(candidate) for what leaf `l` of the first features finds.
@@ -200,7 +227,11 @@ private:
         }
     }
 
-    std::array<std::array<Group, 2>, 3> groups_{};  ///< points or edges, triangles, edges; robot, obstacles
+    const Contact& contact_;
+    std::span<const double> x_, dx_;
+    double margin_;
+    std::map<std::pair<Shape, std::size_t>, Group> groups_;
+    std::map<std::size_t, Bounds> boxes_;
     std::vector<Family> families_;
     std::size_t leaf_count_ = 0;
 };
@@ -349,15 +380,18 @@ void Contact::note_clearance(std::span<const double> x) const {
         all.insert(all.end(), piece.begin(), piece.end());
     const auto reach_of = [&](const Seen& s) { return reach(obstacle_of(s.candidate.nodes), s.rest_m); };
     if (std::ranges::any_of(all, [&](const Seen& s) { return s.now_m <= reach_of(s); })) return wait_for_clearance();
-    const std::array<Clearance::Side, 2> sides{
-        {{&robot_.surface, robot_.regions}, {&others_.surface, others_.regions}}};
-    const std::array<Clearance::Meeting, 2> meetings{{{0, 1}, {0, 0}}};
-    Clearance clearance(sides, std::span(meetings).first(settings_.self ? 2 : 1), x, seen_m_, settings_.distance_m);
+    std::vector<Clearance::Side> sides;
+    for (std::size_t k = 0; k < 2 + parts_.size(); ++k) sides.push_back({&side(k).surface, side(k).regions});
+    const auto meetings = this->meetings(settings_.self);
+    Clearance clearance(sides, meetings, x, seen_m_, settings_.distance_m);
     for (const Seen& seen : all) {
-        const bool robot_first = obstacle_of_node_[seen.candidate.nodes[0]] < 0;
         const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
-        clearance.offer(obstacle_of(seen.candidate.nodes) < 0 ? 1 : 0, robot_first ? first : second,
-                        robot_first ? second : first, seen.now_m, reach_of(seen));
+        const std::pair both(side_of(first[0]), side_of(second[0]));
+        const auto is_it = [&](const auto& m) { return m == both || m == std::pair(both.second, both.first); };
+        const auto meeting = std::ranges::find_if(meetings, is_it);
+        const bool in_order = *meeting == both;
+        clearance.offer(static_cast<std::size_t>(meeting - meetings.begin()), in_order ? first : second,
+                        in_order ? second : first, seen.now_m, reach_of(seen));
     }
     const std::lock_guard lock(memory_->mutex);
     memory_->clear.known = std::make_shared<const Clearance>(std::move(clearance));
@@ -423,17 +457,30 @@ Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, 
     return pair;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> Contact::meetings(bool self) const {
+    std::vector<std::pair<std::size_t, std::size_t>> meetings{{0, 1}};
+    for (std::size_t k = 2; k < 2 + parts_.size(); ++k) {
+        for (std::size_t other = 0; other < k; ++other) meetings.emplace_back(other, k);
+    }
+    if (self) meetings.emplace_back(0, 0);
+    return meetings;
+}
+
 void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
+    visit_moving_sides([&](const Side& side) { find_planes(side, x, pairs); });
+}
+
+void Contact::find_planes(const Side& side, std::span<const double> x, Pairs& pairs) const {
     for (const Plane& plane : planes_) {
-        for (std::size_t i = 0; i < robot_.surface.points.size(); ++i) {
-            const int point = robot_.surface.points[i];
+        for (std::size_t i = 0; i < side.surface.points.size(); ++i) {
+            const int point = side.surface.points[i];
             Pair pair;
             pair.kind = PairKind::point_plane;
             pair.nodes = {point, plane.node, plane.node, plane.node};
             pair.obstacle = plane.obstacle;
             pair.normal = plane.normal;
             pair.reach_m = reach(plane.obstacle, distance(pair, stencil_at(pair.nodes, rest_)));
-            pair.area_m2 = robot_.areas.points[i];
+            pair.area_m2 = side.areas.points[i];
             if (distance(pair, stencil_at(pair.nodes, x)) < pair.reach_m) pairs.push_back(pair);
         }
     }
@@ -459,15 +506,20 @@ double Contact::largest_step(std::span<const double> x, std::span<const double> 
 
 double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
     double step = 1;
+    visit_moving_sides([&](const Side& side) { shorten_to_planes(side, x, dx, step); });
+    return step;
+}
+
+void Contact::shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx,
+                                double& step) const {
     for (const Plane& plane : planes_) {
-        for (const int point : robot_.surface.points) {
+        for (const int point : side.surface.points) {
             const double now = dot(plane.normal, node_at(x, point) - node_at(x, plane.node));
             const double closing = dot(plane.normal, node_at(dx, plane.node) - node_at(dx, point));
             if (now - closing < kept_share * now)
                 step = std::min(step, (1 - kept_share) * std::max(now, 0.0) / closing);
         }
     }
-    return step;
 }
 
 std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool self, bool at_rest) const {
@@ -515,17 +567,44 @@ std::optional<Crossing> Contact::crossing_at_rest() const {
 
 std::optional<int> Contact::obstacle_touched_at_rest() const {
     int touched = -1;
-    for (const Plane& plane : planes_)
-        for (const int point : robot_.surface.points)
-            if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) <= touching_m_)
-                touched = plane.obstacle;
+    visit_moving_sides([&](const Side& side) {
+        for (const Plane& plane : planes_)
+            for (const int point : side.surface.points)
+                if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) < -touching_m_)
+                    touched = plane.obstacle;
+    });
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
     const auto test = [&](const Search::Candidate& c, int& found) {
         if (std::sqrt(c.squared_distance(rest_)) <= touching_m_) found = obstacle_of(c.nodes);
     };
     for (const int piece : search.run(-1, test)) touched = std::max(touched, piece);
-    if (const auto crossed = first_crossing(rest_, false, true)) touched = crossed->obstacle;
+    const auto crossed = first_crossing(rest_, false, true);
+    if (crossed && crossed->obstacle >= 0) touched = crossed->obstacle;
     return touched < 0 ? std::nullopt : std::optional<int>(touched);
+}
+
+Status Contact::check_parts_at_rest() const {
+    const auto name = [&](int part) {
+        return part == 0 ? std::string("the robot")
+                         : "object \"" + rigid_[static_cast<std::size_t>(part) - 1].name + "\"";
+    };
+    const auto refused = [&](int a, int b) {
+        return input_error("{} touches or crosses {} at rest: leave a gap", name(std::max(part_of(a), part_of(b))),
+                           name(std::min(part_of(a), part_of(b))));
+    };
+    using Found = std::optional<std::array<int, 2>>;
+    const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
+    const auto test = [&](const Search::Candidate& c, Found& found) {
+        if (part_of(c.nodes[0]) != part_of(c.nodes[3]) && obstacle_of(c.nodes) < 0 &&
+            std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+            found = {c.nodes[0], c.nodes[3]};
+    };
+    for (const Found& piece : search.run(Found{}, test))
+        if (piece) return refused((*piece)[0], (*piece)[1]);
+    const auto crossed = first_crossing(rest_, false, true);
+    if (crossed && crossed->obstacle < 0 && part_of(crossed->edge[0]) != part_of(crossed->triangle[0]))
+        return refused(crossed->edge[0], crossed->triangle[0]);
+    return {};
 }
 
 }  // namespace pliant::sim::contact

@@ -448,7 +448,8 @@ TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
         CHECK(text.starts_with("obstacle \"it\""));
     };
     refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 0}}});
-    refused({"it", HalfSpace{{0, 0, 0}, {0, 0, 1}}});
+    CHECK(message(usual, {{"it", HalfSpace{{0, 0, 0}, {0, 0, 1}}}}) == "accepted");  // it stands there
+    refused({"it", HalfSpace{{0, 0, 1e-6}, {0, 0, 1}}});
     refused({"it", HalfSpace{{0, 0, 0.005}, {0, 0, 1}}});
     refused({"it", HalfSpace{{0, 0, -1}, {0, 0, 1}}, -0.5});
     refused({"it", mesh::TriMesh{}});

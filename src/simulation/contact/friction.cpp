@@ -1,6 +1,9 @@
 #include "simulation/contact/friction.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "simulation/contact/surface.hpp"
@@ -55,7 +58,7 @@ std::array<double, 2> Friction::slip(const FrozenPair& pair, std::span<const dou
     Vec3 moved;
     for (int i = 0; i < pair.node_count; ++i)
         moved += pair.weights[i] * (node_at(x, pair.nodes[i]) - node_at(start_, pair.nodes[i]));
-    return {dot(pair.tangents[0], moved), dot(pair.tangents[1], moved)};
+    return {pair.carried_m[0] + dot(pair.tangents[0], moved), pair.carried_m[1] + dot(pair.tangents[1], moved)};
 }
 
 double Friction::energy(std::span<const double> x) const {
@@ -84,20 +87,81 @@ void Friction::add_gradient(std::span<const double> x, std::span<double> gradien
     }
 }
 
+Eigen::Matrix2d Friction::stiffness(std::size_t k, std::span<const double> x) const {
+    const auto u = slip(pairs_[k], x);
+    const double y = std::hypot(u[0], u[1]);
+    Eigen::Matrix2d inner = slope_over_length(y, slip_m_) * Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d along(u[0], u[1]);
+    if (y > 1e-9 * slip_m_) inner += curvature_term(y, slip_m_) * along * along.transpose();
+    return pairs_[k].limit_N * inner;
+}
+
 void Friction::visit_hessian(std::span<const double> x, const BlockVisitor& visit) const {
-    for (const FrozenPair& pair : pairs_) {
-        const auto u = slip(pair, x);
-        const double y = std::hypot(u[0], u[1]);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const FrozenPair& pair = pairs_[k];
         Eigen::Matrix<double, 3, 2> T;
-        for (int k = 0; k < 2; ++k) T.col(k) << pair.tangents[k].x, pair.tangents[k].y, pair.tangents[k].z;
-        Eigen::Matrix2d inner = slope_over_length(y, slip_m_) * Eigen::Matrix2d::Identity();
-        const Eigen::Vector2d along(u[0], u[1]);
-        if (y > 1e-9 * slip_m_) inner += curvature_term(y, slip_m_) * along * along.transpose();
-        const linalg::Matrix3 block = pair.limit_N * T * inner * T.transpose();
+        for (int t = 0; t < 2; ++t) T.col(t) << pair.tangents[t].x, pair.tangents[t].y, pair.tangents[t].z;
+        const linalg::Matrix3 block = T * stiffness(k, x) * T.transpose();
         for (int i = 0; i < pair.node_count; ++i)
             for (int j = 0; j < pair.node_count; ++j)
                 if (pair.weights[i] * pair.weights[j] != 0)
                     visit(pair.nodes[i], pair.nodes[j], pair.weights[i] * pair.weights[j] * block);
+    }
+}
+
+namespace {
+
+auto features_of(const FrozenPair& pair) {
+    return std::tie(pair.nodes, pair.node_count, pair.first_count);
+}
+
+/// The least rotation that turns one normal into the other takes the tangents along.
+Eigen::Matrix2d transport(const FrozenPair& from, const FrozenPair& to) {
+    const Vec3 n = cross(from.tangents[0], from.tangents[1]), m = cross(to.tangents[0], to.tangents[1]);
+    const double share = 1 + dot(n, m);
+    Eigen::Matrix2d change;
+    for (int b = 0; b < 2; ++b) {
+        const Vec3& t = from.tangents[b];
+        const Vec3 turned = share > 1e-6 ? t - dot(t, m) / share * (n + m) : t;
+        for (int a = 0; a < 2; ++a) change(a, b) = dot(to.tangents[a], turned);
+    }
+    return change;
+}
+
+}  // namespace
+
+std::vector<Carry> find_carries(std::span<const FrozenPair> before, std::span<const FrozenPair> now) {
+    std::vector<std::size_t> order(before.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto features = [&](std::size_t k) { return features_of(before[k]); };
+    std::ranges::sort(order, {}, features);
+    std::vector<Carry> carries;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+        const auto found = std::ranges::lower_bound(order, features_of(now[k]), {}, features);
+        if (found != order.end() && features(*found) == features_of(now[k]))
+            carries.push_back({*found, k, transport(before[*found], now[k])});
+    }
+    return carries;
+}
+
+Eigen::Vector2d kept_slip(const std::array<double, 2>& slip, double slip_m) {
+    const Eigen::Vector2d u(slip[0], slip[1]);
+    const double size = u.norm();
+    return size <= slip_m ? u : Eigen::Vector2d(slip_m / size * u);
+}
+
+Eigen::Matrix2d kept_slip_gradient(const std::array<double, 2>& slip, double slip_m) {
+    const Eigen::Vector2d u(slip[0], slip[1]);
+    const double size = u.norm();
+    if (size <= slip_m) return Eigen::Matrix2d::Identity();
+    return slip_m / size * (Eigen::Matrix2d::Identity() - u * u.transpose() / (size * size));
+}
+
+void carry_over(const Friction& before, std::span<const double> x, std::span<FrozenPair> pairs) {
+    for (const Carry& carry : find_carries(before.pairs(), pairs)) {
+        const Eigen::Vector2d kept = kept_slip(before.slip(before.pairs()[carry.from], x), before.slip_m());
+        const Eigen::Vector2d carried = carry.change * kept;
+        pairs[carry.to].carried_m = {carried[0], carried[1]};
     }
 }
 

@@ -1,10 +1,13 @@
 // Friction that is lagged: normal forces and tangent planes are frozen at one state, so that friction has a potential
 // (Li, Ferguson, Schneider et al. 2020, section 5).
 //
-//     E = Σ μ λ f(|u|)      u = Tᵀ Σ wᵢ (xᵢ − xᵢ⁰)      f(y) = y²/ε − y³/3ε² + ε/3 below ε, y beyond
+//     E = Σ μ λ f(|u|)      u = c + Tᵀ Σ wᵢ (xᵢ − xᵢ⁰)      f(y) = y²/ε − y³/3ε² + ε/3 below ε, y beyond
 //
 // λ normal force, T two unit tangents, w weights of the nearest points: frozen. x⁰ is the start of the step and ε the
-// slip per step below which friction grows from nothing to μλ.
+// slip at which friction has grown from nothing to μλ. Friction remembers: c is the slip with which the step before
+// has ended, no more than ε of it (carry_over). What sticks under a constant load stays where it is, step after step,
+// and what slides drags its anchor along: an elastic-plastic law with the return mapping of Simo and Hughes 1998,
+// chapter 1, between steps. In Li et al. c is zero, and what sticks creeps in every step anew.
 #pragma once
 
 #include <array>
@@ -25,7 +28,8 @@ struct FrozenPair {
     std::array<int, 4> nodes{};
     std::array<double, 4> weights{};
     std::array<Vec3, 2> tangents;
-    double limit_N = 0;  ///< μ λ
+    std::array<double, 2> carried_m{};  ///< c, along the tangents
+    double limit_N = 0;                 ///< μ λ
     int node_count = 4;
     int first_count = 1;  ///< nodes of the first feature
     int obstacle = -1;
@@ -53,14 +57,31 @@ public:
     [[nodiscard]] double slip_m() const { return slip_m_; }
     /// Force on the first feature of pair `k`, N.
     [[nodiscard]] Vec3 force(std::size_t k, std::span<const double> x) const;
+    /// u along the two tangents, m.
+    [[nodiscard]] std::array<double, 2> slip(const FrozenPair& pair, std::span<const double> x) const;
+    /// How that force falls with u, N/m: the second derivative of the energy along the two tangents.
+    [[nodiscard]] Eigen::Matrix2d stiffness(std::size_t k, std::span<const double> x) const;
 
 private:
-    /// Slip along the two tangents, m.
-    [[nodiscard]] std::array<double, 2> slip(const FrozenPair& pair, std::span<const double> x) const;
-
     std::vector<FrozenPair> pairs_;
     std::vector<double> start_;
     double slip_m_;
 };
+
+/// What one pair of a step takes over from one of the step before: c = change · (the slip there, at most ε).
+struct Carry {
+    std::size_t from = 0, to = 0;  ///< of the pairs before and of those now
+    Eigen::Matrix2d change;        ///< from tangents to tangents, along with the turn of the normal
+};
+/// Of the pairs of the same features, in the order of `now`.
+[[nodiscard]] std::vector<Carry> find_carries(std::span<const FrozenPair> before, std::span<const FrozenPair> now);
+
+/// The slip that is carried on: no more than the slip that counts as sticking.
+[[nodiscard]] Eigen::Vector2d kept_slip(const std::array<double, 2>& slip, double slip_m);
+/// Its derivative by the slip.
+[[nodiscard]] Eigen::Matrix2d kept_slip_gradient(const std::array<double, 2>& slip, double slip_m);
+
+/// Sets `carried_m` of the pairs of a step that leads from x (3 nodes), where the step with `before` has ended.
+void carry_over(const Friction& before, std::span<const double> x, std::span<FrozenPair> pairs);
 
 }  // namespace pliant::sim::contact

@@ -126,6 +126,7 @@ Result<Elements> Elements::create(const Description& description) {
     elements.group_by_law(mesh);
     if (Status status = elements.integrate(mesh); !status) return tl::unexpected(status.error());
     elements.weigh(description);
+    elements.add_lumps(description);
     elements.fill_empty_lanes();
     elements.sums_ = NodeSums({elements.nodes_.data(), elements.nodes_.size()}, elements.width(), mesh.points.size());
     return elements;
@@ -202,6 +203,19 @@ void Elements::weigh(const Description& description) {
             tet_mass_[t] += mass;
             for (std::size_t a = 0; a < width(); ++a) node_mass_[mesh.tet(t)[a]] += mass * shapes_[q][a];
         }
+    }
+}
+
+/// A quarter of an object's mass at each of its nodes, and the masses at points.
+void Elements::add_lumps(const Description& description) {
+    for (const FreeObject& object : description.objects) {
+        for (const int node : object.nodes) lumps_.push_back({{node}, {1.0}, object.mass_kg / 4});
+    }
+    for (const PointMass& mass : description.masses)
+        lumps_.push_back({mass.point.nodes, mass.point.weights, mass.mass_kg});
+    for (const Lump& lump : lumps_) {
+        for (std::size_t a = 0; a < lump.nodes.size(); ++a)
+            node_mass_[static_cast<std::size_t>(lump.nodes[a])] += lump.weights[a] * lump.mass_kg;
     }
 }
 
@@ -385,10 +399,29 @@ void Elements::add_mass(const std::vector<int>& free_index, const linalg::Symmet
             }
         }
     }
+    for (const Lump& lump : lumps_) {
+        for (std::size_t b = 0; b < lump.nodes.size(); ++b) {
+            const int j = free_index[lump.nodes[b]];
+            for (std::size_t a = 0; j >= 0 && a < lump.nodes.size(); ++a) {
+                const int i = free_index[lump.nodes[a]];
+                const double entry = factor * lump.mass_kg * lump.weights[a] * lump.weights[b];
+                if (i >= j) pattern.add_block(values, i, j, [&](int r, int c) { return r == c ? entry : 0.0; });
+            }
+        }
+    }
 }
 
 void Elements::apply_mass(std::span<const double> u, std::span<double> result) const {
     apply_mass(tet_mass_, u, result);
+    for (const Lump& lump : lumps_) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            double mean = 0;
+            for (std::size_t a = 0; a < lump.nodes.size(); ++a)
+                mean += lump.weights[a] * u[3 * static_cast<std::size_t>(lump.nodes[a]) + i];
+            for (std::size_t a = 0; a < lump.nodes.size(); ++a)
+                result[3 * static_cast<std::size_t>(lump.nodes[a]) + i] += lump.mass_kg * lump.weights[a] * mean;
+        }
+    }
 }
 
 void Elements::apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const {
@@ -431,6 +464,11 @@ linalg::Lists Elements::cliques(const std::vector<int>& free_index) const {
                 cliques.item[t * width() + a] = free_index[node(t, static_cast<int>(a))];
         }
     });
+    for (const Lump& lump : lumps_) {
+        std::vector<int> clique;
+        for (const int node : lump.nodes) clique.push_back(free_index[static_cast<std::size_t>(node)]);
+        cliques.push_back(clique);
+    }
     return cliques;
 }
 

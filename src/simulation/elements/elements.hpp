@@ -64,12 +64,12 @@ public:
     void add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
                      std::span<double> result) const;
 
-    /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets: factor * M added to a pattern of
-    /// block 3, and result (3n) += M u.
+    /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets, with the masses of objects and
+    /// at points: factor * M added to a pattern of block 3, and result (3n) += M u.
     void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
                   double factor) const;
     void apply_mass(std::span<const double> u, std::span<double> result) const;
-    /// The same matrix with other masses of the tets (m).
+    /// That of the tets alone, with other masses (m).
     void apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
     /// (m) u . M v of each tet for each kg of its mass.
     [[nodiscard]] std::vector<double> mass_products(std::span<const double> u, std::span<const double> v) const;
@@ -102,7 +102,7 @@ public:
         return shapes_[static_cast<std::size_t>(point)][static_cast<std::size_t>(a)];
     }
 
-    /// Node lists of all tets, as free indices: the cliques of the stiffness pattern.
+    /// Node lists of all tets and of masses at points, as free indices: the cliques of the stiffness pattern.
     [[nodiscard]] linalg::Lists cliques(const std::vector<int>& free_index) const;
 
 private:
@@ -130,6 +130,7 @@ private:
     void fill_empty_lanes();
     Status integrate(const mesh::TetMesh& mesh);
     void weigh(const Description& description);
+    void add_lumps(const Description& description);
     [[nodiscard]] const material::Law& law_of_batch(std::size_t batch) const {
         return laws_[static_cast<std::size_t>(batch_law_[batch])];
     }
@@ -154,6 +155,13 @@ private:
     std::vector<std::vector<double>> shapes_;  ///< (points, nodes_per_tet) N_a
     std::vector<double> node_mass_;
     std::vector<double> tet_mass_;  ///< (m) kg
+    /// A mass that moves with the weighted mean of nodes: mass w wT.
+    struct Lump {
+        std::vector<int> nodes;
+        std::vector<double> weights;
+        double mass_kg = 0;
+    };
+    std::vector<Lump> lumps_;
     std::vector<material::Law> laws_;
     NodeSums sums_;
     mutable ArrayPool<double> scratch_;  ///< sums of pieces and runs

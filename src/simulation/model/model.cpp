@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/core/disjoint_sets.hpp"
 #include "geometry/mesh/order_in_space.hpp"
@@ -10,6 +11,9 @@
 
 namespace pliant::sim {
 namespace {
+
+/// An object beside the stiffest material: what bends that by a hundredth stretches it by less than a ten-thousandth.
+constexpr double object_stiffness = 100;
 
 Status check_attachment(const Attachment& point, int nodes, const std::string& owner) {
     if (point.nodes.size() != point.weights.size())
@@ -172,12 +176,46 @@ Status check_loads(const Description& d, int nodes) {
     return is_finite(d.gravity_m_s2) ? Status{} : input_error("gravity is not finite");
 }
 
+Status check_object(const FreeObject& object, int nodes) {
+    const std::string owner = "object \"" + object.name + "\"";
+    if (!(object.mass_kg > 0) || !std::isfinite(object.mass_kg))
+        return input_error("{}: its mass must be above zero", owner);
+    if (!(object.friction >= 0) || !std::isfinite(object.friction))
+        return input_error("{}: the coefficient of friction must be zero or more", owner);
+    if (!is_finite(object.velocity_m_s) || !is_finite(object.angular_velocity_rad_s))
+        return input_error("{}: its velocity is not finite", owner);
+    for (const int node : object.nodes) {
+        if (node < 0 || node >= nodes) return input_error("{}: node {} does not exist", owner, node);
+    }
+    if (object.surface.triangles.empty()) return input_error("{}: it has no triangles", owner);
+    for (const Vec3& p : object.surface.points) {
+        if (!is_finite(p)) return input_error("{}: a coordinate is not a number", owner);
+    }
+    return {};
+}
+
+Status check_objects(const Description& d, int nodes) {
+    for (const FreeObject& object : d.objects) {
+        if (Status status = check_object(object, nodes); !status) return status;
+    }
+    if (!d.objects.empty() && !d.contact) return input_error("objects need contact");
+    for (const PointMass& mass : d.masses) {
+        const std::string owner = "mass \"" + mass.name + "\"";
+        if (Status status = check_attachment(mass.point, nodes, owner); !status) return status;
+        if (mass.point.nodes.empty()) return input_error("{}: must be carried by nodes", owner);
+        if (!(mass.mass_kg > 0) || !std::isfinite(mass.mass_kg)) return input_error("{}: must be above zero", owner);
+    }
+    return {};
+}
+
 /// Numbers the free nodes, neighbours in space one after the other; nodes that no tet uses are held too, they have no
 /// stiffness.
 void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<int>& free_index, int& count) {
     const int nodes = static_cast<int>(d.mesh.points.size());
     std::vector<bool> used(nodes, false);
     for (const int node : d.mesh.nodes) used[node] = true;
+    for (const FreeObject& object : d.objects)
+        for (const int node : object.nodes) used[node] = true;
     std::vector<int> free;
     for (int node = 0; node < nodes; ++node) {
         if (used[node] && !held.is_fixed(node)) free.push_back(node);
@@ -188,8 +226,28 @@ void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<
     for (int k = 0; k < count; ++k) free_index[free[k]] = k;
 }
 
-/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium.
-Status check_held(const Description& d) {
+/// Those of each piece in which nothing is held.
+std::vector<std::vector<int>> nodes_of_loose(const mesh::TetMesh& mesh, DisjointSets& pieces,
+                                             const std::vector<bool>& held) {
+    std::map<std::size_t, std::vector<int>> loose;
+    std::vector<bool> seen(mesh.points.size(), false);
+    for (const int node : mesh.nodes) {
+        const auto n = static_cast<std::size_t>(node);
+        if (seen[n] || held[pieces.find(node)]) continue;
+        seen[n] = true;
+        loose[static_cast<std::size_t>(pieces.find(node))].push_back(node);
+    }
+    std::vector<std::vector<int>> lists;
+    for (auto& [piece, nodes] : loose) {
+        std::ranges::sort(nodes);
+        lists.push_back(std::move(nodes));
+    }
+    return lists;
+}
+
+/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium by itself. Where pieces may be
+/// free, `free_pieces` gets the nodes of each.
+Status check_held(const Description& d, std::vector<std::vector<int>>& free_pieces) {
     const auto& mesh = d.mesh;
     DisjointSets pieces(mesh.points.size());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -202,6 +260,10 @@ Status check_held(const Description& d) {
     std::size_t loose = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) loose += held[pieces.find(mesh.tet(t)[0])] ? 0 : 1;
     if (loose == 0) return {};
+    if (d.may_be_free) {
+        free_pieces = nodes_of_loose(mesh, pieces, held);
+        return {};
+    }
     if (loose == mesh.tet_count()) return input_error("nothing is fixed; add a [[fixed]] that holds the robot");
     return input_error("a piece of {} of the {} tetrahedra is connected to nothing that is fixed", loose,
                        mesh.tet_count());
@@ -237,13 +299,16 @@ Result<contact::Contact> surfaces_without_contact(const Description& d) {
                                     numbers_of(d.mesh.points));
 }
 
-Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, bool self) {
-    const std::vector<double> rest = numbers_of(d.mesh.points);
+Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, const ObjectPoints& points, bool self) {
+    const std::vector<double> nodes = numbers_of(d.mesh.points);
+    std::vector<double> rest = nodes;
+    points.append(nodes, rest);
     std::vector<contact::Obstacle> obstacles;
     for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
     contact::Settings settings = d.contact->settings;
     settings.self = self;
-    auto contact = contact::Contact::create(d.contact->surface, std::move(obstacles), settings, rest);
+    auto contact = contact::Contact::create(points.with_objects(d.contact->surface, d.objects), std::move(obstacles),
+                                            settings, rest, points.parts());
     if (!contact) return tl::unexpected(contact.error());
     return std::make_unique<contact::Contact>(std::move(*contact));
 }
@@ -269,29 +334,43 @@ Result<Model> Model::create(Description description) {
     for (std::size_t s = 0; status && s < description.springs.size(); ++s)
         status = check_spring(description.springs[s], nodes);
     if (!status) return tl::unexpected(status.error());
+    if (status = check_objects(description, nodes); !status) return tl::unexpected(status.error());
     Result<HeldNodes> held = HeldNodes::create(description.supports, nodes);
     if (!held) return tl::unexpected(held.error());
-    if (status = check_held(description); !status) return tl::unexpected(status.error());
+    if (status = check_held(description, model.free_pieces_); !status) return tl::unexpected(status.error());
     number_free_nodes(description, *held, model.free_index_, model.free_count_);
     model.held_ = std::make_unique<HeldNodes>(std::move(*held));
     model.description_ = std::move(description);
     Result<Elements> elements = Elements::create(model.description_);
     if (!elements) return tl::unexpected(elements.error());
     model.elements_ = std::make_unique<Elements>(std::move(*elements));
+    model.make_objects();
     if (status = model.make_contact(); !status) return tl::unexpected(status.error());
     return model;
+}
+
+void Model::make_objects() {
+    const Description& d = description_;
+    double stiffest = 0;
+    for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
+    const std::vector<double> rest = numbers_of(d.mesh.points);
+    for (const FreeObject& object : d.objects) {
+        const double volume = std::fabs(mesh::signed_volume(object.surface));
+        objects_.emplace_back(object.nodes, object_stiffness * stiffest * volume, rest);
+    }
+    object_points_ = ObjectPoints(d.objects, objects_, node_count());
 }
 
 Status Model::make_contact() {
     const auto& rules = description_.contact;
     const bool waits = rules && rules->settings.self && rules->self_when_met;
-    if (rules && (!waits || !rules->obstacles.empty())) {
-        auto contact = create_contact(description_, rules->settings.self && !waits);
+    if (rules && (!waits || !rules->obstacles.empty() || !objects_.empty())) {
+        auto contact = create_contact(description_, object_points_, rules->settings.self && !waits);
         if (!contact) return tl::unexpected(contact.error());
         contact_ = std::move(*contact);
     }
     if (waits) {
-        auto contact = create_contact(description_, true);
+        auto contact = create_contact(description_, object_points_, true);
         if (!contact) return tl::unexpected(contact.error());
         // What crosses at rest can never be told from what meets.
         if (!(*contact)->crossing_at_rest()) met_ = std::move(*contact);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulation/model/held_nodes.hpp"
+#include "simulation/model/object_points.hpp"
 #include "simulation/parts/description.hpp"
 
 namespace pliant::sim {
@@ -13,7 +14,8 @@ class Elements;
 
 class Model {
 public:
-    /// Checks indices, weights, volumes, supports (HeldNodes), and that something holds the robot.
+    /// Checks indices, weights, volumes, supports (HeldNodes), objects, and that something holds the robot, unless it
+    /// may be free.
     [[nodiscard]] static Result<Model> create(Description description);
     Model(Model&&) noexcept;
     Model& operator=(Model&&) noexcept;
@@ -32,16 +34,25 @@ public:
     /// (n), index among the free nodes, or -1 for nodes that supports hold in all directions. Rollers count as free.
     [[nodiscard]] const std::vector<int>& free_index() const { return free_index_; }
     [[nodiscard]] const HeldNodes& held() const { return *held_; }
+    /// The objects, as forces know them, and the points of their surfaces, as contact does.
+    [[nodiscard]] const std::vector<AffineBody>& objects() const { return objects_; }
+    [[nodiscard]] const ObjectPoints& object_points() const { return object_points_; }
+    /// The nodes of each piece of tets that no support holds, ascending.
+    [[nodiscard]] const std::vector<std::vector<int>>& free_pieces() const { return free_pieces_; }
 
 private:
     Model();
     [[nodiscard]] Status make_contact();
+    void make_objects();
     Description description_;
     std::unique_ptr<Elements> elements_;
     std::unique_ptr<contact::Contact> contact_;
     std::unique_ptr<contact::Contact> met_;       ///< where contact of the robot with itself waits until it is needed
     std::unique_ptr<contact::Contact> surfaces_;  ///< where there is no contact
     std::unique_ptr<HeldNodes> held_;
+    std::vector<AffineBody> objects_;
+    ObjectPoints object_points_;
+    std::vector<std::vector<int>> free_pieces_;
     std::vector<int> free_index_;
     int free_count_ = 0;
 };

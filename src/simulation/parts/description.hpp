@@ -11,6 +11,7 @@
 #include "base/core/error.hpp"
 #include "base/core/vec3.hpp"
 #include "geometry/mesh/tet_mesh.hpp"
+#include "geometry/mesh/tri_mesh.hpp"
 #include "robot/description/law.hpp"
 #include "simulation/contact/contact.hpp"
 #include "simulation/parts/robot_names.hpp"
@@ -136,9 +137,28 @@ struct Obstacle {
     Curve share = ramp(0, 1);
 };
 
+/// A rigid thing with mass that nothing holds. Four nodes of the mesh, which belong to no tet, carry it: its motion is
+/// affine, and a stiff energy keeps it rigid (affine_body.hpp). Each of them has a quarter of its mass, and together
+/// they have its inertia (mesh::equal_mass_points).
+struct FreeObject {
+    std::string name;
+    mesh::TriMesh surface;  ///< metres, where it starts
+    std::array<int, 4> nodes{};
+    double mass_kg = 0;
+    Vec3 velocity_m_s{}, angular_velocity_rad_s{};  ///< at the start of a motion in time
+    double friction = 0;  ///< coefficient against all that it touches; where that has one too, the larger counts
+};
+
+/// A mass at a point of the robot: without extent, so that it turns without inertia.
+struct PointMass {
+    std::string name;
+    Attachment point;
+    double mass_kg = 0;
+};
+
 /// What can touch what.
 struct ContactRules {
-    contact::Surface surface;    ///< of the robot's bodies
+    contact::Surface surface;    ///< of the robot's bodies, without objects
     contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
     std::vector<Obstacle> obstacles;
     /// With settings.self: the robot touches itself only from the first step on in which its surfaces would pass
@@ -164,6 +184,10 @@ struct Description {
     std::vector<Spring> springs{};
     std::vector<Growth> growths;
     std::vector<RigidPlate> plates;
+    std::vector<FreeObject> objects{};  ///< they need contact
+    std::vector<PointMass> masses{};
+    /// Pieces that no support holds are no mistake: they move in time, or touch what holds them.
+    bool may_be_free = false;
     std::optional<ContactRules> contact = std::nullopt;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;

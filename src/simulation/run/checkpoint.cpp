@@ -20,7 +20,7 @@ using cbor::Reader;
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "pliant checkpoint";
-constexpr int version = 1;
+constexpr int version = 2;  // 2: friction with memory, objects
 constexpr const char* steps_name = "steps";
 constexpr const char* state_name = "state";
 

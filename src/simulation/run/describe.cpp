@@ -1,6 +1,8 @@
 #include "simulation/run/describe.hpp"
 
+#include <Eigen/Geometry>
 #include <span>
+#include <string>
 
 #include "base/linalg/vectors.hpp"
 
@@ -40,11 +42,26 @@ void describe_contact(const Model& model, const Equilibrium& system, const State
     const auto& obstacles = model.description().contact->obstacles;
     for (std::size_t k = 0; k < obstacles.size(); ++k)
         step.contacts.push_back({obstacles[k].body.name, forces.on_robot_N[k]});
+    for (std::size_t k = 0; k < model.objects().size(); ++k) {
+        step.objects.push_back(object_state(model, k, linalg::view(state.x)));
+        step.objects.back().force_N = forces.on_rigid_N[k];
+    }
     step.self_contact_N = forces.self_N;
     step.smallest_distance_m = forces.smallest_distance_m;
 }
 
 }  // namespace
+
+ObjectState object_state(const Model& model, std::size_t k, std::span<const double> x) {
+    const AffineBody& body = model.objects()[k];
+    const linalg::Vector3 centre = body.centre(x);
+    Eigen::Quaterniond turn(linalg::nearest_rotation(body.deformation(x)));
+    if (turn.w() < 0) turn.coeffs() *= -1;
+    return {model.description().objects[k].name,
+            {centre[0], centre[1], centre[2]},
+            {turn.w(), turn.x(), turn.y(), turn.z()},
+            {}};
+}
 
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
               const Evaluation& evaluation, Step& step) {

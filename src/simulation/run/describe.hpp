@@ -1,6 +1,8 @@
 // A state of equilibrium as a step of a trajectory: what simulate() and Live tell of it is the same.
 #pragma once
 
+#include <span>
+
 #include "simulation/model/model.hpp"
 #include "simulation/run/trajectory.hpp"
 #include "simulation/solver/equilibrium.hpp"
@@ -11,5 +13,8 @@ namespace pliant::sim {
 /// `state` under `controls`. What belongs to the way there (index, time, iterations, wall time) is left as it is.
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
               const Evaluation& evaluation, Step& step);
+
+/// Where object `k` is when the nodes are at x (3n), without forces.
+[[nodiscard]] ObjectState object_state(const Model& model, std::size_t k, std::span<const double> x);
 
 }  // namespace pliant::sim

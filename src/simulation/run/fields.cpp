@@ -1,6 +1,7 @@
 #include "simulation/run/fields.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "base/core/parallel.hpp"
@@ -48,6 +49,9 @@ std::vector<double> contact_nodes(const Model& model, std::span<const Vec3> posi
     for (std::size_t n = 0; n < positions.size(); ++n) {
         for (std::size_t c = 0; c < 3; ++c) x[3 * n + c] = positions[n][c];
     }
+    std::vector<double> points;
+    model.object_points().append({&positions.data()->x, 3 * positions.size()}, points);
+    std::ranges::copy(points, x.begin() + 3 * static_cast<std::ptrdiff_t>(positions.size()));
     const auto& obstacles = model.description().contact->obstacles;
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
         const Vec3 move = obstacles[k].share.at(time) * obstacles[k].move_m;
@@ -63,7 +67,9 @@ std::vector<double> contact_pressure(const Model& model, const Step& step) {
     const contact::Contact* contact = model.contact(step.met);
     if (contact == nullptr) return std::vector<double>(step.positions.size(), 0.0);
     const std::vector<double> x = contact_nodes(model, step.positions, step.time);
-    return contact->forces(contact->find(x), x, nullptr).pressure_Pa;
+    std::vector<double> pressure = contact->forces(contact->find(x), x, nullptr).pressure_Pa;
+    pressure.resize(step.positions.size());
+    return pressure;
 }
 
 }  // namespace pliant::sim

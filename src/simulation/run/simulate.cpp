@@ -57,6 +57,8 @@ private:
             now_.checks = checks_.state();
             now_.so_far.solver = name(stepper_.solvers().first());
             now_.so_far.warnings = warnings_at_rest(stepper_.model());
+            if (std::string held = held_by_nothing(stepper_.model()); !program_.dynamics && !held.empty())
+                now_.so_far.warnings.push_back(std::move(held));
             Step rest;
             describe(rest);
             add(std::move(rest));

@@ -63,6 +63,9 @@ public:
         each("supports", 3, [&](auto& n, auto& v) { step.supports.push_back({n, {v[0], v[1], v[2]}}); });
         each("contacts", 3, [&](auto& n, auto& v) { step.contacts.push_back({n, {v[0], v[1], v[2]}}); });
         each("markers", 3, [&](auto& n, auto& v) { step.markers.push_back({n, {v[0], v[1], v[2]}}); });
+        each("objects", 10, [&](auto& n, auto& v) {
+            step.objects.push_back({n, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, {v[7], v[8], v[9]}});
+        });
         step.self_contact_N = in_.number("self_contact_N");
         step.smallest_distance_m = in_.number("smallest_distance_m");
         step.met = in_.boolean("met");
@@ -148,6 +151,11 @@ std::string step_bytes(const Step& step, std::span<const IterationRecord> iterat
     json["supports"] = named(step.supports, [](const SupportState& s) { return json_of(s.force_N); });
     json["contacts"] = named(step.contacts, [](const ContactState& c) { return json_of(c.force_N); });
     json["markers"] = named(step.markers, [](const MarkerState& m) { return json_of(m.position_m); });
+    json["objects"] = named(step.objects, [](const ObjectState& o) -> Json {
+        const auto& q = o.rotation;
+        return {o.position_m.x, o.position_m.y, o.position_m.z, q[0],        q[1],
+                q[2],           q[3],           o.force_N.x,    o.force_N.y, o.force_N.z};
+    });
     for (const IterationRecord& record : iterations) json["history"].push_back(json_of(record));
     std::string bytes;
     Json::to_cbor(json, bytes);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesh/mass_properties.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
@@ -141,6 +142,67 @@ inline RandomProgram random_program(unsigned seed) {
     return made;
 }
 
+/// A rigid box from `low`, of the density of water.
+inline void add_box(Description& d, const std::string& name, const Vec3& low, const Vec3& size) {
+    FreeObject box;
+    box.name = name;
+    for (int k = 0; k < 8; ++k)
+        box.surface.points.push_back(low + Vec3{k & 1 ? size.x : 0, k & 2 ? size.y : 0, k & 4 ? size.z : 0});
+    box.surface.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    const mesh::MassProperties body = mesh::mass_properties(box.surface);
+    box.mass_kg = 1000 * body.volume;
+    const auto points = mesh::equal_mass_points(body);
+    for (std::size_t a = 0; a < 4; ++a) {
+        box.nodes[a] = static_cast<int>(d.mesh.points.size());
+        d.mesh.points.push_back(points[a]);
+    }
+    d.objects.push_back(std::move(box));
+}
+
+/// A soft block that nothing holds, or a clamp, over a ground, with boxes above and beside it, all thrown about in time
+/// or, some of them, at equilibrium.
+inline RandomProgram random_free_program(unsigned seed) {
+    Dice dice(seed);
+    RandomProgram made;
+    Description& d = made.robot;
+    d.mesh = reference::kuhn_box({2 * side, side, side}, 4, 2, 2, [](Vec3) { return 0; });
+    if (dice.chance(0.2)) d.mesh = mesh::to_quadratic(d.mesh);
+    d.materials = {{"A", random_law(dice), 1000}, {"B", random_law(dice), 1000}};
+    d.material_of_region = {0};
+    if (dice.chance(0.4))
+        d.supports = {{"clamp",
+                       reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }),
+                       {0, 0, dice.between(-0.5, 1) * side}}};
+    d.may_be_free = true;
+    d.gravity_m_s2 = {dice.between(-5, 5), 0, -dice.between(0, 20)};
+    ContactRules rules;
+    rules.surface = contact::robot_surface(d.mesh);
+    rules.settings = {0.03 * side, 1e4, dice.between(0, 0.5), 1e-5, dice.chance(0.7)};
+    const double gap = dice.chance(0.5) ? 0 : dice.between(0.01, 0.5) * side;
+    rules.obstacles.push_back({{"ground", contact::HalfSpace{{0, 0, -gap}, {0, 0, 1}}, dice.between(0, 1)},
+                               {0, 0, dice.between(0, 0.5) * side}});
+    d.contact = std::move(rules);
+    const auto speed = [&](double most) { return dice.between(-most, most); };
+    const int boxes = dice.up_to(3);
+    for (int k = 0; k < boxes; ++k) {
+        const Vec3 size{dice.between(0.3, 1) * side, dice.between(0.3, 1) * side, dice.between(0.3, 1) * side};
+        add_box(d, fmt::format("box {}", k), {(0.1 + k) * side, dice.between(0, 0.2) * side, (1.05 + 0.2 * k) * side},
+                size);
+        FreeObject& box = d.objects.back();
+        box.friction = dice.chance(0.5) ? dice.between(0, 1) : 0;
+        box.velocity_m_s = {speed(1), speed(1), speed(1)};
+        box.angular_velocity_rad_s = {speed(30), speed(30), speed(30)};
+    }
+    made.program.steps = 3 + dice.up_to(9);
+    made.program.iteration_limit = 60;
+    if (dice.chance(0.8)) {
+        made.program.dynamics = Dynamics{{dice.between(0, 2), 0}};
+        made.program.duration = made.program.steps * std::pow(10, dice.between(-3.3, -1.7));
+    }
+    return made;
+}
+
 /// One line that says all that was thrown.
 inline std::string described(const RandomProgram& p) {
     const Description& d = p.robot;
@@ -156,6 +218,8 @@ inline std::string described(const RandomProgram& p) {
     if (d.supports.size() > 1)
         text += fmt::format("; a grip moved by ({:.3g}, {:.3g}) m", d.supports[1].move_m.x, d.supports[1].move_m.y);
     if (d.contact) text += fmt::format("; contact with {} obstacles", d.contact->obstacles.size());
+    if (!d.objects.empty()) text += fmt::format("; {} objects", d.objects.size());
+    if (d.supports.empty()) text += "; held by nothing";
     if (p.program.dynamics) text += "; in motion";
     return text + fmt::format("; {} steps, solver {}", p.program.steps, static_cast<int>(p.program.solver));
 }
@@ -180,7 +244,10 @@ inline std::vector<Simplification> simplifications(const RandomProgram& p) {
     }
     all.emplace_back(
         [](RandomProgram& q) { return q.robot.chambers.empty() ? false : (q.robot.chambers.clear(), true); });
-    all.emplace_back([=](RandomProgram& q) { return taken_away(q.robot.contact); });
+    all.emplace_back([](RandomProgram& q) {  // the last one: others name the nodes after those of one before
+        return q.robot.objects.empty() ? false : (q.robot.objects.pop_back(), true);
+    });
+    all.emplace_back([=](RandomProgram& q) { return q.robot.objects.empty() && taken_away(q.robot.contact); });
     all.emplace_back([](RandomProgram& q) {
         return q.robot.contact && !q.robot.contact->obstacles.empty() ? (q.robot.contact->obstacles.clear(), true)
                                                                       : false;

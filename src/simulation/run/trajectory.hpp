@@ -1,6 +1,7 @@
 // What a simulation gives back, step by step. Everything in SI; positions of all nodes of the mesh.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -47,6 +48,13 @@ struct ContactState {
     Vec3 force_N;      ///< pressure and friction of the obstacle on the robot
 };
 
+struct ObjectState {
+    std::string name;
+    Vec3 position_m;                             ///< of its centre of mass
+    std::array<double, 4> rotation{1, 0, 0, 0};  ///< from where it started: unit quaternion w, x, y, z with w >= 0
+    Vec3 force_N;                                ///< pressure and friction of all that touches it
+};
+
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
@@ -72,6 +80,7 @@ struct Step {
     bool met = false;                ///< the robot has met itself, where contact with itself waits for that
     std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
     std::vector<MarkerState> markers;
+    std::vector<ObjectState> objects;
     NodePositions positions;  ///< (n, 3)
 };
 

@@ -1,8 +1,11 @@
 #include "simulation/run/warnings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+
+#include "base/core/counted.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -35,6 +38,18 @@ std::vector<std::string> warnings_at_rest(const Model& model) {
             model.contact(true) != nullptr ? "what crosses there does not touch, and what is next to it may get stuck"
                                            : "self-contact is off"));
     return warnings;
+}
+
+std::string held_by_nothing(const Model& model) {
+    std::vector<std::string> who;
+    if (const std::size_t pieces = model.free_pieces().size(); pieces > 0)
+        who.push_back(counted(pieces, "piece") + " of the robot");
+    for (const FreeObject& object : model.description().objects) who.push_back("object \"" + object.name + "\"");
+    if (who.empty()) return {};
+    return fmt::format(
+        "no support holds {}: where contact and friction leave their places open, they stay near where the "
+        "step before has left them (program.time_step lets them move)",
+        fmt::join(who, ", "));
 }
 
 std::vector<ClosedGap> closed_gaps(const Equilibrium& system, const Eigen::VectorXd& x) {

@@ -1,6 +1,12 @@
 #include "simulation/scene/build_contact.hpp"
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
 #include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/mass_properties.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "robot/description/regions.hpp"
 
@@ -11,26 +17,52 @@ constexpr double distance_share = 1e-3;  // of the robot's size
 constexpr double slip_share = 1e-2;      // of the distance
 constexpr double stiffness_share = 0.1;  // of the softest Young's modulus
 constexpr double chord_share = 0.1;      // of the distance: how far a round obstacle may leave its surface
+constexpr double rolling_share = 0.05;   // the same of an object, which loses energy from edge to edge as it rolls
+
+Result<mesh::TriMesh> placed_file(const SurfaceFile& given) {
+    Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
+    if (!file) return tl::unexpected(file.error());
+    return mesh::placed(std::move(file->mesh), given.placement);
+}
+
+/// A drawn shape or a file, in length units; triangles leave what is round by `chord_m` at most.
+template <class Shape>
+Result<mesh::TriMesh> shape_surface(const Robot& robot, const Shape& shape, double chord_m) {
+    if (const auto* solid = std::get_if<mesh::Solid>(&shape)) return mesh::tessellate(*solid, chord_m / robot.unit_m);
+    return placed_file(std::get<SurfaceFile>(shape));
+}
 
 Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& spec, double distance_m) {
-    Result<mesh::TriMesh> surface;
-    if (const auto* solid = std::get_if<mesh::Solid>(&spec.shape)) {
-        surface = mesh::tessellate(*solid, chord_share * distance_m / robot.unit_m);
-    } else {
-        const auto& given = std::get<SurfaceFile>(spec.shape);
-        Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
-        if (!file) return tl::unexpected(file.error());
-        surface = mesh::placed(std::move(file->mesh), given.placement);
-    }
+    Result<mesh::TriMesh> surface = shape_surface(robot, spec.shape, chord_share * distance_m);
     if (!surface) return surface;
     return mesh::scaled(std::move(*surface), robot.unit_m);
+}
+
+/// Where it starts, metres, seen from outside counter-clockwise.
+Result<mesh::TriMesh> object_surface(const Robot& robot, const ObjectSpec& spec, double distance_m) {
+    Result<mesh::TriMesh> surface = shape_surface(robot, spec.shape, rolling_share * distance_m);
+    if (!surface) return surface;
+    mesh::TriMesh whole = mesh::scaled(mesh::placed(std::move(*surface), spec.placement), robot.unit_m);
+    std::map<std::pair<int, int>, int> turns;  // of each edge, how much oftener it is passed one way than the other
+    for (const auto& t : whole.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int a = t[k], b = t[(k + 1) % 3];
+            turns[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    }
+    if (std::ranges::any_of(turns, [](const auto& turn) { return turn.second != 0; }))
+        return input_error("its surface is not closed, so that it has no inside to carry its mass");
+    if (mesh::signed_volume(whole) < 0) {
+        for (auto& t : whole.triangles) std::swap(t[1], t[2]);
+    }
+    return whole;
 }
 
 }  // namespace
 
 Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
     const ContactSpec spec = robot.contact.value_or(ContactSpec{});
-    if (!spec.self && robot.obstacles.empty()) return std::nullopt;
+    if (!spec.self && robot.obstacles.empty() && robot.objects.empty()) return std::nullopt;
     Box3 box;
     for (const Vec3& p : bodies.points) box.add(p);
     sim::ContactRules rules;
@@ -55,6 +87,33 @@ Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const
         rules.obstacles.push_back({std::move(body), robot.unit_m * obstacle.move, obstacle.share});
     }
     return std::optional(std::move(rules));
+}
+
+Status add_objects(const Robot& robot, sim::Description& description) {
+    for (const ObjectSpec& spec : robot.objects) {
+        const auto problem = [&](const std::string& text) {
+            return input_error_at(robot.file.string(), spec.line, "object \"{}\": {}", spec.name, text);
+        };
+        Result<mesh::TriMesh> surface = object_surface(robot, spec, description.contact->settings.distance_m);
+        if (!surface) return problem(surface.error().message);
+        const mesh::MassProperties body = mesh::mass_properties(*surface);
+        if (!(body.volume > 0)) return problem("it has no volume");
+        sim::FreeObject object;
+        object.name = spec.name;
+        object.mass_kg = spec.mass_kg > 0 ? spec.mass_kg : spec.density_kg_m3 * body.volume;
+        object.velocity_m_s = spec.velocity_m_s;
+        object.angular_velocity_rad_s = spec.angular_velocity_rad_s;
+        object.friction = spec.friction;
+        object.surface = std::move(*surface);
+        std::vector<Vec3>& points = description.mesh.points;
+        const std::array<Vec3, 4> corners = mesh::equal_mass_points(body);
+        for (std::size_t a = 0; a < corners.size(); ++a) {
+            object.nodes[a] = static_cast<int>(points.size());
+            points.push_back(corners[a]);
+        }
+        description.objects.push_back(std::move(object));
+    }
+    return {};
 }
 
 }  // namespace pliant::robot

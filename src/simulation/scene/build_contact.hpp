@@ -14,4 +14,7 @@ namespace pliant::robot {
 /// switched off and there is no obstacle. Errors name the obstacle and its line.
 [[nodiscard]] Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies);
 
+/// Adds the objects, with four nodes each, to a description that has contact. Errors name the object and its line.
+[[nodiscard]] Status add_objects(const Robot& robot, sim::Description& description);
+
 }  // namespace pliant::robot

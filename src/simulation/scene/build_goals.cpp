@@ -80,4 +80,9 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
     return task;
 }
 
+double goal_tolerance(const Program& program) {
+    constexpr double tightest_needed = 1e-5;
+    return std::min(program.tolerance, tightest_needed);
+}
+
 }  // namespace pliant::robot

@@ -12,4 +12,8 @@ namespace pliant::robot {
 /// none, and one waypoint at the end of the program. Errors: no actuator has a range; the robot moves in time.
 [[nodiscard]] Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals = true);
 
+/// Of a program's steps where they are compared with goals: an equilibrium has to be nearer to one than its tolerance
+/// is wide.
+[[nodiscard]] double goal_tolerance(const Program& program);
+
 }  // namespace pliant::robot

@@ -66,10 +66,13 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     add_springs(draft, attacher);
     add_chambers(draft, attacher);
     add_markers(draft, attacher);
+    add_masses(draft, attacher);
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     Result<std::optional<sim::ContactRules>> contact = build_contact(robot, draft.bodies);
     if (!contact) return tl::unexpected(contact.error());
     description.contact = std::move(*contact);
+    description.may_be_free = may_be_free(robot);
+    if (Status status = add_objects(robot, description); !status) return tl::unexpected(status.error());
     description.notes = draft.notes_on_points();
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     Result<sim::Model> model = sim::Model::create(std::move(description));

@@ -140,19 +140,32 @@ void add_load(ModelDraft& draft, const LoadSpec& load) {
         {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
 }
 
+/// What a point rides on; nothing where it lies outside every body, which is then said. `kinds`: plural of `kind`.
+std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher, const Vec3& point,
+                                       std::string_view kind, std::string_view kinds, const std::string& name,
+                                       int line) {
+    const Vec3 place = draft.robot.unit_m * point;
+    Result<sim::Attachment> attachment = attacher.carried_by_tet(place, draft.point_reach);
+    const double distance = attacher.distance_outside(place);
+    if (!attachment) {
+        draft.problem(line, kind, name,
+                      fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
+                                  1e3 * distance, draft.show_bounds()));
+        return std::nullopt;
+    }
+    draft.count_point(kinds, distance);
+    return std::move(*attachment);
+}
+
+void add_mass(ModelDraft& draft, const sim::Attacher& attacher, const MassSpec& spec) {
+    if (auto point = carried(draft, attacher, spec.point, "mass", "masses", spec.name, spec.line))
+        draft.description.masses.push_back({spec.name, *std::move(point), spec.mass_kg});
+}
+
 void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSpec& spec) {
     if (const auto* point = std::get_if<Vec3>(&spec.place)) {
-        const Vec3 place = draft.robot.unit_m * *point;
-        Result<sim::Attachment> attachment = attacher.carried_by_tet(place, draft.point_reach);
-        const double distance = attacher.distance_outside(place);
-        if (!attachment) {
-            draft.problem(spec.line, "marker", spec.name,
-                          fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
-                                      1e3 * distance, draft.show_bounds()));
-            return;
-        }
-        draft.count_point("markers", distance);
-        draft.description.markers.push_back({spec.name, std::move(*attachment)});
+        if (auto place = carried(draft, attacher, *point, "marker", "markers", spec.name, spec.line))
+            draft.description.markers.push_back({spec.name, *std::move(place)});
         return;
     }
     const Box3 box = draft.box_of(std::get<BoxSelector>(spec.place));
@@ -196,6 +209,10 @@ void add_plates(ModelDraft& draft) {
 
 void add_loads(ModelDraft& draft) {
     for (const LoadSpec& load : draft.robot.loads) add_load(draft, load);
+}
+
+void add_masses(ModelDraft& draft, const sim::Attacher& attacher) {
+    for (const MassSpec& mass : draft.robot.masses) add_mass(draft, attacher, mass);
 }
 
 void add_markers(ModelDraft& draft, const sim::Attacher& attacher) {

@@ -13,6 +13,7 @@ void add_plates(ModelDraft& draft);
 void add_loads(ModelDraft& draft);
 /// `attacher`: of the draft's bodies.
 void add_markers(ModelDraft& draft, const sim::Attacher& attacher);
+void add_masses(ModelDraft& draft, const sim::Attacher& attacher);
 
 /// Faces of the bodies' surface as the air outside of them sees them: their normals point into the bodies.
 [[nodiscard]] sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces);

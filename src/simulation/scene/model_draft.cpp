@@ -26,17 +26,6 @@ double mean_edge(const mesh::TetMesh& mesh) {
     return sum / std::max(6.0 * static_cast<double>(mesh.tet_count()), 1.0);
 }
 
-/// The tets that carry material, on the nodes of the mesh.
-mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
-    mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};
-    for (std::size_t t = 0; t < all.tet_count(); ++t) {
-        if (all.region[t] >= static_cast<int>(robot.bodies.size())) continue;
-        bodies.region.push_back(all.region[t]);
-        bodies.nodes.insert(bodies.nodes.end(), all.tet(t).begin(), all.tet(t).end());
-    }
-    return bodies;
-}
-
 /// Gives every notch of a region but the first a region of its own, at the end; gives those.
 std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
     DisjointSets sets(mesh.points.size());
@@ -61,6 +50,16 @@ std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
 }
 
 }  // namespace
+
+mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
+    mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};
+    for (std::size_t t = 0; t < all.tet_count(); ++t) {
+        if (all.region[t] >= static_cast<int>(robot.bodies.size())) continue;
+        bodies.region.push_back(all.region[t]);
+        bodies.nodes.insert(bodies.nodes.end(), all.tet(t).begin(), all.tet(t).end());
+    }
+    return bodies;
+}
 
 ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_robot), whole(std::move(mesh)) {
     std::vector<bool> keep;

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 
 #include "base/linalg/analysis.hpp"
 #include "simulation/elements/element_kernels.hpp"
@@ -80,6 +81,10 @@ public:
     /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
 
+    /// forces (3n) += what holds pieces that nothing else does, a little, and objects: the part of the Laplacian that
+    /// is not of the tets, times `motion` (3n).
+    void add_hold(const Eigen::VectorXd& motion, Eigen::VectorXd& forces) const;
+
     /// Of the tangent while nothing touches, and what is known of it: its nodes are coupled as those of the Laplacian.
     [[nodiscard]] const std::shared_ptr<const TangentLayout>& tangent_layout() const;
     [[nodiscard]] const std::shared_ptr<const linalg::Analysis>& analysis() const;
@@ -87,6 +92,7 @@ public:
     [[nodiscard]] double work() const;
 
 private:
+    void hold_free_pieces(const Equilibrium& system, const linalg::SymmetricPattern& scalar, std::span<double> values);
     [[nodiscard]] Eigen::VectorXd follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const;
     struct State;
     std::unique_ptr<State> state_;

@@ -1,6 +1,11 @@
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/linalg/cholesky.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/curvature.hpp"
 
@@ -10,9 +15,54 @@ struct FactoredLaplacian::State {
     const Model* model;
     std::shared_ptr<const TangentLayout> layout;
     linalg::Cholesky factor;
+    std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, N/m
 };
 
 namespace {
+
+/// How hard free pieces are held, beside what their nodes resist.
+constexpr double small_hold = 1e-5;
+
+/// Where the straight step of a node would end, the states of the past taken into account.
+Eigen::Vector3d straight_end(const RotatingStep& rotating, int node) {
+    const auto at = [&](const double* x) {
+        return Eigen::Map<const Eigen::Vector3d>(x + 3 * static_cast<std::size_t>(node));
+    };
+    Eigen::Vector3d end = at(rotating.end);
+    const double* after = rotating.now;
+    for (std::size_t k = 0; k < RotatingStep::most_past && rotating.past[k] != nullptr; ++k) {
+        end += rotating.weights[k] * (at(after) - at(rotating.past[k]));
+        after = rotating.past[k];
+    }
+    return end;
+}
+
+/// The turn of a straight step is applied exactly: (1 + S + W) becomes exp(W) (1 + S), about the centre of mass.
+void turn_object(const AffineBody& object, const RotatingStep& rotating, Eigen::VectorXd& end) {
+    const std::span<const double> now(rotating.now, static_cast<std::size_t>(end.size()));
+    for (const int node : object.nodes()) end.segment<3>(3 * node) = straight_end(rotating, node);
+    const std::span<const double> straight = linalg::view(std::as_const(end));
+    const linalg::Matrix3 change =
+        object.deformation(straight) * object.deformation(now).inverse() - linalg::Matrix3::Identity();
+    const linalg::Matrix3 spin = 0.5 * (change - change.transpose());
+    const Eigen::Vector3d axis(spin(2, 1), spin(0, 2), spin(1, 0));
+    const double angle = axis.norm();
+    linalg::Matrix3 whole = linalg::Matrix3::Identity() + change - spin;
+    if (angle > 1e-12) whole = (Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix() * whole).eval();
+    const linalg::Vector3 from = object.centre(now), to = object.centre(straight);
+    for (const int node : object.nodes()) end.segment<3>(3 * node) = to + whole * (linalg::view(now, node) - from);
+}
+
+/// The rotation term says nothing of how free pieces move as a whole: all of them as the mean of their nodes would on
+/// straight ways.
+void carry_free_pieces(const Model& model, const RotatingStep& rotating, Eigen::VectorXd& end) {
+    for (const std::vector<int>& piece : model.free_pieces()) {
+        Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+        for (const int node : piece) shift += straight_end(rotating, node) - end.segment<3>(3 * node);
+        shift /= static_cast<double>(piece.size());
+        for (const int node : piece) end.segment<3>(3 * node) += shift;
+    }
+}
 
 /// The thesis' iteration: every tet's target shape against the current one, reconciled by the constant matrix.
 class LocalGlobal final : public Curvature {
@@ -46,10 +96,43 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
     }
-    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar)});
-    // Positive definite by construction: every piece is held (Model::create) and every weight is positive.
+    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}});
+    hold_free_pieces(system, scalar, values);
+    // Positive definite by construction: every piece is held, by supports or here, and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
     state_->factor.release_work_space();
+}
+
+/// Pieces that no support holds are held a little at all nodes, and objects by nothing but that: the Laplacian then
+/// knows which way they go, though not how easily.
+void FactoredLaplacian::hold_free_pieces(const Equilibrium& system, const linalg::SymmetricPattern& scalar,
+                                         std::span<double> values) {
+    const Model& model = system.model();
+    if (model.free_pieces().empty() && model.objects().empty()) return;
+    const auto diagonal = [&](int node) -> double& {
+        const int free = model.free_index()[static_cast<std::size_t>(node)];
+        return values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(free)])];
+    };
+    double sum = 0;
+    for (const int node : model.mesh().nodes)
+        if (model.free_index()[static_cast<std::size_t>(node)] >= 0) sum += diagonal(node);
+    const double mean = sum / static_cast<double>(model.mesh().nodes.size());
+    std::vector<double> hold(static_cast<std::size_t>(model.node_count()), 0.0);
+    for (const std::vector<int>& piece : model.free_pieces())
+        for (const int node : piece) hold[static_cast<std::size_t>(node)] = small_hold * mean;
+    for (const AffineBody& object : model.objects())
+        for (const int node : object.nodes()) hold[static_cast<std::size_t>(node)] = object.node_stiffness();
+    for (std::size_t node = 0; node < hold.size(); ++node) {
+        if (hold[node] == 0) continue;
+        diagonal(static_cast<int>(node)) += hold[node];
+        state_->held.emplace_back(static_cast<int>(node), hold[node]);
+    }
+}
+
+void FactoredLaplacian::add_hold(const Eigen::VectorXd& motion, Eigen::VectorXd& forces) const {
+    for (const auto& [node, hold] : state_->held)
+        forces.segment<3>(3 * static_cast<Eigen::Index>(node)) +=
+            hold * motion.segment<3>(3 * static_cast<Eigen::Index>(node));
 }
 
 FactoredLaplacian::FactoredLaplacian(FactoredLaplacian&&) noexcept = default;
@@ -123,6 +206,8 @@ Eigen::VectorXd FactoredLaplacian::rotate(const Equilibrium& system, const Rotat
     Eigen::VectorXd correction = system.restrict_to_free(turned);
     solve(correction);
     system.add_free(correction, 1, end);
+    carry_free_pieces(*state_->model, rotating, end);
+    for (const AffineBody& object : state_->model->objects()) turn_object(object, rotating, end);
     return end;
 }
 

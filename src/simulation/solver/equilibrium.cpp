@@ -1,5 +1,6 @@
 #include "simulation/solver/equilibrium.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -92,6 +93,12 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     add_plates(stiffest, volume);
     force_floor_ = 1e-9 * stiffest * std::pow(volume, 2.0 / 3);
     energy_rounding_ = 1e-16 * stiffest * volume;
+    for (const AffineBody& object : objects()) {
+        const double edge = (linalg::view(view(std::as_const(rest_)), object.nodes()[1]) -
+                             linalg::view(view(std::as_const(rest_)), object.nodes()[0]))
+                                .norm();
+        energy_rounding_ += 1e-16 * object.node_stiffness() * edge * edge;
+    }
     // A node is a share of where it is off its place, and pulls at that with the stiffness of a tet, times its size.
     const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
     force_rounding_ = 1e-16 * stiffest * rest_.cwiseAbs().maxCoeff() * size * std::sqrt(static_cast<double>(n));
@@ -279,6 +286,8 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
     const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
     e.min_J = elastic.min_J;
+    for (const AffineBody& object : objects())
+        e.min_J = std::min(e.min_J, object.deformation(view(state.x)).determinant());
     if (!(e.min_J > 0)) return impossible(e.min_J, Flaw::inverted);
     if (has_collapsed_chamber(state.x)) return impossible(e.min_J, Flaw::collapsed);
     e.energy_J = elastic.energy_J - controls.external_N.dot(state.x - rest_);
@@ -287,6 +296,10 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
     for (const Plate& plate : plates_) {
         e.energy_J += plate.energy(view(state.x));
         plate.add_gradient(view(state.x), view(internal));
+    }
+    for (const AffineBody& object : objects()) {
+        e.energy_J += object.energy(view(state.x));
+        object.add_gradient(view(state.x), view(internal));
     }
     for (const SpringPath& spring : springs_) {
         e.energy_J += spring.energy(view(state.x));
@@ -350,6 +363,7 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
     still.friction = nullptr;
     double springs = 0;
     for (const SpringPath& spring : springs_) springs += spring.energy(view(state.x));
+    for (const AffineBody& object : objects()) springs += object.energy(view(state.x));
     for (const Actuator& actuator : actuators_) {
         if (actuator.gaps() != nullptr) springs += actuator.gaps()->energy(view(state.x));
     }
@@ -359,6 +373,7 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
 
 std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
     std::vector<double> all(x.data(), x.data() + x.size());
+    model_->object_points().append(view(x), all);
     all.insert(all.end(), obstacles.data(), obstacles.data() + obstacles.size());
     return all;
 }
@@ -400,6 +415,9 @@ void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls
         energy += controls.friction->energy(all);
     }
     forces += Eigen::Map<const Eigen::VectorXd>(gradient.data(), forces.size());
+    if (const auto count = static_cast<std::size_t>(model_->object_points().count()); count > 0)
+        model_->object_points().add_forces(
+            std::span(gradient).subspan(static_cast<std::size_t>(forces.size()), 3 * count), view(forces));
 }
 
 double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
@@ -417,13 +435,16 @@ std::shared_ptr<const contact::Friction> Equilibrium::freeze_friction(const Stat
     const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return nullptr;
     const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
-    return std::make_shared<const contact::Friction>(
-        contact->freeze(contact->find(x), x, with_obstacles(start.x, start_controls.obstacles)));
+    return std::make_shared<const contact::Friction>(contact->freeze(
+        contact->find(x), x, with_obstacles(start.x, start_controls.obstacles), start_controls.friction.get()));
 }
 
 bool Equilibrium::has_friction() const {
     const auto& rules = model_->description().contact;
     if (!rules) return false;
+    const auto& objects = model_->description().objects;
+    if (std::any_of(objects.begin(), objects.end(), [](const FreeObject& object) { return object.friction > 0; }))
+        return true;
     return rules->settings.friction > 0 ||
            std::any_of(rules->obstacles.begin(), rules->obstacles.end(),
                        [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
@@ -469,8 +490,13 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
     const std::vector<int>& index = index_of(of);
     const auto add = [&](std::span<const int> nodes) {
         std::vector<int> clique;
-        for (const int node : nodes) {
-            if (node < model_->node_count()) clique.push_back(index[static_cast<std::size_t>(node)]);
+        for (const int& contact_node : nodes) {
+            for (const int node : model_->object_points().carriers(contact_node))
+                clique.push_back(index[static_cast<std::size_t>(node)]);
+        }
+        if (!objects().empty()) {
+            std::ranges::sort(clique);
+            clique.erase(std::ranges::unique(clique).begin(), clique.end());
         }
         cliques.push_back(std::move(clique));
     };
@@ -502,6 +528,7 @@ void Equilibrium::append_cliques_beside_tets(const std::vector<int>& index,
                                              linalg::Lists& cliques) const {
     for (const Actuator& actuator : actuators_) actuator.append_cliques(index, cliques);
     for (const Plate& plate : plates_) plate.append_clique(index, cliques);
+    for (const AffineBody& object : objects()) object.append_clique(index, cliques);
     for (const SpringPath& spring : springs_) spring.append_clique(index, cliques);
     for (const std::vector<int>& clique : touching) cliques.push_back(clique);
 }
@@ -524,18 +551,21 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
     const linalg::SymmetricPattern& pattern = layout.pattern;
     const std::vector<int>& index = index_of(layout.nodes);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
+    for (const AffineBody& object : objects()) object.add_hessian(view(state.x), index, pattern, values, project);
     for (const SpringPath& spring : springs_) spring.add_hessian(view(state.x), index, pattern, values, project);
     if (controls.inertia) controls.inertia->add_hessian(index, pattern, values);
     if (const contact::Contact* contact = this->contact(controls)) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
         const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
-            if (a >= model_->node_count() || b >= model_->node_count()) return;
             const int i = index[static_cast<std::size_t>(a)];
             const int j = index[static_cast<std::size_t>(b)];
             if (j >= 0 && i >= j) pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
         };
-        contact->visit_hessian(contact->find(x), x, project, add);
-        if (controls.friction) controls.friction->visit_hessian(x, add);
+        const contact::BlockVisitor add_carried = [&](int a, int b, const linalg::Matrix3& block) {
+            model_->object_points().visit_block(a, b, block, add);
+        };
+        contact->visit_hessian(contact->find(x), x, project, add_carried);
+        if (controls.friction) controls.friction->visit_hessian(x, add_carried);
     }
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];

@@ -130,7 +130,8 @@ public:
     /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
     [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
                                       const Eigen::VectorXd& obstacle_motion = {}) const;
-    /// Friction for a step that began at `start`, with the contact forces of `state`. Nothing without contact.
+    /// Friction for a step that began at `start`, with the contact forces of `state`; what sticks goes on from the
+    /// friction of `start_controls`. Nothing without contact.
     [[nodiscard]] std::shared_ptr<const contact::Friction> freeze_friction(const State& state, const State& start,
                                                                            const Controls& controls,
                                                                            const Controls& start_controls) const;
@@ -158,6 +159,7 @@ public:
     [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
     [[nodiscard]] const std::vector<SpringPath>& springs() const { return springs_; }
     [[nodiscard]] const std::vector<Plate>& plates() const { return plates_; }
+    [[nodiscard]] const std::vector<AffineBody>& objects() const { return model_->objects(); }
     [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
     [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
     /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
@@ -196,7 +198,7 @@ private:
     [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
         return model_->contact(controls.met);
     }
-    /// Robot nodes, then those of the obstacles: what contact knows as x.
+    /// Robot nodes, then the points of objects, then the nodes of the obstacles: what contact knows as x.
     [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
     void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;

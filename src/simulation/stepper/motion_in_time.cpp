@@ -1,15 +1,31 @@
 #include "simulation/stepper/motion_in_time.hpp"
 
+#include <Eigen/Geometry>
 #include <span>
 
 #include "base/linalg/sparse.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
 
-History MotionInTime::at_rest(const Eigen::VectorXd& x) {
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(x.size());
-    return {x, still, x, still, 0};
+History MotionInTime::at_rest(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(x.size());
+    const auto& objects = model_.description().objects;
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+        const AffineBody& body = model_.objects()[k];
+        const Eigen::Vector3d centre = body.centre(linalg::view(x));
+        const Eigen::Vector3d spin = linalg::vector(objects[k].angular_velocity_rad_s);
+        for (const int node : body.nodes())
+            v.segment<3>(3 * node) =
+                linalg::vector(objects[k].velocity_m_s) + spin.cross(x.segment<3>(3 * node) - centre);
+    }
+    return {x, v, x, v, 0};
+}
+
+History MotionInTime::still(const Eigen::VectorXd& x) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(x.size());
+    return {x, none, x, none, 0};
 }
 
 std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, double dt) {

@@ -14,8 +14,10 @@ class MotionInTime {
 public:
     MotionInTime(const Model& model, const Damping& damping) : model_(model), damping_(damping) {}
 
-    /// Undeformed and still at `x` (3n).
-    [[nodiscard]] static History at_rest(const Eigen::VectorXd& x);
+    /// Undeformed at `x` (3n) and still, but for objects, which have the velocities that they start with.
+    [[nodiscard]] History at_rest(const Eigen::VectorXd& x) const;
+    /// All of it still.
+    [[nodiscard]] static History still(const Eigen::VectorXd& x);
     /// For a step of `dt` from where `history` ends. Damping by stiffness takes the stiffness there.
     [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt);
     /// After a step that ends at `x`.

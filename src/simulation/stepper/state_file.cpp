@@ -55,7 +55,7 @@ Json json_of(const contact::Friction& friction) {
         whole.insert(whole.end(), {pair.node_count, pair.first_count, pair.obstacle, pair.robot_first ? 1 : 0});
         real.insert(real.end(), pair.weights.begin(), pair.weights.end());
         for (const Vec3& t : pair.tangents) real.insert(real.end(), {t.x, t.y, t.z});
-        real.push_back(pair.limit_N);
+        real.insert(real.end(), {pair.limit_N, pair.carried_m[0], pair.carried_m[1]});
     }
     return {{"pairs", packed(std::span<const int>(whole))},
             {"numbers", packed(std::span<const double>(real))},
@@ -130,7 +130,7 @@ Json json_of(const SolverMemory& memory) {
 
 /// How long the vectors of a model are.
 struct Sizes {
-    Eigen::Index coordinates, free_coordinates, actuators, steered, obstacle_coordinates;
+    Eigen::Index coordinates, free_coordinates, actuators, steered, object_coordinates, obstacle_coordinates;
     std::size_t supports;
 };
 
@@ -142,6 +142,7 @@ Sizes sizes_of(const Stepper& stepper) {
             3 * model.free_count(),
             static_cast<Eigen::Index>(controls.drives.size()),
             static_cast<Eigen::Index>(d.cables.size() + d.chambers.size()),
+            3 * model.object_points().count(),
             controls.obstacles.size(),
             controls.support_share.size()};
 }
@@ -230,10 +231,10 @@ private:
     }
 
     std::shared_ptr<const contact::Friction> friction(const Json& json) {
-        constexpr std::size_t wholes = 8, reals = 11;
+        constexpr std::size_t wholes = 8, reals = 13;
         Reader in(json);
         const std::vector<int> whole = in.numbers<int>("pairs");
-        const Eigen::Index nodes = (sizes_.coordinates + sizes_.obstacle_coordinates) / 3;
+        const Eigen::Index nodes = (sizes_.coordinates + sizes_.object_coordinates + sizes_.obstacle_coordinates) / 3;
         const std::size_t count = whole.size() / wholes;
         const Eigen::VectorXd real = in.vector("numbers", static_cast<Eigen::Index>(reals * count));
         const Eigen::VectorXd start = in.vector("start", 3 * nodes);
@@ -249,6 +250,7 @@ private:
             std::copy_n(r, 4, pair.weights.begin());
             pair.tangents = {Vec3{r[4], r[5], r[6]}, Vec3{r[7], r[8], r[9]}};
             pair.limit_N = r[10];
+            pair.carried_m = {r[11], r[12]};
             pair.node_count = i[4];
             pair.first_count = i[5];
             pair.obstacle = i[6];
@@ -285,7 +287,7 @@ private:
             Reader inertia(in.at("inertia"));
             const History start = history(inertia.at("start"));
             const double dt = inertia.number("dt");
-            if (!(dt > 0) || !stepper_.options().dynamics) inertia.fail("a step in time of no length");
+            if (!(dt > 0) || !stepper_.has_inertia()) inertia.fail("a step in time of no length");
             take(inertia);
             if (status_ && in.status()) controls.inertia = stepper_.inertia(start, dt);
         }

@@ -12,7 +12,7 @@
 
 namespace pliant::sim {
 
-inline constexpr int state_version = 1;
+inline constexpr int state_version = 2;  ///< 2: friction with memory
 
 [[nodiscard]] std::string state_bytes(const Model& model, const RobotState& robot);
 

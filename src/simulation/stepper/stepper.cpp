@@ -1,6 +1,7 @@
 #include "simulation/stepper/stepper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "simulation/elements/elements.hpp"
@@ -28,6 +29,14 @@ bool is_hopeless(const Model& model, const StepperOptions& options, int in_vain)
     return !model.elements().has_energy() && in_vain >= std::max(most_in_vain, options.iteration_limit);
 }
 
+/// A step of this length, from stillness, takes a thousandth of the weight to move the robot by its own size.
+double tether_dt_s(const Model& model) {
+    constexpr double share = 1e-3, g_m_s2 = 9.81;
+    Box3 box;
+    for (const Vec3& p : model.mesh().points) box.add(p);
+    return std::sqrt(box.diagonal() / (share * g_m_s2));
+}
+
 }  // namespace
 
 /// One piece of a way.
@@ -45,7 +54,12 @@ Stepper::Stepper(const Model& model, const StepperOptions& options)
       laplacian_(system_),
       solvers_(make_chain(options.solver, system_, laplacian_)),
       units_(system_, options.time_unit) {
-    if (options.dynamics) motion_.emplace(model, options.dynamics->damping);
+    if (options.dynamics)
+        motion_.emplace(model, options.dynamics->damping);
+    else if (!model.free_pieces().empty() || !model.objects().empty()) {
+        motion_.emplace(model, Damping{});
+        tether_dt_s_ = tether_dt_s(model);
+    }
 }
 
 Stepper::~Stepper() = default;
@@ -57,7 +71,7 @@ RobotState Stepper::rest() const {
     robot.drives = robot.controls.drives;
     robot.inputs = program(0);
     robot.evaluation = system_.evaluate(robot.now.state, robot.controls);
-    if (motion_) robot.history = MotionInTime::at_rest(robot.x());
+    if (options_.dynamics) robot.history = motion_->at_rest(robot.x());
     return robot;
 }
 
@@ -109,7 +123,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
         robot.before.reset();
     }
     const Inputs begin = robot.inputs;
-    const bool in_time = motion_.has_value();
+    const bool in_time = options_.dynamics.has_value();
     if (in_time && !(wanted.time > begin.time)) {
         StepReport report;
         report.reason = "a step in time must lead to a later time";
@@ -194,7 +208,8 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
 
 StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
                              const Progress& progress) {
-    if (motion_) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along);
+    if (options_.dynamics) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along);
+    if (tether_dt_s_ > 0) controls.inertia = motion_->inertia(MotionInTime::still(robot.x()), tether_dt_s_);
     const std::optional<double> along = target.onward ? std::optional(target.along) : std::nullopt;
     std::optional<Prediction> expected;
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
@@ -217,7 +232,7 @@ StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& n
 }
 
 void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome) {
-    if (motion_) robot.history = MotionInTime::after(*controls.inertia, next.x);
+    if (options_.dynamics) robot.history = MotionInTime::after(*controls.inertia, next.x);
     robot.past.push_back({robot.now.along, std::make_shared<const State>(std::move(robot.now.state))});
     if (robot.past.size() > options_.most_past) robot.past.pop_front();
     robot.now = {target.along, std::move(next)};
@@ -261,7 +276,7 @@ bool Stepper::find(const Controls& controls, State& state, const Progress& progr
 }
 
 double Stepper::kinetic_energy_J(const RobotState& robot) const {
-    return motion_ ? motion_->kinetic_energy_J(robot.history) : 0;
+    return options_.dynamics ? motion_->kinetic_energy_J(robot.history) : 0;
 }
 
 std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double dt) const {

@@ -89,8 +89,10 @@ public:
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
     [[nodiscard]] double kinetic_energy_J(const RobotState& robot) const;
-    /// What a step in time of `dt` from where `history` ends adds to the equations. Precondition: there is dynamics.
+    /// What a step in time of `dt` from where `history` ends adds to the equations. Precondition: has_inertia().
     [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt) const;
+    /// In a motion in time and, as a tether, where something is held by nothing: see theory.md.
+    [[nodiscard]] bool has_inertia() const { return motion_.has_value(); }
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Equilibrium& system() const { return system_; }
     [[nodiscard]] const FactoredLaplacian& laplacian() const { return laplacian_; }
@@ -115,8 +117,9 @@ private:
     FactoredLaplacian laplacian_;
     SolverChain solvers_;
     InputUnits units_;
-    mutable std::optional<MotionInTime> motion_;  ///< keeps a pattern that it has made
-    std::shared_ptr<const SolverMemory> live_;    ///< what the solvers remember; null: nothing that a state has
+    mutable std::optional<MotionInTime> motion_;  ///< keeps a pattern that it has made; of a tether too
+    double tether_dt_s_ = 0;                    ///< above 0: at rest at every instant, and something is held by nothing
+    std::shared_ptr<const SolverMemory> live_;  ///< what the solvers remember; null: nothing that a state has
 };
 
 }  // namespace pliant::sim

@@ -1,0 +1,92 @@
+#include "simulation/elements/affine_body.hpp"
+
+#include <Eigen/LU>
+
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim {
+
+using linalg::Matrix3;
+using linalg::Matrix9;
+using linalg::Vector3;
+
+AffineBody::AffineBody(std::array<int, 4> nodes, double stiffness_J, std::span<const double> rest)
+    : nodes_(nodes), stiffness_(stiffness_J), centre_(centre(rest)) {
+    Matrix3 arms;
+    for (int k = 0; k < 3; ++k)
+        arms.col(k) = linalg::view(rest, nodes[static_cast<std::size_t>(k) + 1]) - linalg::view(rest, nodes[0]);
+    const Matrix3 inverse = arms.inverse();
+    for (int k = 0; k < 3; ++k) gradients_[static_cast<std::size_t>(k) + 1] = inverse.row(k).transpose();
+    gradients_[0] = -(gradients_[1] + gradients_[2] + gradients_[3]);
+}
+
+Matrix3 AffineBody::deformation(std::span<const double> x) const {
+    Matrix3 A = Matrix3::Zero();
+    for (std::size_t a = 0; a < 4; ++a) A += linalg::view(x, nodes_[a]) * gradients_[a].transpose();
+    return A;
+}
+
+Vector3 AffineBody::centre(std::span<const double> x) const {
+    Vector3 mean = Vector3::Zero();
+    for (const int node : nodes_) mean += 0.25 * linalg::view(x, node);
+    return mean;
+}
+
+std::array<double, 4> AffineBody::shares(const Vector3& rest_point) const {
+    std::array<double, 4> shares{};
+    for (std::size_t a = 0; a < 4; ++a) shares[a] = 0.25 + gradients_[a].dot(rest_point - centre_);
+    return shares;
+}
+
+double AffineBody::node_stiffness() const {
+    double sum = 0;
+    for (const Vector3& g : gradients_) sum += 0.25 * g.squaredNorm();
+    return 2 * stiffness_ * sum;
+}
+
+double AffineBody::energy(std::span<const double> x) const {
+    const Matrix3 A = deformation(x);
+    return 0.25 * stiffness_ * (A.transpose() * A - Matrix3::Identity()).squaredNorm();
+}
+
+void AffineBody::add_gradient(std::span<const double> x, std::span<double> forces) const {
+    const Matrix3 A = deformation(x);
+    const Matrix3 P = stiffness_ * A * (A.transpose() * A - Matrix3::Identity());
+    for (std::size_t a = 0; a < 4; ++a) {
+        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[a]));
+        force += P * gradients_[a];
+    }
+}
+
+void AffineBody::add_hessian(std::span<const double> x, const std::vector<int>& index,
+                             const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+    const Matrix3 A = deformation(x), C = A.transpose() * A - Matrix3::Identity();
+    Matrix9 H;
+    for (int k = 0; k < 9; ++k) {
+        Matrix3 dA = Matrix3::Zero();
+        dA(k % 3, k / 3) = 1;
+        const Matrix3 dP = stiffness_ * (dA * C + A * (dA.transpose() * A + A.transpose() * dA));
+        H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
+    }
+    if (project) H = linalg::project_to_positive(H);
+    for (std::size_t b = 0; b < 4; ++b) {
+        const int j = index[static_cast<std::size_t>(nodes_[b])];
+        for (std::size_t a = 0; j >= 0 && a < 4; ++a) {
+            const int i = index[static_cast<std::size_t>(nodes_[a])];
+            if (i < j) continue;
+            Matrix3 block = Matrix3::Zero();
+            for (int k = 0; k < 3; ++k) {
+                for (int l = 0; l < 3; ++l) block += gradients_[a][k] * gradients_[b][l] * H.block<3, 3>(3 * k, 3 * l);
+            }
+            pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+        }
+    }
+}
+
+void AffineBody::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {
+    std::vector<int> clique;
+    for (const int node : nodes_) clique.push_back(index[static_cast<std::size_t>(node)]);
+    cliques.push_back(clique);
+}
+
+}  // namespace pliant::sim

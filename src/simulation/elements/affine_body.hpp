@@ -1,0 +1,53 @@
+// A rigid body in affine coordinates: four nodes carry it, x = A X + p, and a stiff energy keeps A a rotation.
+//
+//     E = k/4 ‖AᵀA − 1‖²        A = Σ xₐ gₐᵀ
+//
+// Lan, Kaufman, Li, Jiang and Yang 2022, "Affine Body Dynamics". The motion of every point is linear in the nodes, so
+// that a straight step of them is a straight step of its surface.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/linalg/lists.hpp"
+#include "base/linalg/small.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::sim {
+
+class AffineBody {
+public:
+    /// `nodes`: not in one plane at `rest` (3n). `stiffness_J`: k, some hundred times what soft bodies of its size
+    /// resist with.
+    AffineBody(std::array<int, 4> nodes, double stiffness_J, std::span<const double> rest);
+
+    /// J. Positions x (3n) metres.
+    [[nodiscard]] double energy(std::span<const double> x) const;
+    /// forces (3n) += gradient of the energy.
+    void add_gradient(std::span<const double> x, std::span<double> forces) const;
+    /// For a pattern (block 3) that holds all pairs of its nodes; `index` (n) of each node in it, or -1. `project`: the
+    /// nearest matrix without negative eigenvalues.
+    void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                     std::span<double> values, bool project) const;
+    void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
+
+    /// A; its determinant is 1 but for what contact squeezes it.
+    [[nodiscard]] linalg::Matrix3 deformation(std::span<const double> x) const;
+    /// Where the centre of mass is, m.
+    [[nodiscard]] linalg::Vector3 centre(std::span<const double> x) const;
+    /// (4) shares of the nodes in the motion of the point that is at `rest_point` at rest, metres; sum 1.
+    [[nodiscard]] std::array<double, 4> shares(const linalg::Vector3& rest_point) const;
+
+    [[nodiscard]] const std::array<int, 4>& nodes() const { return nodes_; }
+    /// N/m of one node, about: what a stretch of the body takes.
+    [[nodiscard]] double node_stiffness() const;
+
+private:
+    std::array<int, 4> nodes_;
+    double stiffness_;
+    std::array<linalg::Vector3, 4> gradients_;  ///< gₐ, 1/m
+    linalg::Vector3 centre_;                    ///< at rest
+};
+
+}  // namespace pliant::sim
