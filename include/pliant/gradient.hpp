@@ -31,6 +31,7 @@ struct Objective {
 /// What a gradient is wanted by, beside inputs and parameters.
 struct GradientOptions {
     bool rest_positions = false;  ///< of the nodes
+    bool guide_points = false;    ///< of cables and springs
     bool tets = false;            ///< what each tetrahedron is made of
     /// Names of [parameters] of the robot file that are numbers, not formulas of others. Whatever follows from one
     /// counts: the shape, whose mesh moves along and keeps its topology, places, constants, targets. For programs at
@@ -56,6 +57,10 @@ struct ProgramGradient {
     std::vector<double> by_parameters;        ///< (parameters)
     /// (nodes), where wanted. Lengths and volumes that are wanted as a share of what they are at rest follow.
     std::vector<Point> by_rest_positions;
+    std::vector<GuidePoint> guide_points;  ///< of cables, then of springs; where wanted
+    /// (guide_points) by where each is at rest: the mesh then carries it elsewhere, and lengths that are wanted as a
+    /// share of what they are at rest follow. Gap elements that a cable acts through stay as they are.
+    std::vector<Point> by_guide_points;
     std::vector<TetGradient> by_tets;  ///< where wanted
     std::vector<double> by_numbers;    ///< (GradientOptions::numbers) in the units of the robot file
     /// Where an equilibrium was found: the end of each step, and where a step was halved what lies between.
@@ -71,8 +76,7 @@ struct ProgramGradient {
 /// Runs the robot's program and goes back over it with the adjoint of each step; also of a motion in time. What
 /// friction lags stays as it was found.
 /// @throws Failure of a measure or a number that is not there, of a number that no motion of the mesh follows; where a
-/// step does not converge or has no derivative;
-/// cancelled. What `judge` throws is passed on.
+/// step does not converge or has no derivative; cancelled. What `judge` throws is passed on.
 [[nodiscard]] PLIANT_API ProgramGradient gradient(const Model& model, const Objective& objective,
                                                   const GradientOptions& options = {}, const Watch& watch = {});
 

@@ -20,6 +20,17 @@ struct Parameter {
     double value = 0;  ///< at the state
 };
 
+/// A point that a cable or spring goes through.
+struct GuidePoint {
+    std::string name;  ///< for people: cable "left": point 2
+    Point place{};     ///< at rest, m
+};
+
+/// What the gradient of a state is wanted by, beside what always is.
+struct StateGradientOptions {
+    bool guide_points = false;  ///< of cables and springs
+};
+
 /// A small change of a state, for each unit of what causes it.
 struct Change {
     std::vector<Point> positions;      ///< (nodes) m
@@ -94,6 +105,10 @@ public:
     /// supports, contact. The constants of a material are Young's modulus and Poisson ratio, then those of its law.
     [[nodiscard]] const std::vector<Parameter>& parameters() const;
 
+    /// The guide points of cables, then those of springs. With guides at crossings those count, too.
+    /// @throws Failure where one is tied to no tetrahedron.
+    [[nodiscard]] const std::vector<GuidePoint>& guide_points();
+
     /// What the whole state does for each unit of an input. One solution.
     /// @throws Failure as of solve(), or there is no such input.
     [[nodiscard]] Change response_to_input(std::size_t input);
@@ -106,11 +121,13 @@ public:
         std::vector<double> inputs;         ///< (inputs)
         std::vector<double> parameters;     ///< (parameters)
         std::vector<Point> rest_positions;  ///< (nodes)
+        /// (guide_points()) where wanted, by where each is at rest: the mesh then carries it elsewhere.
+        std::vector<Point> guide_points{};
     };
-    /// By one transposed solution. With the rest shape, lengths and volumes that are driven stay as they are, in m and
-    /// m^3, and everything that is tied to nodes moves along.
+    /// By one transposed solution. With the rest shape and with guide points, lengths and volumes that are driven stay
+    /// as they are, in m and m^3; with the rest shape everything that is tied to nodes moves along.
     /// @throws Failure as of solve(), or the quantity has another size than the model.
-    [[nodiscard]] Gradient gradient(const Quantity& quantity);
+    [[nodiscard]] Gradient gradient(const Quantity& quantity, const StateGradientOptions& options = {});
     /// Coordinate of a marker along a direction; m for a direction of length 1.
     /// @throws Failure where there is no such marker.
     [[nodiscard]] Quantity marker_coordinate(std::size_t marker, const Point& direction) const;
@@ -119,9 +136,10 @@ public:
     /// @throws Failure where the robot has nothing of that name.
     [[nodiscard]] double value(const Measure& measure) const;
     /// By one transposed solution. Unlike that of a Quantity it knows what the measure itself has of a parameter, and
-    /// with the rest shape lengths and volumes that are wanted as a share of what they are at rest follow.
+    /// with the rest shape and with guide points lengths and volumes that are wanted as a share of what they are at
+    /// rest follow.
     /// @throws Failure as of solve() and value().
-    [[nodiscard]] Gradient gradient(const Measure& measure);
+    [[nodiscard]] Gradient gradient(const Measure& measure, const StateGradientOptions& options = {});
 
 private:
     struct Work;

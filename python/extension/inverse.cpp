@@ -172,18 +172,20 @@ py::list list_of(const std::vector<Parameter>& all) {
 
 py::dict dict_of(ProgramGradient g) {
     using namespace py::literals;
-    py::list tets, instants;
+    py::list tets, instants, guides;
+    for (GuidePoint& p : g.guide_points) guides.append(py::make_tuple(std::move(p.name), p.place));
     for (TetGradient& t : g.by_tets) tets.append(py::make_tuple(t.name, t.unit, array_of(std::move(t.values))));
     for (auto& i : g.instants) instants.append(py::make_tuple(i.step, i.time, array_of(std::move(i.by_inputs))));
     return py::dict("value"_a = g.value, "values"_a = g.values, "parameters"_a = list_of(g.parameters),
                     "by_parameters"_a = array_of(std::move(g.by_parameters)),
-                    "by_rest_positions"_a = array_of(std::move(g.by_rest_positions)), "by_tets"_a = tets,
+                    "by_rest_positions"_a = array_of(std::move(g.by_rest_positions)), "guide_points"_a = guides,
+                    "by_guide_points"_a = array_of(std::move(g.by_guide_points)), "by_tets"_a = tets,
                     "by_numbers"_a = array_of(std::move(g.by_numbers)), "inputs"_a = list_of(g.inputs),
                     "instants"_a = instants);
 }
 
 py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& measures, py::object judge,
-                          bool rest_positions, bool tets, std::vector<std::string> numbers, int kept,
+                          bool rest_positions, bool guide_points, bool tets, std::vector<std::string> numbers, int kept,
                           py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
@@ -191,7 +193,7 @@ py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& m
     for (const MeasureTuple& measure : measures) objective.measures.push_back(measure_of(measure));
     const Judge asked(std::move(judge), watcher);
     objective.judge = [&asked](int step, std::span<const double> values) { return asked(step, values); };
-    const GradientOptions options{rest_positions, tets, std::move(numbers), kept};
+    const GradientOptions options{rest_positions, guide_points, tets, std::move(numbers), kept};
     std::optional<ProgramGradient> found;
     try {
         const py::gil_scoped_release unlocked;

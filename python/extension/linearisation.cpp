@@ -39,7 +39,7 @@ py::tuple tuple_of(Change change) {
 
 py::tuple tuple_of(Linearisation::Gradient g) {
     return py::make_tuple(array_of(std::move(g.inputs)), array_of(std::move(g.parameters)),
-                          array_of(std::move(g.rest_positions)));
+                          array_of(std::move(g.rest_positions)), array_of(std::move(g.guide_points)));
 }
 
 template <std::vector<double> (Linearisation::*Product)(std::span<const double>) const>
@@ -55,15 +55,15 @@ std::vector<double> list_of(const Numbers& numbers) {
     return {numbers.data(), numbers.data() + numbers.size()};
 }
 
-py::tuple gradient(Shared& shared, const Numbers& by_positions, const Numbers& by_tensions,
-                   const Numbers& by_pressures) {
+py::tuple gradient(Shared& shared, const Numbers& by_positions, const Numbers& by_tensions, const Numbers& by_pressures,
+                   bool guide_points) {
     const Quantity quantity{points_of(by_positions), list_of(by_tensions), list_of(by_pressures)};
-    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(quantity); }));
+    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(quantity, {guide_points}); }));
 }
 
-py::tuple gradient_of(Shared& shared, const MeasureTuple& measure) {
+py::tuple gradient_of(Shared& shared, const MeasureTuple& measure, bool guide_points) {
     const Measure wanted = measure_of(measure);
-    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(wanted); }));
+    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(wanted, {guide_points}); }));
 }
 
 double dot(const std::vector<Point>& a, const std::vector<Point>& b) {
@@ -112,6 +112,13 @@ void add_linearisation(py::module_& module) {
         .def("response_to_input",
              [](Shared& shared, std::size_t input) {
                  return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_input(input); }));
+             })
+        .def("guide_points",
+             [](Shared& shared) {
+                 py::list list;
+                 for (const GuidePoint& one : locked(shared, [](Linearisation& at) { return at.guide_points(); }))
+                     list.append(py::make_tuple(one.name, one.place));
+                 return list;
              })
         .def(
             "response_to_parameter",

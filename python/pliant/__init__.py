@@ -21,7 +21,7 @@ from .batch import Batch
 from .controls import Drive, Inputs
 from .errors import Cancelled, Failure, InputError
 from .identification import Comparison, Estimate, FitError, Identification, identify
-from .linearisation import Change, Gradient, Linearisation, Measure, Parameter
+from .linearisation import Change, Gradient, GuidePoint, Linearisation, Measure, Parameter
 from .model import Model, State
 from .notebook import Viewer, show
 from .objectives import ProgramGradient, gradient
@@ -35,7 +35,8 @@ __version__ = _pliant.version()
 
 __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
-    "Fields", "FitError", "GoalResult", "Gradient", "Identification", "InputError", "Inputs", "InverseResult",
+    "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
+    "InverseResult",
     "Linearisation", "Measure", "Mesh", "Model", "Observation", "Parameter", "PrintPlan", "ProgramGradient",
     "ProgramResult", "ProgramStep", "Robot", "Spring", "State", "SteeredInput", "StepResult", "Vat", "Viewer", "VirtualPrint",
     "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",

@@ -27,6 +27,15 @@ class Parameter(NamedTuple):
     value: float
 
 
+class GuidePoint(NamedTuple):
+    """A point that a cable or spring goes through."""
+
+    #: for people: cable "left": point 2
+    name: str
+    #: (3,) at rest, m
+    place: tuple[float, float, float]
+
+
 class Measure(NamedTuple):
     """Something that can be measured on a robot: one number, in SI units.
 
@@ -84,6 +93,8 @@ class Gradient:
     parameters: Array
     #: (nodes, 3) by the rest shape; lengths and volumes that are driven stay as they are, in m and m^3
     rest_positions: Array
+    #: (guide points, 3) by where each of :attr:`Linearisation.guide_points` is at rest, where wanted; else (0, 3)
+    guide_points: Array
 
 
 class Linearisation:
@@ -149,6 +160,11 @@ class Linearisation:
         """What the robot is made of and stands in: constants of materials, densities, springs, friction, loads..."""
         return [Parameter(*p) for p in self._at.parameters()]
 
+    @property
+    def guide_points(self) -> list[GuidePoint]:
+        """What cables go through, then springs. With guides at crossings those count, too."""
+        return [GuidePoint(name, (x, y, z)) for name, (x, y, z) in self._at.guide_points()]
+
     def response(self, input: int | str) -> Change:
         """What the whole state does for each unit of an input, by its name or index. One solution."""
         return Change(*self._at.response_to_input(self._index(input, self._inputs, "input")))
@@ -175,6 +191,7 @@ class Linearisation:
         tensions: Any = None,
         pressures: Any = None,
         markers: Mapping[str, Any] | None = None,
+        guide_points: bool = False,
     ) -> Gradient:
         """As of :meth:`Model.grad`."""
         model = self.model
@@ -186,25 +203,28 @@ class Linearisation:
         for name, weights in (markers or {}).items():
             index, direction = self._marker(name), _check.numbers(weights, f"markers[{name!r}]", (3,))
             by += self._at.marker_coordinate(index, direction.tolist())
-        inputs, parameters, rest = self._at.gradient(
+        found = self._at.gradient(
             by,
             _vector_or_none(tensions, "tensions", len(model.cables)),
             _vector_or_none(pressures, "pressures", len(model.chambers)),
+            bool(guide_points),
         )
-        return self._gradient(inputs, parameters, rest)
+        return self._gradient(*found)
 
     def value(self, measure: Measure) -> float:
         """The number at this state."""
         return self._at.value(_check.instance(measure, Measure, "measure")._tuple())
 
-    def gradient_of(self, measure: Measure) -> Gradient:
+    def gradient_of(self, measure: Measure, *, guide_points: bool = False) -> Gradient:
         """Derivatives of what is measured. Unlike :meth:`gradient` it knows what the measure itself has of a parameter,
-        and with the rest shape lengths and volumes that are wanted as a share of what they are at rest follow."""
-        return self._gradient(*self._at.gradient_of(_check.instance(measure, Measure, "measure")._tuple()))
+        and with the rest shape and guide points lengths and volumes that are wanted as a share of what they are at rest
+        follow."""
+        wanted = _check.instance(measure, Measure, "measure")._tuple()
+        return self._gradient(*self._at.gradient_of(wanted, bool(guide_points)))
 
-    def _gradient(self, inputs: Array, parameters: Array, rest: Array) -> Gradient:
+    def _gradient(self, inputs: Array, parameters: Array, rest: Array, guides: Array) -> Gradient:
         controls = np.array([inputs[c] if c >= 0 else 0.0 for c in self._columns], dtype=np.float64)
-        return Gradient(controls, inputs, parameters, rest)
+        return Gradient(controls, inputs, parameters, rest, guides)
 
     def _vector(self, v: Any, what: str) -> Array:
         return _check.numbers(v, what, (self.size,))

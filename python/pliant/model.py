@@ -373,17 +373,19 @@ class Model:
         tensions: Any = None,
         pressures: Any = None,
         markers: Mapping[str, Any] | None = None,
+        guide_points: bool = False,
     ) -> Gradient:
         """Exact derivatives, by one transposed solution, of a number that depends on the state.
 
         The number is given by its own derivatives: by positions (nodes, 3), by tensions (cables,), by pressures
         (chambers,), by the positions of markers, ``{"tip": [0, 0, 1]}``; what is left out is zero.
+        With `guide_points` it is also differentiated by where cables and springs are guided.
 
         Returns:
             Its derivatives by controls, inputs, parameters (materials, loads, friction...) and rest positions.
         """
         return self.linearise(state).gradient(
-            positions=positions, tensions=tensions, pressures=pressures, markers=markers
+            positions=positions, tensions=tensions, pressures=pressures, markers=markers, guide_points=guide_points
         )
 
     # ---- the program of the robot

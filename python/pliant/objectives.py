@@ -11,7 +11,7 @@ import numpy as np
 from . import _check, _pliant
 from ._check import Array, Progress
 from .errors import InputError
-from .linearisation import Measure, Parameter
+from .linearisation import GuidePoint, Measure, Parameter
 from .model import Model
 
 #: Called with (step, values): the step from 1 and (measures,) numbers; gives a number and (measures,) its slopes.
@@ -54,6 +54,10 @@ class ProgramGradient:
     by_parameters: Array
     #: (nodes, 3), where wanted; else (0, 3)
     by_rest_positions: Array
+    #: of cables, then of springs; where wanted
+    guide_points: list[GuidePoint]
+    #: (guide_points, 3) by where each is at rest
+    by_guide_points: Array
     #: where wanted
     by_tets: list[TetGradient]
     #: (numbers,) in the units of the robot file
@@ -70,6 +74,7 @@ def gradient(
     judge: Judge,
     *,
     rest_positions: bool = False,
+    guide_points: bool = False,
     tets: bool = False,
     numbers: Iterable[str] = (),
     kept: int = 8,
@@ -87,6 +92,7 @@ def gradient(
         measures: what `judge` is told.
         judge: called once or more for a step, in any order; must say the same each time.
         rest_positions: also by the rest positions of the nodes.
+        guide_points: also by where cables and springs are guided; gap elements that a cable acts through stay.
         tets: also by what each tetrahedron is made of.
         numbers: names of [parameters] of the robot file that are numbers, not formulas of others: also by those. What
             follows from one counts: the shape, whose mesh moves along, places, constants, targets. For programs at rest
@@ -115,6 +121,7 @@ def gradient(
         [m._tuple() for m in listed],
         judged,
         bool(rest_positions),
+        bool(guide_points),
         bool(tets),
         names,
         _check.integer(kept, "kept"),
@@ -122,6 +129,7 @@ def gradient(
     )
     found["values"] = np.array(found["values"]).reshape(-1, len(listed))
     found["parameters"] = [Parameter(*p) for p in found["parameters"]]
+    found["guide_points"] = [GuidePoint(name, (x, y, z)) for name, (x, y, z) in found["guide_points"]]
     found["inputs"] = [Parameter(*p) for p in found["inputs"]]
     found["by_tets"] = [TetGradient(*t) for t in found["by_tets"]]
     found["instants"] = [Instant(*i) for i in found["instants"]]

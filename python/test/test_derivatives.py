@@ -36,7 +36,10 @@ def test_the_gradient_agrees_with_the_jacobian(model, state):
     gradient = model.grad(state, markers={"tip": weights})
     assert gradient.controls == pytest.approx(weights @ model.jacobian(state)[0], rel=1e-9)
     assert gradient.rest_positions.shape == (model.node_count, 3)
+    assert gradient.guide_points.shape == (0, 3)
     at = model.linearise(state)
+    wanted = pliant.Measure("marker", "tip", tuple(weights))
+    assert at.gradient_of(wanted, guide_points=True).guide_points.shape == (len(at.guide_points), 3) == (3, 3)
     assert len(gradient.inputs) == len(at.inputs) and len(gradient.parameters) == len(at.parameters)
     assert at.inputs[0].name == 'cable "flexor": length' and at.inputs[0].value == pytest.approx(0.058)
     by_positions = np.zeros((model.node_count, 3))
@@ -59,6 +62,37 @@ def test_a_gradient_by_a_modulus_is_a_difference(model, state):
         return other.solve([0.058]).observe().cables["flexor"].tension_N
 
     assert gradient == pytest.approx((tension(1e6 + h) - tension(1e6 - h)) / (2 * h), rel=1e-5)
+
+
+def test_gradients_by_guide_points_are_differences():
+    places = [[1.3, 4.2, 8.1], [30.7, 5.4, 8.3], [58.2, 4.6, 8.4]]
+    ends = [[31.7, 2.1, 1.4], [56.4, 3.7, 1.2]]
+
+    def made(cable, spring):
+        return bar(
+            cable=[{"name": "flexor", "points": cable, "target": {"length_ratio": 0.95}}],
+            spring=[{"name": "band", "points": spring, "stiffness": "40 N/m"}],
+            program={"steps": 1, "tolerance": 1e-10},
+        )
+
+    tension = pliant.Measure("tension", "flexor")
+
+    def judged(model, **options):
+        return pliant.gradient(model, [tension], lambda step, values: (values[0], [1.0]), **options)
+
+    found = judged(made(places, ends), guide_points=True)
+    assert [p.name for p in found.guide_points][2:4] == ['cable "flexor": point 3', 'spring "band": point 1']
+    assert found.guide_points[1].place == pytest.approx([0.0307, 0.0054, 0.0083], abs=1e-12)
+    assert found.by_guide_points.shape == (5, 3)
+    for k in (1, 4):
+
+        def value(change, k=k):
+            moved = [list(p) for p in places + ends]
+            moved[k][2] += change
+            return judged(made(moved[:3], moved[3:])).value
+
+        assert found.by_guide_points[k, 2] == pytest.approx((value(0.01) - value(-0.01)) / 2e-5, rel=1e-4)
+    assert judged(made(places, ends)).by_guide_points.shape == (0, 3)
 
 
 def test_products_and_solutions_belong_together(model, state):

@@ -5,6 +5,7 @@ import os
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -169,7 +170,7 @@ def test_they_are_registered_where_gymnasium_is_installed(tmp_path):
         "assert isinstance(env, gymnasium.Env) and isinstance(env.action_space, gymnasium.spaces.Box)\n"
         "assert registry['pliant/Reach-v0'] == 'pliant.envs:Reach' and env.action_space.shape == (3,)\n"
     )
-    path = os.pathsep.join([str(tmp_path), os.environ["PYTHONPATH"]])
+    path = os.pathsep.join([str(tmp_path), str(Path(pliant.__file__).parents[1])])
     subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "PYTHONPATH": path})
 
 

@@ -1,6 +1,7 @@
 // What stands behind the values of the library.
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,8 +11,10 @@
 
 #include "base/core/error.hpp"
 #include "geometry/mesh/tet_mesh.hpp"
+#include "pliant/linearisation.hpp"
 #include "pliant/simulation.hpp"
 #include "robot/description/robot.hpp"
+#include "simulation/linearisation/parameters.hpp"
 #include "simulation/model/model.hpp"
 #include "simulation/run/trajectory.hpp"
 #include "simulation/scene/scene.hpp"
@@ -44,6 +47,8 @@ struct State::Data {
 namespace library {
 
 [[nodiscard]] std::vector<Point> points_of(std::span<const Vec3> points);
+[[nodiscard]] std::vector<double> list_of(const Eigen::VectorXd& numbers);
+[[nodiscard]] std::vector<Parameter> parameters_of(const std::vector<sim::Parameter>& all);
 /// x, y and z of each.
 [[nodiscard]] std::span<const double> numbers_of(std::span<const Vec3> points);
 /// As in Inputs and back. Precondition: as many as the model has.

@@ -10,21 +10,17 @@
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
+#include "library/simulation/guides.hpp"
 #include "library/simulation/measures.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_document.hpp"
 #include "simulation/gradient/program_gradient.hpp"
 #include "simulation/material/law_parameters.hpp"
-#include "simulation/run/simulate.hpp"
 #include "simulation/scene/number_models.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
 namespace pliant {
 namespace {
-
-std::vector<double> list_of(const Eigen::VectorXd& v) {
-    return {v.begin(), v.end()};
-}
 
 /// The objective with its measures by index. What `judge` throws is kept and thrown again where no engine is between.
 class Judge {
@@ -75,19 +71,12 @@ private:
     const Judge& judge_;
 };
 
-std::vector<Parameter> shown(const std::vector<sim::Parameter>& all) {
-    std::vector<Parameter> out;
-    for (const sim::Parameter& one : all) out.push_back({one.name, one.unit, one.value});
-    return out;
-}
-
 /// What the gradient is by: at rest, where names and numbers are those of the whole program.
-void add_names(const sim::Model& model, const sim::Program& program, ProgramGradient& out) {
-    const sim::Stepper stepper(model, sim::stepper_options(program));
-    const sim::RobotState rest = stepper.rest();
-    const auto at = library::value_of(sim::Linearisation::create(stepper.system(), rest.now.state, rest.controls));
-    out.inputs = shown(sim::inputs(at));
-    out.parameters = shown(sim::parameters(at));
+void add_names(const sim::Model& model, ProgramGradient& out) {
+    const sim::Equilibrium system(model);
+    const auto at = library::value_of(sim::Linearisation::create(system, system.rest(), system.controls(0)));
+    out.inputs = library::parameters_of(sim::inputs(at));
+    out.parameters = library::parameters_of(sim::parameters(at));
 }
 
 /// By the numbers of each tet's law, under the names of robot files.
@@ -114,7 +103,7 @@ std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivati
             entry(number.name, number.unit)[t] = slope;
         }
     }
-    if (of.density.size() > 0) entry("density", "kg/m^3") = list_of(of.density);
+    if (of.density.size() > 0) entry("density", "kg/m^3") = library::list_of(of.density);
     return out;
 }
 
@@ -167,7 +156,12 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     library::WatchedProgress watched(watch);
     JudgedProgress progress(watched, judge);
     const Numbers numbers = numbers_around(*model.data(), options.numbers, progress);
-    const sim::By by{.tets = options.tets, .rest = options.rest_positions, .numbers = numbers.changes};
+    library::Guides guides;
+    if (options.guide_points) guides = library::guides_of(*model.data());
+    const sim::By by{.tets = options.tets,
+                     .rest = options.rest_positions,
+                     .guides = std::move(guides.points),
+                     .numbers = numbers.changes};
     auto found =
         sim::program_gradient(scene.model, scene.robot.program, judge.objective(), {by, options.kept}, progress);
     watched.rethrow();
@@ -176,13 +170,16 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     ProgramGradient out;
     out.value = of.value;
     out.values = of.values;
-    add_names(scene.model, scene.robot.program, out);
-    out.by_parameters = list_of(of.by.parameters);
-    out.by_numbers = list_of(of.by.numbers);
+    add_names(scene.model, out);
+    out.by_parameters = library::list_of(of.by.parameters);
+    out.by_numbers = library::list_of(of.by.numbers);
     if (options.rest_positions) out.by_rest_positions = library::points_of(linalg::points_of(of.by.rest));
+    out.guide_points = std::move(guides.shown);
+    out.by_guide_points = library::points_of(linalg::points_of(of.by.guides));
+    out.by_guide_points.resize(out.guide_points.size());  // of an objective that depends on nothing
     if (options.tets) out.by_tets = by_tets(scene.model, of.by.tets);
     for (const auto& instant : of.instants)
-        out.instants.push_back({instant.step, instant.time, list_of(instant.by_inputs)});
+        out.instants.push_back({instant.step, instant.time, library::list_of(instant.by_inputs)});
     return out;
 }
 

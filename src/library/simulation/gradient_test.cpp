@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/core/near.hpp"
@@ -88,6 +89,99 @@ TEST_CASE("a measure at a state has the value that is observed and the gradient 
     CHECK_THROWS_WITH_AS((void)at.value({Measure::Of::spring_force, "s", {}}),
                          "there is no spring \"s\": the robot has none", Failure);
     CHECK_THROWS_AS((void)at.value({Measure::Of::marker, "tip", {std::nan(""), 0, 0}}), Failure);
+}
+
+namespace {
+
+/// Guide points of a cable that shortens by a share and of two springs, mm; the third starts in space.
+using Places = std::vector<Point>;
+const Places guide_places = {{1.3, 4.2, 8.1},  {30.7, 5.4, 8.3}, {58.2, 4.6, 8.4}, {31.7, 2.1, 1.4},
+                             {56.4, 3.7, 1.2}, {80, 2, -30},     {50.6, 7.3, 1.7}};
+
+Model guided(const Places& at) {
+    const auto point = [&](std::size_t k) {
+        std::string text = "[";
+        for (const double c : at[k]) text += std::to_string(c) + ", ";
+        return text + "]";
+    };
+    return Model(Robot::parse(R"(
+        name = "guided"
+        length_unit = "mm"
+        material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
+        mesh = { order = 1, size = "5 mm" }
+        body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [60, 10, 10]] } }]
+        fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+        marker = [{ name = "tip", point = [60, 5, 5] }]
+        program = { steps = 4, tolerance = 1e-10 }
+        cable = [{ name = "flexor", target.length_ratio = 0.94, points = [)" +
+                              point(0) + ", " + point(1) + ", " + point(2) + R"(] }]
+        spring = [{ name = "free", stiffness = "40 N/m", eyelet_radius = "6 mm", points = [)" +
+                              point(3) + ", " + point(4) + R"(] },
+                  { name = "held", stiffness = "20 N/m", free_length = "25 mm", anchor = "first", points = [)" +
+                              point(5) + ", " + point(6) + "] }]"));
+}
+
+}  // namespace
+
+TEST_CASE("guide points of cables and springs have the derivatives that programs with one of them moved show") {
+    Objective objective = at_end();
+    objective.measures.push_back({Measure::Of::spring_force, "free", {}});
+    objective.measures.push_back({Measure::Of::length, "flexor", {}});
+    objective.judge = [](int step, std::span<const double> at) {
+        return Judgement{step * (1e2 * at[0] + at[1] + 7 * at[2] + 90 * at[3]),
+                         {1e2 * step, 1.0 * step, 7.0 * step, 90.0 * step}};
+    };
+    const ProgramGradient of = gradient(guided(guide_places), objective, {.guide_points = true});
+    REQUIRE(of.by_guide_points.size() == guide_places.size());
+    CHECK(of.guide_points[1].name == "cable \"flexor\": point 2");
+    CHECK(of.guide_points[5].name == "spring \"held\": point 1");
+    double size = 0;
+    for (const Point& by : of.by_guide_points)
+        for (const double slope : by) size = std::max(size, std::fabs(slope));
+    for (std::size_t k = 0; k < guide_places.size(); ++k) {
+        CAPTURE(of.guide_points[k].name);
+        for (std::size_t c = 0; c < 3; ++c) {
+            CHECK(of.guide_points[k].place[c] == near(1e-3 * guide_places[k][c], {.absolute = 1e-12}));
+            const auto with = [&](double change_mm) {
+                Places moved = guide_places;
+                moved[k][c] += change_mm;
+                return gradient(guided(moved), objective).value;
+            };
+            const double by_others = (with(0.01) - with(-0.01)) / 2e-5;
+            CHECK(of.by_guide_points[k][c] == near(by_others, {.relative = 1e-4, .absolute = 1e-5 * size}));
+        }
+    }
+    CHECK(gradient(guided(guide_places), objective).by_guide_points.empty());
+}
+
+TEST_CASE("at a state, too, with lengths as they are in m or as a share of those at rest") {
+    const auto state_of = [](const Model& model, double length) {
+        Stepper stepper(model, {.tolerance = 1e-11});
+        State state = stepper.rest();
+        Inputs inputs = stepper.program(1);
+        if (length > 0) inputs.cables[0].value = length;
+        REQUIRE(stepper.step(state, inputs).arrived);
+        return state;
+    };
+    const State state = state_of(guided(guide_places), 0);
+    Linearisation at(state);
+    REQUIRE(at.guide_points().size() == guide_places.size());
+    const Measure tension{Measure::Of::tension, "flexor", {}};
+    Quantity as_such;
+    as_such.by_tensions = {1};
+    const auto by_length_as_such = at.gradient(as_such, {.guide_points = true}).guide_points;
+    const auto by_share = at.gradient(tension, {.guide_points = true}).guide_points;
+    CHECK(at.gradient(tension).guide_points.empty());
+    for (const std::size_t k : {1, 4, 5}) {
+        const auto with = [&](double change_mm, double length) {
+            Places moved = guide_places;
+            moved[k][2] += change_mm;
+            return Linearisation(state_of(guided(moved), length)).value(tension);
+        };
+        const double length = state.inputs().cables[0].value;
+        CHECK(by_length_as_such[k][2] == near((with(0.01, length) - with(-0.01, length)) / 2e-5, {.relative = 1e-4}));
+        CHECK(by_share[k][2] == near((with(0.01, 0) - with(-0.01, 0)) / 2e-5, {.relative = 1e-4}));
+    }
 }
 
 TEST_CASE("what an objective throws is passed on, and slopes that do not fit are refused") {

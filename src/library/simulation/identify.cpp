@@ -46,9 +46,7 @@ Measurements Measurements::load(const fs::path& file) {
 Identification identify(const Robot& robot, const std::vector<std::string>& unknowns, const Measurements& measured,
                         JudgeOn judge, const std::optional<Mesh>& mesh, const Watch& watch) {
     const robot::Robot& given = robot.data().robot;
-    std::vector<sim::identify::Unknown> wanted;
-    for (const std::string& text : unknowns)
-        wanted.push_back(library::value_of(sim::identify::find_unknown(given, text)));
+    const auto wanted = library::value_of(sim::identify::find_unknowns(given, unknowns));
     library::WatchedProgress progress(watch);
     const sim::identify::Source source = source_of(robot.shared(), mesh, progress);
     const auto start = library::value_of(source.with({}, {}));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -38,17 +37,12 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
 
 }  // namespace
 
-double library::inverse_tolerance(const robot::Robot& robot) {
-    constexpr double tightest_needed = 1e-5;
-    return std::min(robot.program.tolerance, tightest_needed);
-}
-
 InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
     if (options.starts < 0) throw Failure(Failure::Kind::input, "the number of starts is negative");
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model));
     sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);
-    stepping.tolerance = library::inverse_tolerance(scene.robot);
+    stepping.tolerance = robot::goal_tolerance(scene.robot.program);
     sim::Stepper stepper(scene.model, stepping);
     library::WatchedProgress progress(watch);
     sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {options.starts}, progress);

@@ -21,10 +21,4 @@ struct InverseResult::Data {
     }
 };
 
-namespace library {
-
-/// Equilibria that are compared with a goal have to be nearer to it than its tolerance is wide.
-[[nodiscard]] double inverse_tolerance(const robot::Robot& robot);
-
-}  // namespace library
 }  // namespace pliant

@@ -13,6 +13,7 @@
 #include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_goals.hpp"
 
 namespace pliant {
 namespace {
@@ -50,8 +51,8 @@ ProgramFiles program_files(const InverseResult::Data& found, const fs::path& fol
     const robot::Robot& robot = found.model->scene.robot;
     const Robot::Data& given = *found.model->robot;
     const auto program = [&](const fs::path& file, const std::vector<std::string>& changes) {
-        return library::value_of(
-            robot::program_text(robot, file, changes, folder, points, steps_each, library::inverse_tolerance(robot)));
+        return library::value_of(robot::program_text(robot, file, changes, folder, points, steps_each,
+                                                     robot::goal_tolerance(robot.program)));
     };
     if (given.has_file) return {program(given.file, given.changes)};
     return {program(folder / robot_name, {}),

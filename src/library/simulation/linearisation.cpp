@@ -2,28 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
+#include "library/simulation/guides.hpp"
 #include "library/simulation/measures.hpp"
+#include "simulation/gradient/guide_points.hpp"
 #include "simulation/gradient/variation.hpp"
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/linearisation/rest_positions.hpp"
 
 namespace pliant {
 namespace {
-
-std::vector<double> numbers(const Eigen::VectorXd& v) {
-    return {v.begin(), v.end()};
-}
-
-std::vector<Parameter> shown(const std::vector<sim::Parameter>& all) {
-    std::vector<Parameter> out;
-    for (const sim::Parameter& one : all) out.push_back({one.name, one.unit, one.value});
-    return out;
-}
 
 void expect_size(std::size_t size, std::size_t wanted, const char* what) {
     if (size == wanted) return;
@@ -40,8 +33,8 @@ struct Linearisation::Work {
               sim::Linearisation::create(system, state.data().robot.now.state, state.data().robot.controls))),
           inputs(sim::inputs(at)),
           parameters(sim::parameters(at)),
-          shown_inputs(shown(inputs)),
-          shown_parameters(shown(parameters)) {}
+          shown_inputs(library::parameters_of(inputs)),
+          shown_parameters(library::parameters_of(parameters)) {}
 
     [[nodiscard]] Eigen::VectorXd unknowns(std::span<const double> v) const {
         expect_size(v.size(), static_cast<std::size_t>(at.size()), "the vector");
@@ -50,12 +43,17 @@ struct Linearisation::Work {
     [[nodiscard]] Change shown_change(const sim::Change& change) const;
     [[nodiscard]] sim::Quantity quantity(const Quantity& asked) const;
     [[nodiscard]] Change response(const std::vector<sim::Parameter>& of, std::size_t index, const char* what);
+    [[nodiscard]] const library::Guides& all_guides() {
+        if (!guides) guides = library::guides_of(*model);
+        return *guides;
+    }
 
     std::shared_ptr<const Model::Data> model;
     sim::Equilibrium system;
     sim::Linearisation at;
     std::vector<sim::Parameter> inputs, parameters;
     std::vector<Parameter> shown_inputs, shown_parameters;
+    std::optional<library::Guides> guides;  ///< once they have been asked for
 };
 
 /// Multipliers of chambers are minus their pressures; patches that loads press on have one too, which nobody sees.
@@ -65,8 +63,8 @@ Change Linearisation::Work::shown_change(const sim::Change& change) const {
     out.positions = library::points_of(linalg::points_of(change.positions));
     const auto cables = static_cast<Eigen::Index>(d.cables.size()),
                chambers = static_cast<Eigen::Index>(d.chambers.size());
-    out.tensions_N = numbers(change.multipliers.head(cables));
-    out.pressures_Pa = numbers(-change.multipliers.segment(cables, chambers));
+    out.tensions_N = library::list_of(change.multipliers.head(cables));
+    out.pressures_Pa = library::list_of(-change.multipliers.segment(cables, chambers));
     return out;
 }
 
@@ -108,16 +106,16 @@ std::size_t Linearisation::size() const {
     return static_cast<std::size_t>(work_->at.size());
 }
 std::vector<double> Linearisation::multiply(std::span<const double> v) const {
-    return numbers(work_->at.multiply(work_->unknowns(v)));
+    return library::list_of(work_->at.multiply(work_->unknowns(v)));
 }
 std::vector<double> Linearisation::multiply_transposed(std::span<const double> w) const {
-    return numbers(work_->at.multiply_transposed(work_->unknowns(w)));
+    return library::list_of(work_->at.multiply_transposed(work_->unknowns(w)));
 }
 std::vector<double> Linearisation::solve(std::span<const double> b) {
-    return numbers(library::value_of(work_->at.solve(work_->unknowns(b))));
+    return library::list_of(library::value_of(work_->at.solve(work_->unknowns(b))));
 }
 std::vector<double> Linearisation::solve_transposed(std::span<const double> b) {
-    return numbers(library::value_of(work_->at.solve_transposed(work_->unknowns(b))));
+    return library::list_of(library::value_of(work_->at.solve_transposed(work_->unknowns(b))));
 }
 Change Linearisation::change(std::span<const double> unknowns) const {
     return work_->shown_change(work_->at.change_of(work_->unknowns(unknowns)));
@@ -130,6 +128,10 @@ const std::vector<Parameter>& Linearisation::parameters() const {
     return work_->shown_parameters;
 }
 
+const std::vector<GuidePoint>& Linearisation::guide_points() {
+    return work_->all_guides().shown;
+}
+
 Change Linearisation::response_to_input(std::size_t input) {
     return work_->response(work_->inputs, input, "input");
 }
@@ -137,12 +139,17 @@ Change Linearisation::response_to_parameter(std::size_t parameter) {
     return work_->response(work_->parameters, parameter, "parameter");
 }
 
-Linearisation::Gradient Linearisation::gradient(const Quantity& quantity) {
+Linearisation::Gradient Linearisation::gradient(const Quantity& quantity, const StateGradientOptions& options) {
     const sim::Adjoint adjoint = library::value_of(work_->at.adjoint(work_->quantity(quantity)));
     Gradient out;
-    out.inputs = numbers(sim::derivatives(work_->at, adjoint, work_->inputs));
-    out.parameters = numbers(sim::derivatives(work_->at, adjoint, work_->parameters));
+    out.inputs = library::list_of(sim::derivatives(work_->at, adjoint, work_->inputs));
+    out.parameters = library::list_of(sim::derivatives(work_->at, adjoint, work_->parameters));
     out.rest_positions = library::points_of(linalg::points_of(sim::rest_gradient(work_->at, adjoint)));
+    if (!options.guide_points) return out;
+    const auto actuators = static_cast<Eigen::Index>(work_->system.actuators().size());
+    const Eigen::VectorXd by_guides =
+        sim::guide_gradient(work_->at, adjoint, {}, Eigen::VectorXd::Zero(actuators), work_->all_guides().points);
+    out.guide_points = library::points_of(linalg::points_of(by_guides));
     return out;
 }
 
@@ -150,10 +157,13 @@ double Linearisation::value(const Measure& measure) const {
     return sim::slope(work_->at, library::measure_for(work_->model->scene.model, measure)).value;
 }
 
-Linearisation::Gradient Linearisation::gradient(const Measure& measure) {
+Linearisation::Gradient Linearisation::gradient(const Measure& measure, const StateGradientOptions& options) {
     const sim::Slope slope = sim::slope(work_->at, library::measure_for(work_->model->scene.model, measure));
-    const sim::Variation by = library::value_of(sim::gradient(work_->at, slope, {.rest = true}));
-    return {numbers(by.inputs), numbers(by.parameters), library::points_of(linalg::points_of(by.rest))};
+    sim::By wanted{.rest = true};
+    if (options.guide_points) wanted.guides = work_->all_guides().points;
+    const sim::Variation by = library::value_of(sim::gradient(work_->at, slope, wanted));
+    return {library::list_of(by.inputs), library::list_of(by.parameters),
+            library::points_of(linalg::points_of(by.rest)), library::points_of(linalg::points_of(by.guides))};
 }
 
 Quantity Linearisation::marker_coordinate(std::size_t marker, const Point& direction) const {

@@ -83,6 +83,16 @@ sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs) {
     return out;
 }
 
+std::vector<double> list_of(const Eigen::VectorXd& numbers) {
+    return {numbers.begin(), numbers.end()};
+}
+
+std::vector<Parameter> parameters_of(const std::vector<sim::Parameter>& all) {
+    std::vector<Parameter> out;
+    for (const sim::Parameter& one : all) out.push_back({one.name, one.unit, one.value});
+    return out;
+}
+
 StepResult result_of(const sim::Step& step) {
     return {true, !step.converged, step.reason, step.iterations, step.substeps, step.residual};
 }

@@ -28,8 +28,9 @@ struct View::Work {
     }
 
     [[nodiscard]] std::string frame(std::vector<Vec3> points, double time) const {
-        const std::string head = fmt::format(R"({{"revision":1,"time":{},"markers":{},"obstacles":{}}})", time,
-                                             markers(library::numbers_of(points)), scene.obstacle_offsets(time));
+        const std::string head =
+            fmt::format(R"({{"revision":1,"time":{},"markers":{},"obstacles":{}}})", time,
+                        markers(library::numbers_of(points)), scene.obstacle_offsets(time, points));
         sim::Step step;
         step.positions = std::move(points);
         return scene.frame(step, {"J", "von_mises", "stretch", "energy"}, head);

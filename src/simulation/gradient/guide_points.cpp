@@ -1,8 +1,11 @@
 #include "simulation/gradient/guide_points.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/linearisation/met_segments.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -17,17 +20,33 @@ struct ByWeight {
     Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();  ///< times X, m
 };
 
-/// What a cable does to the measure.
+/// What a cable or a spring does to the measure.
 struct Pull {
-    const CablePath& path;
+    CablePath path;
     double tension = 0;      ///< that acts along the path
     double weighted = 0;     ///< by its weighted length: what its own equation asks for
     double length = 0;       ///< by its length as such
     double rest_length = 0;  ///< by its length at rest
-    const std::vector<double>& shares;
+    std::vector<double> shares{};
+    std::vector<double> by_segments{};  ///< by the length of each segment at rest, through where ends have met
 };
 
-Pull pull_of(const Linearisation& at, const Adjoint& adjoint, const Slope& of, std::size_t c, double by_rest) {
+/// Sets what lengths at rest do through segments whose ends have met.
+void add_met_segments(const Linearisation& at, const Eigen::VectorXd& weights, Pull& pull) {
+    const Eigen::VectorXd& x = at.state().x;
+    const MetSegments met(pull.path, view(x), pull.shares);
+    pull.by_segments.assign(pull.path.segment_count(), 0.0);
+    if (!met.any()) return;
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(x.size());
+    met.add_gradient_rate(pull.tension, view(force));
+    const double worth = weights.dot(force) + pull.weighted * met.length_rate() +
+                         pull.length * MetSegments(pull.path, view(x)).length_rate();
+    const Eigen::VectorXd rest = at.system().rest().x;
+    pull.by_segments = met_length_rates(pull.path, view(rest));
+    for (double& rate : pull.by_segments) rate *= worth;
+}
+
+Pull pull_of_cable(const Linearisation& at, const Adjoint& adjoint, const Slope& of, std::size_t c, double by_rest) {
     const Actuator& actuator = at.system().actuators()[c];
     const double tension = actuator.gaps() == nullptr ? at.state().multiplier[static_cast<Eigen::Index>(c)] : 0;
     Pull cable{actuator.cable(), tension, 0, 0, by_rest, at.controls().shares[c]};
@@ -39,36 +58,59 @@ Pull pull_of(const Linearisation& at, const Adjoint& adjoint, const Slope& of, s
     return cable;
 }
 
+/// The force of a spring follows from its length and, where it is free at rest, from that at rest.
+Pull pull_of_spring(const Linearisation& at, const Slope& of, std::size_t s, const Eigen::VectorXd& weights) {
+    const Spring& spring = at.system().model().description().springs[s];
+    const SpringPath& path = at.system().springs()[s];
+    const Eigen::VectorXd rest = at.system().rest().x;
+    Pull pull{CablePath(spring.points, view(rest))};
+    for (const Slope::ByMeasure& own : of.by_springs) {
+        if (own.actuator != s) continue;
+        pull.length += own.now;
+        pull.rest_length += own.at_rest;
+    }
+    const double force = path.force(view(at.state().x));
+    if (spring.only_pulls && !(force > 0)) return pull;
+    pull.tension = force;
+    Eigen::VectorXd by_force = Eigen::VectorXd::Zero(weights.size());
+    path.add_length_gradient(view(at.state().x), spring.stiffness_N_m, view(by_force));
+    const double by_length = weights.dot(by_force);
+    pull.length += by_length;
+    if (!spring.free_length_m) pull.rest_length -= by_length;
+    return pull;
+}
+
 /// t = d / |d|, or what a met segment has instead.
 Eigen::Vector3d along(const CablePath& path, const Eigen::Vector3d& d) {
     return d / std::max(d.norm(), path.met_length_m());
 }
 
 /// A segment pulls with tension t; the weights of its ends differ by u, so that it counts u . t.
-ByWeight of_segment(const Pull& cable, std::size_t k, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
+ByWeight of_segment(const Pull& pull, std::size_t k, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
                     const Eigen::VectorXd& weights) {
-    const Eigen::Vector3d d = linalg::vector(cable.path.segment_vector(k, view(x)));
-    const Eigen::Vector3d u = linalg::vector(cable.path.segment_motion(k, view(weights)));
-    const double share = cable.shares.empty() ? 1 : cable.shares[k], met = cable.path.met_length_m();
-    const Eigen::Vector3d t = along(cable.path, d);
+    const Eigen::Vector3d d = linalg::vector(pull.path.segment_vector(k, view(x)));
+    const Eigen::Vector3d u = linalg::vector(pull.path.segment_motion(k, view(weights)));
+    const double share = pull.shares.empty() ? 1 : pull.shares[k], met = pull.path.met_length_m();
+    const Eigen::Vector3d t = along(pull.path, d);
     Eigen::Vector3d across = u / std::max(d.norm(), met);
     if (d.norm() >= met) across -= t.dot(u) / d.norm() * t;
-    return {cable.tension * share * across + (cable.weighted * share + cable.length) * t, cable.tension * share * t,
-            cable.rest_length * along(cable.path, linalg::vector(cable.path.segment_vector(k, view(rest))))};
+    return {pull.tension * share * across + (pull.weighted * share + pull.length) * t, pull.tension * share * t,
+            (pull.rest_length + pull.by_segments[k]) *
+                along(pull.path, linalg::vector(pull.path.segment_vector(k, view(rest))))};
 }
 
 /// A guide point is the end of one segment and the beginning of the next.
-ByWeight of_point(const Pull& cable, std::size_t point, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
+ByWeight of_point(const Pull& pull, std::size_t point, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
                   const Eigen::VectorXd& weights) {
     ByWeight sum;
     const auto add = [&](std::size_t segment, double sign) {
-        const ByWeight one = of_segment(cable, segment, x, rest, weights);
+        const ByWeight one = of_segment(pull, segment, x, rest, weights);
         sum.place += sign * one.place;
         sum.weights += sign * one.weights;
         sum.at_rest += sign * one.at_rest;
     };
     if (point > 0) add(point - 1, 1);
-    if (point < cable.path.segment_count()) add(point, -1);
+    if (point < pull.path.segment_count()) add(point, -1);
     return sum;
 }
 
@@ -80,11 +122,16 @@ Eigen::VectorXd guide_gradient(const Linearisation& at, const Adjoint& adjoint, 
     const Eigen::VectorXd rest = at.system().rest().x;
     const Eigen::VectorXd weights = at.force_weights(adjoint).head(x.size());
     Eigen::VectorXd result = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(guides.size()));
+    std::optional<Pull> pull;  // of the path that the guide point before is of
     for (std::size_t g = 0; g < guides.size(); ++g) {
         const GuidePoint& guide = guides[g];
-        const Pull cable =
-            pull_of(at, adjoint, of, guide.cable, by_rest_measure[static_cast<Eigen::Index>(guide.cable)]);
-        const ByWeight by = of_point(cable, guide.point, x, rest, weights);
+        if (!pull || guide.path != guides[g - 1].path || guide.of_spring != guides[g - 1].of_spring) {
+            pull = guide.of_spring ? pull_of_spring(at, of, guide.path, weights)
+                                   : pull_of_cable(at, adjoint, of, guide.path,
+                                                   by_rest_measure[static_cast<Eigen::Index>(guide.path)]);
+            add_met_segments(at, weights, *pull);
+        }
+        const ByWeight by = of_point(*pull, guide.point, x, rest, weights);
         auto sum = result.segment<3>(3 * static_cast<Eigen::Index>(g));
         if (guide.slope.nodes.empty()) sum = by.place + by.at_rest;  // fixed in space
         for (std::size_t k = 0; k < guide.slope.nodes.size(); ++k) {

@@ -6,6 +6,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/met_segments.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -41,10 +42,21 @@ Slope of_point(const Place& at, const Attachment& point, const Vec3& direction) 
     return slope;
 }
 
+/// by_rest += what ends of a path that have met make of the rest shape, `factor` for each unit of its length.
+void add_met_length(const Place& at, const CablePath& path, double factor, Slope& slope) {
+    const MetSegments met(path, view(at.state().x));
+    if (!met.any()) return;
+    if (slope.by_rest.size() == 0) slope.by_rest = Eigen::VectorXd::Zero(at.state().x.size());
+    const Eigen::VectorXd rest = at.system().rest().x;
+    add_met_length_gradient(path, view(rest), factor * met.length_rate(), view(slope.by_rest));
+}
+
 /// factor times the measure of an actuator.
 void add_measure(const Place& at, std::size_t a, double by_now, double by_rest, Slope& slope) {
     at.system().actuators()[a].add_measure_gradient(view(at.state().x), by_now, view(slope.state.by_positions));
     slope.by_measures.push_back({a, by_now, by_rest});
+    if (a < at.system().model().description().cables.size())
+        add_met_length(at, at.system().actuators()[a].cable(), by_now, slope);
 }
 
 /// Length or volume, or its ratio to that at rest.
@@ -103,15 +115,19 @@ Slope of_spring(const Place& at, std::size_t s, bool force) {
     slope.value = force ? pull : path.length(view(at.state().x));
     const bool slack = spring.only_pulls && !(pull > 0);
     if (force && slack) return slope;
-    path.add_length_gradient(view(at.state().x), force ? spring.stiffness_N_m : 1, view(slope.state.by_positions));
+    const double by_length = force ? spring.stiffness_N_m : 1;
+    path.add_length_gradient(view(at.state().x), by_length, view(slope.state.by_positions));
+    const Eigen::VectorXd rest = at.system().rest().x;
+    add_met_length(at, CablePath(spring.points, view(rest)), by_length, slope);
+    slope.by_springs.push_back({s, by_length, force && !spring.free_length_m ? -by_length : 0});
     if (!force) return slope;
     slope.direct.push_back({{Parameter::Kind::spring_stiffness, s, "", "", 0, 0}, pull / spring.stiffness_N_m});
     if (spring.free_length_m) {
         slope.direct.push_back({{Parameter::Kind::spring_free_length, s, "", "", 0, 0}, -spring.stiffness_N_m});
         return slope;
     }
-    slope.by_rest = Eigen::VectorXd::Zero(at.state().x.size());
-    path.add_length_gradient(view(at.system().rest().x), -spring.stiffness_N_m, view(slope.by_rest));
+    if (slope.by_rest.size() == 0) slope.by_rest = Eigen::VectorXd::Zero(at.state().x.size());
+    path.add_length_gradient(view(rest), -spring.stiffness_N_m, view(slope.by_rest));
     return slope;
 }
 
@@ -242,6 +258,8 @@ void add(const Slope& slope, double factor, Slope& sum) {
     for (const auto& [by, rate] : slope.direct) sum.direct.push_back({by, factor * rate});
     for (const Slope::ByMeasure& by : slope.by_measures)
         sum.by_measures.push_back({by.actuator, factor * by.now, factor * by.at_rest});
+    for (const Slope::ByMeasure& by : slope.by_springs)
+        sum.by_springs.push_back({by.actuator, factor * by.now, factor * by.at_rest});
 }
 
 Slope no_slope(const Equilibrium& system) {

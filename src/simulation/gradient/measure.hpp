@@ -50,8 +50,9 @@ struct Slope {
         double now = 0, at_rest = 0;
     };
     std::vector<ByMeasure> by_measures{};
-    Eigen::VectorXd by_rest{};     ///< (3n) by rest positions that no actuator's measure is about; empty: none
-    Eigen::VectorXd by_numbers{};  ///< (numbers) of the drawing, number_change.hpp; empty: none
+    std::vector<ByMeasure> by_springs{};  ///< the same of the lengths of springs
+    Eigen::VectorXd by_rest{};            ///< (3n) by rest positions that no actuator's measure is about; empty: none
+    Eigen::VectorXd by_numbers{};         ///< (numbers) of the drawing, number_change.hpp; empty: none
 };
 
 /// An error: there is no such thing, in the words of Measure.

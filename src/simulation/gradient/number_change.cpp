@@ -20,9 +20,13 @@ There there(const Equilibrium& system, const State& state, const Controls& contr
     return at;
 }
 
-double value(const Equilibrium& system, const State& state, const Controls& controls, const Measure& measure) {
+Eigen::VectorXd values(const Equilibrium& system, const State& state, const Controls& controls,
+                       std::span<const Measure> measures) {
     const There at = there(system, state, controls);
-    return slope(system, at.state, at.controls, measure).value;
+    Eigen::VectorXd all(static_cast<Eigen::Index>(measures.size()));
+    for (std::size_t m = 0; m < measures.size(); ++m)
+        all[static_cast<Eigen::Index>(m)] = slope(system, at.state, at.controls, measures[m]).value;
+    return all;
 }
 
 Eigen::VectorXd equations(const Linearisation& of, const Equilibrium& system) {
@@ -32,13 +36,13 @@ Eigen::VectorXd equations(const Linearisation& of, const Equilibrium& system) {
 
 }  // namespace
 
-Eigen::VectorXd measure_by_numbers(std::span<const NumberChange> numbers, const State& state, const Controls& controls,
-                                   const Measure& measure) {
-    Eigen::VectorXd by(static_cast<Eigen::Index>(numbers.size()));
+Eigen::MatrixXd measures_by_numbers(std::span<const NumberChange> numbers, const State& state, const Controls& controls,
+                                    std::span<const Measure> measures) {
+    Eigen::MatrixXd by(static_cast<Eigen::Index>(measures.size()), static_cast<Eigen::Index>(numbers.size()));
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         const NumberChange& n = numbers[k];
-        by[static_cast<Eigen::Index>(k)] =
-            (value(*n.more, state, controls, measure) - value(*n.less, state, controls, measure)) / n.step;
+        by.col(static_cast<Eigen::Index>(k)) =
+            (values(*n.more, state, controls, measures) - values(*n.less, state, controls, measures)) / n.step;
     }
     return by;
 }

@@ -18,10 +18,10 @@ struct NumberChange {
     double step = 0;  ///< by how much they differ, above zero
 };
 
-/// (numbers) d(measure)/dp with the unknowns as they are, where the program drives the robot at the controls' time.
-/// Preconditions: nothing rubs, and the robot is at rest.
-[[nodiscard]] Eigen::VectorXd measure_by_numbers(std::span<const NumberChange> numbers, const State& state,
-                                                 const Controls& controls, const Measure& measure);
+/// (measures, numbers) d(measure)/dp with the unknowns as they are, where the program drives the robot at the controls'
+/// time. Preconditions: nothing rubs, and the robot is at rest.
+[[nodiscard]] Eigen::MatrixXd measures_by_numbers(std::span<const NumberChange> numbers, const State& state,
+                                                  const Controls& controls, std::span<const Measure> measures);
 
 /// (numbers) what the equations' change with each number is worth by these weights: -weights . dF/dp.
 [[nodiscard]] Eigen::VectorXd worth_of_numbers(const Linearisation& at, const Adjoint& adjoint,

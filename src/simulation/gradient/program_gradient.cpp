@@ -52,7 +52,7 @@ private:
     static constexpr const char* stage = "gradient";
 
     /// Whether a step depends on the one before.
-    [[nodiscard]] bool has_history() const { return program_.dynamics.has_value() || stepper_.system().has_friction(); }
+    [[nodiscard]] bool has_history() const { return stepper_.has_inertia() || stepper_.system().has_friction(); }
 
     /// Takes the robot from the end of step k - 1 to that of step k.
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {
@@ -128,9 +128,6 @@ private:
         values.clear();
         for (const Measure& measure : objective_.measures) {
             slopes.push_back(slope(stepper_.system(), piece.state, piece.controls, measure));
-            if (!options_.by.numbers.empty())
-                slopes.back().by_numbers =
-                    measure_by_numbers(options_.by.numbers, piece.state, piece.controls, measure);
             values.push_back(slopes.back().value);
         }
         const Judgement judgement = objective_.judge(k, values);
@@ -138,6 +135,12 @@ private:
         if (std::ranges::all_of(judgement.slopes, is_zero)) return std::nullopt;
         Slope sum = no_slope(stepper_.system());
         for (std::size_t m = 0; m < judgement.slopes.size(); ++m) add(slopes[m], judgement.slopes[m], sum);
+        if (options_.by.numbers.empty()) return sum;
+        const Eigen::Map<const Eigen::VectorXd> rates(judgement.slopes.data(),
+                                                      static_cast<Eigen::Index>(judgement.slopes.size()));
+        sum.by_numbers =
+            measures_by_numbers(options_.by.numbers, piece.state, piece.controls, objective_.measures).transpose() *
+            rates;
         return sum;
     }
 

@@ -199,6 +199,7 @@ Lagged steps_of(const Description& d, int steps, const Lagged* as, const Paramet
             }
             std::vector<double> start(now.x.begin(), now.x.end());
             start.insert(start.end(), before.obstacles.begin(), before.obstacles.end());
+            if (before.friction) contact::carry_over(*before.friction, start, pairs);
             controls.friction = std::make_shared<const contact::Friction>(pairs, start, frozen.slip_m());
             now = as->states[u];
             REQUIRE(converge(c.system, controls, now));

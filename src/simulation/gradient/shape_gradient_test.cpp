@@ -5,6 +5,7 @@
 #include <array>
 
 #include "base/core/near.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/test_reconverged.hpp"
@@ -154,6 +155,53 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
         }
     }
     MESSAGE("guide points: ", worst);
+}
+
+/// A block of which a cable has drawn its own end onto a point in space that it goes on from, and a spring likewise.
+Description met_ends(const std::array<Vec3, 3>& cable, const std::array<Vec3, 3>& spring) {
+    Description d = plain();
+    const Attacher attacher(d.mesh);
+    const auto path = [&](const std::array<Vec3, 3>& at) {
+        return std::vector<Attachment>{
+            *attacher.carried_by_tet(at[0], 0), {{}, {}, at[1]}, *attacher.carried_by_tet(at[2], 0)};
+    };
+    d.cables = {{"c", path(cable), {CableKind::tension_N, 4}}};
+    d.springs = {{"s", path(spring), 400, 0.2 * edge}};
+    d.markers = {{"tip", *attacher.carried_by_tet({2.6 * edge, 0.42 * edge, 0.83 * edge}, 0)}};
+    return d;
+}
+
+TEST_CASE("rest positions and guide points where ends of a cable's and of a spring's segments have met") {
+    const std::array<Vec3, 3> cable = {Vec3{2.9 * edge, 0.5 * edge, 0.98 * edge},
+                                       {2.88 * edge, 0.5 * edge, 1.0 * edge},
+                                       {1.45 * edge, 0.62 * edge, 0.93 * edge}};
+    const std::array<Vec3, 3> spring = {Vec3{2.3 * edge, 0.1 * edge, 0.02 * edge},
+                                        {2.28 * edge, 0.12 * edge, 0.03 * edge},
+                                        {1.2 * edge, 0.13 * edge, 0.07 * edge}};
+    const Description d = met_ends(cable, spring);
+    Settled_robot robot(d);
+    const auto x = linalg::view(robot.at.state().x);
+    const Eigen::VectorXd rest = robot.c.system.rest().x;
+    REQUIRE(robot.c.system.actuators()[0].cable().closed_segment(x) == 0);
+    REQUIRE(CablePath(d.springs[0].points, linalg::view(rest)).closed_segment(x) == 0);
+    Noise noise(4);
+    const Eigen::VectorXd motion = noise.vector(robot.at.state().x.size());
+    CHECK(gradient_error(robot.told({.inputs = false, .parameters = false, .rest = true},
+                                    [&](const Variation& v) { return v.rest.dot(motion); }),
+                         robot.sizes(), 0.01 * edge,
+                         [&](double change) { return robot.values_of_robot(moved_rest(d, motion, change)); }) < 1e-6);
+    const Attacher attacher(d.mesh);
+    By by{.inputs = false, .parameters = false};
+    by.guides = {{0, 0, *attacher.slope(cable[0], 0, 0)}, {0, 1, {}}, {0, 2, *attacher.slope(cable[2], 0, 0)}};
+    for (Eigen::Index k = 0; k < 9; ++k) {
+        CAPTURE(k);
+        CHECK(gradient_error(robot.told(by, [&](const Variation& v) { return v.guides[k]; }), robot.sizes(),
+                             0.01 * edge, [&](double change) {
+                                 std::array<Vec3, 3> moved = cable;
+                                 moved[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)] += change;
+                                 return robot.values_of_robot(met_ends(moved, spring));
+                             }) < 1e-6);
+    }
 }
 
 TEST_CASE("tet by tet: constants of the law, Young's modulus, density; and together those of the whole material") {

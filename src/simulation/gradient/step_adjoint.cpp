@@ -1,7 +1,12 @@
 #include "simulation/gradient/step_adjoint.hpp"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include "base/linalg/vectors.hpp"
 #include "simulation/contact/contact.hpp"
+#include "simulation/gradient/friction_slips.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
 
 namespace pliant::sim {
@@ -37,14 +42,45 @@ void carry_nothing(Carried& carried) {
     carried.v.setZero();
 }
 
-/// Friction slips from where the step begins.
-void carry_friction(const Linearisation& at, const Eigen::VectorXd& force_weights, Carried& carried) {
+/// What the step after it carries on is worth at the end of this one.
+Slips worth_of_slips(const Linearisation& at, std::span<const double> x, const Carried& carried) {
+    const auto& friction = at.controls().friction;
+    Slips worth(friction ? friction->pairs().size() : 0, Eigen::Vector2d::Zero());
+    if (!friction || !carried.friction) return worth;
+    for (const contact::Carry& carry : contact::find_carries(friction->pairs(), carried.friction->pairs())) {
+        const auto slip = friction->slip(friction->pairs()[carry.from], x);
+        worth[carry.from] +=
+            contact::kept_slip_gradient(slip, friction->slip_m()) * carry.change.transpose() * carried.slips[carry.to];
+    }
+    return worth;
+}
+
+/// The same by the positions that make the slips (3 robot nodes, then 3 obstacle nodes).
+Eigen::VectorXd by_positions(const Linearisation& at, const Slips& slips) {
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(at.state().x.size() + at.controls().obstacles.size());
+    if (at.controls().friction) add_to_nodes(*at.controls().friction, slips, by);
+    return by;
+}
+
+/// How far the weights (3 robot nodes, then 3 obstacle nodes) move each pair along its tangents, as hard as it resists.
+void add_resistance(const contact::Friction& friction, std::span<const double> x, const Eigen::VectorXd& weights,
+                    Slips& slips) {
+    for (std::size_t k = 0; k < slips.size(); ++k)
+        slips[k] += friction.stiffness(k, x) * slip_of_motion(friction.pairs()[k], weights);
+}
+
+/// Friction slips from where the step begins, and goes on from the slip with which the step before has ended.
+void carry_friction(const Linearisation& at, std::span<const double> x, const Eigen::VectorXd& force_weights,
+                    Slips slips, const Eigen::VectorXd& by_slips, Carried& carried) {
     const Eigen::Index robot = at.state().x.size();
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(robot + at.controls().obstacles.size());
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(by_slips.size());
     weights.head(force_weights.size()) = force_weights;
-    const Eigen::VectorXd by = friction_stiffness_times(at.system(), at.state(), at.controls(), weights);
+    const Eigen::VectorXd by = friction_stiffness_times(at.system(), at.state(), at.controls(), weights) + by_slips;
     carried.x -= by.head(robot);
     carried.obstacles = -by.tail(by.size() - robot);
+    carried.friction = at.controls().friction;
+    if (carried.friction) add_resistance(*carried.friction, x, weights, slips);
+    carried.slips = std::move(slips);
 }
 
 }  // namespace
@@ -55,13 +91,20 @@ Carried Carried::nothing(const Equilibrium& system) {
 }
 
 bool Carried::is_nothing() const {
-    return x.isZero(0) && v.isZero(0) && x_before.isZero(0) && v_before.isZero(0) && obstacles.isZero(0);
+    return x.isZero(0) && v.isZero(0) && x_before.isZero(0) && v_before.isZero(0) && obstacles.isZero(0) &&
+           std::ranges::all_of(slips, [](const Eigen::Vector2d& slip) { return slip.isZero(0); });
 }
 
 Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by, Carried& carried) {
     const auto& inertia = at.controls().inertia;
+    Eigen::VectorXd all(at.state().x.size() + at.controls().obstacles.size());
+    all << at.state().x, at.controls().obstacles;
+    const std::span<const double> x = linalg::view(std::as_const(all));
+    Slips slips = worth_of_slips(at, x, carried);
+    const Eigen::VectorXd by_slips = by_positions(at, slips);
+    carried.obstacles += by_slips.tail(carried.obstacles.size());
     Slope worth = own;
-    worth.state.by_positions += carried.x;
+    worth.state.by_positions += carried.x + by_slips.head(carried.x.size());
     if (inertia) worth.state.by_positions += inertia->rate() * carried.v;
     const Result<Adjoint> adjoint = at.adjoint(worth.state);
     if (!adjoint) return tl::unexpected(adjoint.error());
@@ -72,7 +115,7 @@ Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by
         carry_inertia(*inertia, weights.head(at.state().x.size()), carried);
     else
         carry_nothing(carried);
-    carry_friction(at, weights, carried);
+    carry_friction(at, x, weights, std::move(slips), by_slips, carried);
     return result;
 }
 

@@ -14,7 +14,20 @@
 
 namespace pliant::sim::testing {
 
-/// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else.
+/// Cables that are driven by their length pull, or are slack and no longer than wanted.
+inline bool can_be(const Equilibrium& system, const Controls& controls, const State& state) {
+    for (std::size_t a = 0; a < system.actuators().size(); ++a) {
+        const Actuator& actuator = system.actuators()[a];
+        if (!actuator.only_pulls() || controls.drives[a].kind != Drive::Kind::measure) continue;
+        const double tension = state.multiplier[static_cast<Eigen::Index>(a)];
+        const double length = actuator.measure(linalg::view(state.x), controls.shares[a]);
+        if (tension < 0 || (tension == 0 && length > controls.drives[a].value)) return false;
+    }
+    return true;
+}
+
+/// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else. False
+/// also where a cable would have to push, or hangs through where it should pull.
 inline bool converge(const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
     double before = 1e300;
@@ -28,8 +41,12 @@ inline bool converge(const Equilibrium& system, const Controls& controls, State&
         state.x -= change.positions;
         for (const std::size_t a : at->solved())
             state.multiplier[static_cast<Eigen::Index>(a)] -= change.multipliers[static_cast<Eigen::Index>(a)];
+        for (const std::size_t a : at->solved()) {
+            if (at->is_slack(a)) state.multiplier[static_cast<Eigen::Index>(a)] = 0;  // not what rounding leaves of it
+        }
         const double size = change.positions.norm();
-        if (size < 1e-14 * state.x.norm() || (k > 3 && size > 0.5 * before)) return size < 1e-11 * state.x.norm();
+        if (size < 1e-14 * state.x.norm() || (k > 3 && size > 0.5 * before))
+            return size < 1e-11 * state.x.norm() && can_be(system, controls, state);
         before = size;
     }
     return false;

@@ -24,10 +24,11 @@
 
 namespace pliant::sim {
 
-/// A guide point of a cable, and how it is tied to the mesh: Attacher::slope().
+/// A guide point of a cable or spring, and how it is tied to the mesh: Attacher::slope().
 struct GuidePoint {
-    std::size_t cable = 0, point = 0;
+    std::size_t path = 0, point = 0;
     AttachmentSlope slope{};
+    bool of_spring = false;
 };
 
 /// What a gradient is wanted by.

@@ -1,7 +1,10 @@
 // How what a trial gives changes with the unknowns.
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "base/linalg/vectors.hpp"
+#include "simulation/gradient/friction_slips.hpp"
 #include "simulation/gradient/variation.hpp"
 #include "simulation/identify/trial.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
@@ -114,11 +117,14 @@ Result<MatrixXd> transposed(sim::Linearisation& at, std::span<const sim::Slope> 
 
 /// Where there is a history: what the state before a piece does with each unknown.
 struct Trial::Forward {
+    explicit Forward(std::vector<sim::History> rest) : by(std::move(rest)) {}
+
     std::vector<sim::History> by;  ///< (unknowns)
 
     /// Over a piece: (measures, unknowns) at its end.
     [[nodiscard]] Result<MatrixXd> go_on(sim::Linearisation& at, std::span<const sim::Slope> slopes,
                                          std::span<const sim::Variation> unknowns) {
+        begin(at);
         MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
         for (std::size_t j = 0; j < unknowns.size(); ++j) {
             sim::Derivative derivative = sim::derivative(at, unknowns[j]);
@@ -146,10 +152,54 @@ private:
         }
         VectorXd motion = VectorXd::Zero(force.size());
         motion.head(h.x.size()) = h.x;
-        return force - sim::friction_stiffness_times(at.system(), at.state(), at.controls(), motion);
+        force -= sim::friction_stiffness_times(at.system(), at.state(), at.controls(), motion);
+        if (friction_) add_slip_force(at, unknown, force);
+        return force;
+    }
+
+    /// What the piece before hands on becomes what this one begins with.
+    void begin(const sim::Linearisation& at) {
+        const auto before = std::exchange(friction_, at.controls().friction);
+        std::vector<sim::Slips> handed_on = std::exchange(slips_, {});
+        const std::size_t pairs = friction_ ? friction_->pairs().size() : 0;
+        slips_.assign(by.size(), sim::Slips(pairs, Eigen::Vector2d::Zero()));
+        if (!before || !friction_) return;
+        for (const auto& carry : sim::contact::find_carries(before->pairs(), friction_->pairs())) {
+            for (std::size_t j = 0; j < by.size(); ++j) slips_[j][carry.to] = carry.change * handed_on[j][carry.from];
+        }
+    }
+
+    void add_slip_force(const sim::Linearisation& at, std::size_t unknown, VectorXd& force) const {
+        const VectorXd x = end_of(at);
+        sim::Slips resisted = slips_[unknown];
+        for (std::size_t k = 0; k < resisted.size(); ++k)
+            resisted[k] = friction_->stiffness(k, linalg::view(x)) * resisted[k];
+        sim::add_to_nodes(*friction_, resisted, force);
+    }
+
+    /// The slips at the end of the piece, cut to what is handed on; `x`: how that end moves.
+    void keep_slips(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
+        const VectorXd end = end_of(at);
+        VectorXd motion = VectorXd::Zero(end.size());
+        motion.head(x.size()) = x - by[unknown].x;
+        sim::Slips& slips = slips_[unknown];
+        for (std::size_t k = 0; k < slips.size(); ++k) {
+            const auto& pair = friction_->pairs()[k];
+            const auto slip = friction_->slip(pair, linalg::view(end));
+            slips[k] = sim::contact::kept_slip_gradient(slip, friction_->slip_m()) *
+                       (slips[k] + sim::slip_of_motion(pair, motion));
+        }
+    }
+
+    /// Where the nodes of the robot and those of the obstacles are.
+    [[nodiscard]] static VectorXd end_of(const sim::Linearisation& at) {
+        VectorXd all(at.state().x.size() + at.controls().obstacles.size());
+        all << at.state().x, at.controls().obstacles;
+        return all;
     }
 
     void keep(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
+        keep_slips(at, unknown, x);
         sim::History& h = by[unknown];
         VectorXd v = h.v;
         if (at.controls().inertia) v = from(at, unknown).velocity(x);
@@ -162,6 +212,9 @@ private:
         history.dt_before = at.controls().inertia->start().dt_before;
         return at.controls().inertia->from(std::move(history));
     }
+
+    std::shared_ptr<const sim::contact::Friction> friction_{};  ///< of the piece at hand
+    std::vector<sim::Slips> slips_{};  ///< (unknowns) that its pairs begin with; after it, those that it hands on
 };
 
 Result<Rates> Trial::rates(const Source& source, std::span<const Unknown> unknowns, std::span<const double> at) const {
@@ -228,7 +281,7 @@ Result<std::vector<MatrixXd>> Trial::slopes(const Source& source, std::span<cons
     const Result<Rates> by = rates(source, unknowns, at);
     if (!by) return tl::unexpected(by.error());
     const VectorXd nothing = VectorXd::Zero(pieces_.front().state.x.size());
-    Forward forward{std::vector<sim::History>(unknowns.size(), {nothing, nothing, nothing, nothing, 0})};
+    Forward forward(std::vector<sim::History>(unknowns.size(), {nothing, nothing, nothing, nothing, 0}));
     std::vector<MatrixXd> at_stops(stops_.size());
     // At rest nothing has happened yet.
     at_stops[0] = MatrixXd::Zero(static_cast<Index>(channels_.size()), static_cast<Index>(unknowns.size()));

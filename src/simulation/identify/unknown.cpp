@@ -251,4 +251,14 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
     return unknown;
 }
 
+Result<std::vector<Unknown>> find_unknowns(const robot::Robot& robot, const std::vector<std::string>& texts) {
+    std::vector<Unknown> found;
+    for (const std::string& text : texts) {
+        Result<Unknown> unknown = find_unknown(robot, text);
+        if (!unknown) return tl::unexpected(unknown.error());
+        found.push_back(std::move(*unknown));
+    }
+    return found;
+}
+
 }  // namespace pliant::sim::identify

@@ -43,4 +43,8 @@ struct Unknown {
 /// found from above 0.
 [[nodiscard]] Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text);
 
+/// All of them, or the first error.
+[[nodiscard]] Result<std::vector<Unknown>> find_unknowns(const robot::Robot& robot,
+                                                         const std::vector<std::string>& texts);
+
 }  // namespace pliant::sim::identify

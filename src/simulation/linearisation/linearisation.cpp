@@ -96,6 +96,8 @@ KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& l
 
 Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,
                                             const KnownPattern& known, double residual) {
+    if (!system.objects().empty())
+        return input_error("a robot with an [[object]] has no linearisation: gradients and the inverse need obstacles");
     const Evaluation evaluation = system.evaluate(state, controls);
     if (!evaluation.possible()) return failure("a state that {} has no linearisation", name(evaluation.flaw));
     Linearisation made;

@@ -1,12 +1,16 @@
 #include "simulation/linearisation/rest_positions.hpp"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
+#include "simulation/linearisation/met_segments.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -70,6 +74,42 @@ void visit_gaps(const Linearisation& at, const Visit& visit) {
     }
 }
 
+/// Calls visit(path, force, row, actuator) for each cable and spring with segments whose ends have met: dF/d(met
+/// length) (3n) and, of a cable, what its measure changes by.
+template <class Visit>
+void visit_met_segments(const Linearisation& at, const Visit& visit) {
+    const Eigen::VectorXd& x = at.state().x;
+    const Description& d = at.system().model().description();
+    for (std::size_t c = 0; c < d.cables.size(); ++c) {
+        const Actuator& actuator = at.system().actuators()[c];
+        const MetSegments met(actuator.cable(), view(x), at.controls().shares[c]);
+        if (!met.any()) continue;
+        Eigen::VectorXd force = zeros(at);
+        const bool by_gaps = actuator.gaps() != nullptr;  // there the multiplier is no tension
+        if (!by_gaps) met.add_gradient_rate(at.state().multiplier[static_cast<Eigen::Index>(c)], view(force));
+        visit(actuator.cable(), force, met.length_rate(), c);
+    }
+    const Eigen::VectorXd rest = at.system().rest().x;
+    for (std::size_t s = 0; s < d.springs.size(); ++s) {
+        const double pull = at.system().springs()[s].force(view(x));
+        if (d.springs[s].only_pulls && !(pull > 0)) continue;
+        const CablePath path(d.springs[s].points, view(rest));
+        const MetSegments met(path, view(x));
+        if (!met.any()) continue;
+        Eigen::VectorXd force = zeros(at);
+        met.add_gradient_rate(pull, view(force));
+        path.add_gradient(view(x), d.springs[s].stiffness_N_m * met.length_rate(), view(force));
+        visit(path, force, 0.0, at.system().actuators().size());
+    }
+}
+
+/// The row of a multiplier's own equation; nothing where it has none, or where the cable is slack.
+std::optional<Eigen::Index> row_of(const Linearisation& at, std::size_t actuator) {
+    const auto place = std::ranges::find(at.solved(), actuator);
+    if (place == at.solved().end() || at.is_slack(actuator)) return std::nullopt;
+    return at.size() - (at.solved().end() - place);
+}
+
 /// The motion (3n) of held nodes with that of their rest positions.
 Eigen::VectorXd held_motion(const Linearisation& at, const Eigen::VectorXd& motion) {
     const Description& d = at.system().model().description();
@@ -107,10 +147,20 @@ Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) 
     visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
         gaps.add_rest_product(system.model().elements(), view(at.state().x), multiplier, view(motion), view(force));
     });
+    const Eigen::VectorXd rest = system.rest().x;
+    std::vector<std::pair<Eigen::Index, double>> rows;
+    visit_met_segments(at, [&](const CablePath& path, const Eigen::VectorXd& by_met, double row, std::size_t a) {
+        Eigen::VectorXd gradient = zeros(at);
+        add_met_length_gradient(path, view(rest), 1, view(gradient));
+        const double change = gradient.dot(motion);
+        force += change * by_met;
+        if (const auto own = row_of(at, a)) rows.emplace_back(*own, row * change);
+    });
     const Eigen::VectorXd held = held_motion(at, motion);
     Derivative by{at.equations_of_motion(held), {held, Eigen::VectorXd::Zero(at.state().multiplier.size())}};
     const Eigen::VectorXd free = system.restrict_to_free(force);
     by.equations.head(free.size()) += free;
+    for (const auto& [row, change] : rows) by.equations[row] += change;
     by.forces = std::move(force);
     return by;
 }
@@ -129,6 +179,12 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
     });
     visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
         gaps.add_rest_weights(system.model().elements(), view(at.state().x), multiplier, view(weights), view(sum));
+    });
+    const Eigen::VectorXd rest = system.rest().x;
+    visit_met_segments(at, [&](const CablePath& path, const Eigen::VectorXd& by_met, double row, std::size_t a) {
+        double worth = weights.dot(by_met);
+        if (const auto own = row_of(at, a)) worth -= adjoint.weights[*own] * row;
+        add_met_length_gradient(path, view(rest), worth, view(sum));
     });
     return held_weights(at, adjoint.quantity.by_positions - at.held_motion_weights(adjoint.weights)) + sum;
 }

@@ -1,0 +1,40 @@
+// Segments of cables and springs whose ends have met are parabolas below CablePath::met_length_m(), which follows from
+// the path at rest: what that does to forces and lengths where the rest shape changes.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simulation/actuators/cable_path.hpp"
+
+namespace pliant::sim {
+
+/// How the length of a path and its gradient change with the length below which ends have met: both are zero while no
+/// ends have.
+class MetSegments {
+public:
+    /// At node positions `x` (3n), with the shares (segments) of CablePath; both must outlive it.
+    MetSegments(const CablePath& path, std::span<const double> x, std::span<const double> shares = {});
+
+    [[nodiscard]] bool any() const { return any_; }
+    /// d(length) / d(met length), a pure number.
+    [[nodiscard]] double length_rate() const { return length_rate_; }
+    /// forces (3n) += factor * d(dL/dx) / d(met length).
+    void add_gradient_rate(double factor, std::span<double> forces) const;
+
+private:
+    const CablePath& path_;
+    std::span<const double> x_;
+    std::vector<double> rates_;  ///< (segments) of the factor that a segment's vector has in the gradient, times l
+    double length_rate_ = 0;
+    bool any_ = false;
+};
+
+/// (segments) d(met length) / d(length of each segment at rest). `rest`: (3n).
+[[nodiscard]] std::vector<double> met_length_rates(const CablePath& path, std::span<const double> rest);
+
+/// by_rest (3n) += factor * d(met length) / d(rest positions).
+void add_met_length_gradient(const CablePath& path, std::span<const double> rest, double factor,
+                             std::span<double> by_rest);
+
+}  // namespace pliant::sim
