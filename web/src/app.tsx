@@ -7,9 +7,12 @@ import { Icon } from './icons';
 import { Make } from './make/make';
 import { EmergencyStop } from './print/emergency';
 import { Print } from './print/print';
+import { Enlarged } from './print/enlarged';
 import { info } from './print/state';
+import './print/tell';
 import { Simulate } from './simulate/simulate';
-import { api, building, documentState, helm, notice, online, post, problems, scene, section, send, type Section } from './store';
+import { templates } from './simulate/templates';
+import { api, building, documentState, helm, notice, online, post, problems, say, scene, section, send, type Section } from './store';
 import { theme, toggleTheme } from './theme';
 
 interface Project {
@@ -35,6 +38,12 @@ function Open() {
       </button>
       {project && (
         <div class="popover open-list" onClick={() => setProject(null)}>
+          <h2>New robot</h2>
+          {Object.entries(templates).map(([name, text]) => (
+            <button class="item" key={name} onClick={() => unlessLost(`A new robot`, () => void newRobot(text))}>
+              {name}
+            </button>
+          ))}
           <h2>Examples</h2>
           {project.examples.map((name) => (
             <button class="item" onClick={() => unlessLost(`Opening the example ${name.replace(/_/g, ' ')}`, () => void post('/api/example', { name }))}>
@@ -58,6 +67,9 @@ function Open() {
     </div>
   );
 }
+
+const newRobot = (text: string) =>
+  api('/api/robot/new', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: text }).catch((e: Error) => say(e.message));
 
 function Helm() {
   const h = helm.value;
@@ -144,6 +156,7 @@ export function App() {
       {section.value === 'simulate' && <Simulate />}
       {section.value === 'make' && <Make />}
       {section.value === 'print' && <Print />}
+      <Enlarged />
       <DiscardQuestion />
       {notice.value && (
         <div class="notice" role="alert" data-testid="notice">

@@ -1,5 +1,5 @@
 // A field for a number. What cannot be is said beside it, with what can; leaving the field puts the last good value back.
-import { useState } from 'preact/hooks';
+import { useRef, useState } from 'preact/hooks';
 
 export interface Range {
   from: number;
@@ -33,11 +33,28 @@ interface Props {
 
 export function NumberField({ value, range, unit, label, step = 'any', disabled, testId, onValue }: Props) {
   const [wrong, setWrong] = useState('');
+  // What is being typed stays, whatever else of the page is drawn anew in the meantime, and if the line is lost.
+  const [typed, setTyped] = useState<string | null>(null);
+  const open = useRef(false); // something typed is not taken yet
+  const type = (text: string) => {
+    setWrong('');
+    setTyped(text);
+    open.current = true;
+  };
   const take = async (input: HTMLInputElement) => {
+    if (!open.current || disabled) return;
     const v = input.valueAsNumber;
     if (!inRange(v, range)) return setWrong(`${input.value || 'This'}: ${rangeText(range, unit)}`);
+    open.current = false;
     setWrong('');
-    if ((await onValue(v)) === false) input.value = String(value);
+    await onValue(v);
+    if (!open.current) setTyped(null);
+  };
+  const leave = (input: HTMLInputElement) => {
+    if (!open.current || disabled) return;
+    open.current = false;
+    setTyped(null);
+    input.value = String(value); // also where the browser holds what is no number, and says ''
   };
   return (
     <span class="number-field">
@@ -48,13 +65,12 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
           aria-invalid={wrong !== ''}
           data-testid={testId}
           step={step}
-          value={value}
+          value={typed ?? value}
           disabled={disabled}
-          onInput={() => setWrong('')}
+          onInput={(e) => type(e.currentTarget.value)}
           onChange={(e) => void take(e.currentTarget)}
-          onBlur={(e) => {
-            if (!inRange(e.currentTarget.valueAsNumber, range)) e.currentTarget.value = String(value);
-          }}
+          onKeyDown={(e) => e.key === 'Enter' && void take(e.currentTarget)}
+          onBlur={(e) => leave(e.currentTarget)}
         />
         <span class="unit">{unit}</span>
       </span>

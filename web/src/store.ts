@@ -1,12 +1,12 @@
 // The state of the page and its line to the studio.
 import { batch, computed, signal } from '@preact/signals';
 import { readPacket } from './packet';
-import type { Frame, FrameHead, Job, Problem, Scene, SceneHead } from './types';
+import type { Accuracy, Frame, FrameHead, Job, Problem, Scene, SceneHead } from './types';
 
 export type Section = 'simulate' | 'make' | 'print';
 
 const sections: Section[] = ['simulate', 'make', 'print'];
-const asked = location.hash.slice(1) as Section;
+const asked = location.hash.slice(1).split('?')[0] as Section;
 export const section = signal<Section>(sections.includes(asked) ? asked : 'simulate');
 
 export const online = signal(false);
@@ -15,11 +15,12 @@ export const lines = signal(0);
 export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
 export const mayDrive = computed(() => online.value && helm.value.you);
 
-export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'preview' as 'preview' | 'fine' });
+export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy });
 export const scene = signal<Scene | null>(null);
 /// Linear elements: quick, too stiff, and never to be taken for the answer.
-export const rough = computed(() => scene.value?.head.order === 1);
 export const frame = signal<Frame | null>(null);
+export const isRough = (f: Frame | null) => (f?.head.order ?? scene.value?.head.order) === 1;
+export const rough = computed(() => isRough(frame.value));
 export const building = signal<{ stage: string; fraction: number } | null>(null);
 export const problems = signal<Problem[]>([]);
 export const slicing = signal<{ stage: string; fraction: number } | null>(null);
@@ -191,6 +192,7 @@ function receiveText(text: string) {
   if (event.type === 'job' && event.revision === 0) job.value = null;
   else if (event.type === 'job') loadJob().catch((e: Error) => say(e.message));
   if (event.type === 'error') say(String(event.error));
+  if (event.type === 'news') say(String(event.text));
   for (const listener of listeners) listener(event);
 }
 

@@ -19,11 +19,16 @@ export interface Actuator {
   rest: number;
 }
 
+/// Elements: linear, quadratic, or linear while a hand moves and quadratic as soon as it rests.
+export type Accuracy = 'preview' | 'automatic' | 'fine';
+
 export interface SceneHead {
   revision: number;
-  accuracy: 'preview' | 'fine';
+  accuracy: Accuracy;
   robot: string;
   materials: Material[];
+  bodies?: { name: string; material: number }[];
+  unit_mm?: number; // of a coordinate in the robot file
   graded: { body: string; material: number; other: number }[];
   actuators: Actuator[];
   cable_points: number[];
@@ -43,6 +48,8 @@ export interface FrameHead {
   sequence: number;
   tag: number;
   time: number;
+  order?: number; // of the elements that this state was found with; missing: those of the scene
+  refining?: boolean; // linear elements have arrived, and quadratic ones are on their way
   arrived: boolean;
   stuck: string;
   warnings: string[]; // where the state should not be trusted
@@ -57,7 +64,7 @@ export interface FrameHead {
   chambers: { ratio: number; volume_mm3: number; pressure_kPa: number }[];
   markers: [number, number, number][];
   supports: [number, number, number][];
-  obstacles: [number, number, number][];
+  obstacles: [number, number, number, ...number[]][];
   pull?: { vertex: number; force_N: [number, number, number] };
   lead?: Lead; // a marker in somebody's hand, which the actuators follow
 }
@@ -102,6 +109,18 @@ export interface Plan {
   warnings: string[];
 }
 
+/// How images lie on the platform.
+export interface Projector {
+  width: number;
+  height: number;
+  pixel: number;
+  mirror_x: boolean;
+  mirror_y: boolean;
+  rotation: number;
+  offset_x: number;
+  offset_y: number;
+}
+
 export interface Job {
   revision: number;
   file: string;
@@ -110,6 +129,7 @@ export interface Job {
   colours: string[];
   issues: { text: string; severity?: string; layer: number; row?: number; column?: number }[];
   platform: { width_mm: number; depth_mm: number };
+  projector: Projector;
   manifest: {
     name: string;
     width_px: number;

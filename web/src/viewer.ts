@@ -65,7 +65,7 @@ function show(root: HTMLElement, shown: Shown) {
       scale: fieldNames.find((f) => f.name === name)!.scale,
       wireframe: wires.checked,
       ghost: ghost.checked,
-      inside: true,
+      inside: false,
       exploded: 0,
       sectionAxis: '',
       sectionAt: 0.5,

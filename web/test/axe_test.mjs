@@ -6,7 +6,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, settled, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
+import { openPage, program, settled, startBrowser, startPrint, startStudio, takeTwin, readRobot, typeRobot } from './studio.mjs';
 
 const require = createRequire(join(process.env.PLIANT_WEB ?? new URL('..', import.meta.url).pathname, 'package.json'));
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
@@ -39,17 +39,16 @@ async function found(page, where) {
 /// Every view that a person can come to, one after the other.
 async function* views(page) {
   await page.getByTestId('section-simulate').click();
-  for (const tab of ['move', 'plots', 'file']) {
+  for (const tab of ['move', 'build', 'goal', 'identify', 'plots', 'file']) {
     await page.getByTestId(`tab-${tab}`).click();
     yield `simulate, ${tab}`;
   }
-  const file = page.getByTestId('robot-file');
-  const good = await file.inputValue();
-  await file.fill(`${good}\nwrong = 1\n`);
+  const good = await readRobot(page);
+  await typeRobot(page, `${good}\nwrong = 1\n`);
   await page.getByTestId('apply').click();
   await page.getByTestId('problems').waitFor();
   yield 'simulate, an error in the file';
-  await file.fill(good);
+  await typeRobot(page, good);
   await page.getByTestId('apply').click();
   await page.getByTestId('problems').waitFor({ state: 'detached' });
   await page.getByTestId('tab-move').click();
@@ -58,6 +57,18 @@ async function* views(page) {
   await page.getByTestId('field').selectOption('von_mises');
   await page.getByTestId('number-flexor').fill('-1');
   await page.getByTestId('number-flexor').press('Enter');
+  await page.getByTestId('legend-button').click();
+  await page.getByTestId('measure-toggle').click();
+  yield 'simulate, a legend that is set, and measuring';
+  await page.keyboard.press('Escape');
+  await page.getByTestId('view-menu').click();
+  yield 'simulate, the menu of sides';
+  await page.keyboard.press('Escape');
+  await page.getByTestId('tab-build').click();
+  await page.getByTestId('place-chamber').click();
+  yield 'simulate, placing a chamber';
+  await page.getByTestId('place-chamber').click();
+  await page.getByTestId('tab-move').click();
   yield 'simulate, pinned, in section, with stresses and a number out of range';
   await page.getByTestId('open').click();
   await page.locator('.open-list').waitFor();
@@ -72,11 +83,19 @@ async function* views(page) {
   yield 'make, all options';
   await page.getByTestId('section-print').click();
   yield 'print';
-  await page.setViewportSize({ width: 390, height: 844 });
-  for (const section of ['simulate', 'make', 'print']) {
-    await page.getByTestId(`section-${section}`).click();
-    yield `${section} on a phone`;
+  for (const [width, height] of [[390, 844], [768, 1024]]) {
+    await page.setViewportSize({ width, height });
+    for (const section of ['simulate', 'make', 'print']) {
+      await page.getByTestId(`section-${section}`).click();
+      yield `${section}, ${width} pixels wide`;
+    }
+    await page.getByTestId('section-simulate').click();
+    for (const tab of ['build', 'plots', 'file', 'move']) {
+      await page.getByTestId(`tab-${tab}`).click();
+      yield `simulate, ${tab}, ${width} pixels wide`;
+    }
   }
+  await page.getByTestId('section-print').click();
   await page.setViewportSize({ width: 1440, height: 900 });
 }
 
@@ -102,3 +121,80 @@ for (const theme of ['light', 'dark']) {
     assert.deepEqual(wrong, []);
   });
 }
+
+const widths = [390, 768, 1440];
+
+/// Every state of preparing and printing, one after the other.
+async function* steps(page) {
+  await page.getByTestId('section-make').click();
+  await page.getByTestId('make-bed').click();
+  await page.getByTestId('estimate').waitFor();
+  yield 'placement';
+  await page.getByTestId('lay-on-face').click();
+  await page.evaluate(() => document.querySelectorAll('.make details').forEach((d) => (d.open = true)));
+  await page.getByTestId('option-copies').fill('500');
+  await page.getByTestId('option-copies').blur();
+  await page.waitForSelector('[data-testid=bed][data-fits=false]');
+  yield 'placement, all options, too many copies, a face is to be picked';
+  await page.getByTestId('slice').click();
+  await page.locator('.make .problems').first().waitFor();
+  yield 'an order that is refused';
+  await page.getByTestId('option-copies').fill('1');
+  await page.getByTestId('option-copies').blur();
+  await page.evaluate(() => document.querySelectorAll('.make details').forEach((d) => (d.open = false)));
+  for (const tab of ['layers', 'stack', 'plan']) {
+    await page.getByTestId(`make-${tab}`).click();
+    if (tab === 'stack') await page.waitForSelector('[data-testid=stack-view][data-state=shown]');
+    yield `make, ${tab}`;
+  }
+  await page.getByTestId('section-print').click();
+  yield 'print, no machine';
+  await takeTwin(page, '60');
+  yield 'before a print';
+  await startPrint(page);
+  await page.getByTestId('enlarge-light').waitFor({ timeout: 60_000 });
+  await page.evaluate(() => document.querySelectorAll('.print details').forEach((d) => (d.open = true)));
+  yield 'a print';
+  await page.getByTestId('enlarge-light').click();
+  yield 'the light enlarged';
+  await page.keyboard.press('Escape');
+  await page.getByTestId('pause').click();
+  await page.getByTestId('resume').waitFor({ timeout: 60_000 });
+  yield 'paused';
+  await page.evaluate(() => fetch('/api/print/speed', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: '{"speed":3000}' }));
+  await page.getByTestId('resume').click();
+  await page.getByTestId('verdict').waitFor({ timeout: 120_000 });
+  await page.locator('.notice').waitFor({ state: 'detached', timeout: 20_000 });
+  yield 'printed, with its verdict';
+  await page.getByTestId('leave').click();
+  await page.getByTestId('take-twin').waitFor();
+}
+
+for (const theme of ['light', 'dark']) {
+  test(`axe finds nothing in any state of preparing and printing, at any width, ${theme}`, async (t) => {
+    const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width: 1440, height: 900 } });
+    await settled(page);
+    const wrong = [];
+    for await (const where of steps(page)) {
+      for (const width of widths) {
+        await page.setViewportSize({ width, height: 900 });
+        wrong.push(...(await found(page, `${where}, ${width} px`)));
+        const over = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+        if (over > 0) wrong.push(`${where}, ${width} px: ${over} px wider than the window`);
+      }
+    }
+    assert.deepEqual(wrong, []);
+  });
+}
+
+test('the views of a job are tabs that the arrow keys walk through', async (t) => {
+  const { page } = await openPage(browser, `${studio.address}#make`, t);
+  await page.getByTestId('make-layers').focus();
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-stack');
+  assert.equal(await page.getByTestId('make-stack').getAttribute('aria-selected'), 'true');
+  await page.keyboard.press('End');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-plan');
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-bed');
+});

@@ -5,7 +5,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, settled, startBrowser, startStudio, unzipped } from './studio.mjs';
+import { openPage, program, settled, startBrowser, startStudio, unzipped, readRobot, typeRobot } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 let folder;
@@ -38,7 +38,7 @@ const tag = (page) => page.evaluate(() => window.pliant.frame.value.head.tag);
 
 /// The same target through the command line.
 function simulated(ratio) {
-  const text = execFileSync(program, ['simulate', robot, '--json', '--set', 'mesh.order=1', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
+  const text = execFileSync(program, ['simulate', robot, '--json', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
   return JSON.parse(text).steps.at(-1).markers.tip;
 }
 
@@ -74,6 +74,7 @@ test('the program plays to its end, and a body can be pulled', async (t) => {
   await page.getByTestId('rest').click();
   await page.getByTestId('play').click();
   await page.waitForFunction(() => window.pliant.frame.value?.head.time > 0.999 && !window.pliant.frame.value.head.playing);
+  await settled(page);
   near(await marker(page, 'tip'), simulated(0.85), 0.05, 'tip');
   const before = await marker(page, 'tip');
   const view = await page.getByTestId('view').boundingBox();
@@ -126,15 +127,14 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   assert.ok(Math.hypot(...moved.map((v, k) => v - before[k])) > 3, `${moved} was ${before}`);
   const value = Number(await page.getByTestId('number-flexor').inputValue());
   assert.ok(value < 0.99, `the slider is at ${value}`);
-  near(moved, simulated(value), 0.1, 'where the slider is');
   await page.mouse.move(x - 10, y - 300);
   await page.waitForFunction((near) => window.pliant.frame.value.head.lead?.settled && window.pliant.frame.value.head.lead.error_mm > near + 5, led.lead.error_mm);
   assert.match(await page.getByTestId('lead-limits').textContent(), /nearest point/);
   await page.mouse.up();
   await page.waitForFunction(() => !window.pliant.frame.value.head.lead);
-  const left = await marker(page, 'tip');
   await settled(page);
-  near(await marker(page, 'tip'), left, 0.01, 'let go');
+  const value2 = Number(await page.getByTestId('number-flexor').inputValue());
+  near(await marker(page, 'tip'), simulated(value2), 0.1, 'let go, where the slider is');
   assert.deepEqual(wrong, []);
 });
 
@@ -168,10 +168,10 @@ test('a goal is found without editing the file: reached or the nearest point, go
   await page.getByTestId('tab-goal').click();
   await page.getByTestId('goal-program').click();
   await page.getByTestId('tab-file').click();
-  await page.waitForFunction(() => document.querySelector('[data-testid=robot-file]').value.includes('[[program.key]]'));
-  assert.match(await page.getByTestId('robot-file').inputValue(), /time = "1\.00 s"\nflexor = 0\.[89]/);
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('[[program.key]]'));
+  assert.match(await readRobot(page), /time = "1\.00 s"\nflexor = 0\.[89]/);
   await page.getByRole('button', { name: 'Undo' }).click();
-  await page.waitForFunction(() => !document.querySelector('[data-testid=robot-file]').value.includes('[[program.key]]'));
+  await page.waitForFunction(() => !window.pliant.robotText.value.includes('[[program.key]]'));
   await page.getByTestId('tab-goal').click();
   await set('goal-low-flexor', 2);
   await page.getByTestId('find-goal').click();
@@ -183,7 +183,7 @@ test('numbers are found from a table of measurements and put into the file', asy
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   const rows = [0.85, 0.9, 0.95].map((ratio) => {
-    const text = execFileSync(program, ['simulate', robot, '--json', '--set', 'mesh.order=1', '--set', 'material.soft.youngs_modulus=9MPa', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
+    const text = execFileSync(program, ['simulate', robot, '--json', '--set', 'material.soft.youngs_modulus=9MPa', '--set', `cable.flexor.target.length_ratio=${ratio}`]);
     const step = JSON.parse(text).steps.at(-1);
     return `${((1 - ratio) / 0.15).toFixed(6)},${step.markers.tip[2]}`;
   });
@@ -211,20 +211,178 @@ test('a mistake in the robot file shows at its line', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-file').click();
-  const area = page.getByTestId('robot-file');
-  await page.waitForFunction(() => document.querySelector('[data-testid=robot-file]').value.includes('youngs_modulus'));
-  const good = await area.inputValue();
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('youngs_modulus'));
+  const good = await readRobot(page);
   const line = good.split('\n').findIndex((l) => l.includes('youngs_modulus')) + 1;
-  await area.fill(good.replace('youngs_modulus', 'young_modulus'));
+  await typeRobot(page, good.replace('youngs_modulus', 'young_modulus'));
   await page.getByTestId('apply').click();
   await page.waitForSelector('[data-testid=problems]');
   assert.match(await page.getByTestId('problems').textContent(), new RegExp(`line ${line} .*young_modulus`));
-  assert.ok(await page.locator(`.gutter [data-line="${line}"].wrong`).count());
-  await area.fill(good);
-  await area.press('Control+Enter');
+  // At the line itself: the mark in the margin is on its height.
+  // The editor draws its marks anew whenever the text has been checked: the two are looked at together.
+  await page.waitForFunction(() => {
+    const middle = (of) => of && of.getBoundingClientRect().top + of.getBoundingClientRect().height / 2;
+    const line = [...document.querySelectorAll('.cm-line')].find((l) => l.textContent.includes('young_modulus'));
+    const marks = [...document.querySelectorAll('.cm-lint-marker-error')];
+    return line && marks.some((m) => Math.abs(middle(m) - middle(line)) < 9);
+  });
+  await typeRobot(page, good);
+  await page.getByTestId('robot-file').press('Control+Enter');
   await page.waitForSelector('[data-testid=problems]', { state: 'detached' });
   await settled(page);
   assert.equal(readFileSync(join(folder, 'finger.toml'), 'utf8'), good, 'nothing is written before it is saved');
+});
+
+test('a robot is built by pointing, by sliders and from the library; text stays as it was written, and all of it is undone', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  const before = await readRobot(page);
+  const revision = () => page.evaluate(() => window.pliant.scene.value.head.revision);
+  const rebuilt = async (act) => {
+    const last = await revision();
+    await act();
+    await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, last, { timeout: 60_000 });
+    await settled(page);
+  };
+  await page.getByTestId('tab-build').click();
+  // A marker where the robot is clicked, in the middle between its ends.
+  await page.getByTestId('view').focus();
+  await page.keyboard.press('1');
+  await page.waitForTimeout(300);
+  await page.getByTestId('place-marker').click();
+  const view = await page.getByTestId('view').boundingBox();
+  await rebuilt(() => page.mouse.click(view.x + view.width / 2 - 20, view.y + view.height / 2 + 14));
+  const placed = await page.evaluate(() => window.pliant.scene.value.head.markers.find((m) => m.name === 'marker 1').rest);
+  assert.ok(Math.abs(placed[0] - 37) < 6 && Math.abs(placed[1]) < 0.3, `${placed}`);
+  assert.match(await readRobot(page), /\[\[marker\]\]\nname = "marker 1"\npoint = \[/);
+  // A parameter by its slider.
+  await page.getByTestId('tab-build').click();
+  const notches = page.getByTestId('parameter-notches');
+  await rebuilt(async () => {
+    await notches.focus();
+    await notches.press('ArrowLeft');
+  });
+  assert.match(await readRobot(page), /\nnotches = 3\n/);
+  // A material of the library.
+  await rebuilt(() => page.getByTestId('material-of-tip').selectOption('dragon-skin-30'));
+  const materials = await page.evaluate(() => window.pliant.scene.value.head.materials.map((m) => m.name));
+  assert.ok(materials.includes('dragon-skin-30'), `${materials}`);
+  // Nothing else has changed: comments are where they were.
+  const comments = (s) => s.split('\n').filter((l) => l.includes('#')).map((l) => l.slice(l.indexOf('#')));
+  assert.deepEqual(comments(await readRobot(page)), comments(before));
+  for (let k = 0; k < 3; ++k) await rebuilt(() => page.getByTestId('build-undo').click());
+  assert.equal(await readRobot(page), before);
+  assert.deepEqual(wrong, []);
+});
+
+test('keys are completed, and what is typed is checked before it is applied', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('youngs_modulus'));
+  const good = await readRobot(page);
+  await typeRobot(page, `${good}[mesh_]\n`);
+  await page.getByTestId('problems').filter({ hasText: 'mesh_' }).waitFor();
+  await typeRobot(page, good);
+  await page.getByTestId('problems').waitFor({ state: 'detached' });
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('dura');
+  await page.locator('.cm-tooltip-autocomplete li', { hasText: 'duration' }).click();
+  await page.keyboard.type('"2 s"');
+  assert.ok((await readRobot(page)).endsWith('\nduration = "2 s"'));
+  await page.waitForFunction(() => document.querySelector('.cm-line span') !== null);
+  const colours = await page.locator('.cm-line', { hasText: 'name = "finger"' }).first().locator('span').evaluateAll((all) => new Set(all.map((s) => getComputedStyle(s).color)).size);
+  assert.ok(colours >= 2, 'keys and texts are told apart');
+  await page.getByTestId('revert').click();
+  assert.equal(await readRobot(page), good);
+  assert.deepEqual(wrong, []);
+});
+
+test('a link brings back the state and the view; a film and a picture for print are taken home', async (t) => {
+  const { page, context, wrong } = await openPage(browser, studio.address, t, { permissions: ['clipboard-read', 'clipboard-write'] });
+  await settled(page);
+  const started = await tag(page);
+  await page.getByTestId('number-flexor').fill('0.91');
+  await page.getByTestId('number-flexor').press('Enter');
+  await answered(page, started);
+  await page.getByTestId('field').selectOption('displacement');
+  await page.getByTestId('view').focus();
+  await page.keyboard.press('5');
+  const item = async (name) => {
+    await page.getByRole('button', { name: 'Export' }).click();
+    await page.locator('.popover .item', { hasText: name }).click();
+  };
+  await item('Link to this state');
+  await page.getByTestId('notice').waitFor();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.ok(link.startsWith(`${studio.address}#simulate?`), link);
+  const picture = (p) =>
+    p.evaluate(() => {
+      const small = Object.assign(document.createElement('canvas'), { width: 60, height: 40 }).getContext('2d');
+      small.drawImage(document.querySelector('[data-testid=view]'), 0, 0, 60, 40);
+      return Array.from(small.getImageData(0, 0, 60, 40).data);
+    });
+  const differ = (a, b) => a.filter((v, k) => Math.abs(v - b[k]) > 24).length;
+  await page.waitForTimeout(400);
+  const before = await picture(page);
+  const there = await marker(page, 'tip');
+  await page.getByTestId('rest').click();
+  await page.getByTestId('field').selectOption('material');
+  await page.keyboard.press('1');
+  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.waitForTimeout(400);
+  const elsewhere = differ(await picture(page), before);
+  assert.ok(elsewhere > 100, `${elsewhere}`);
+  await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' }));
+  const second = await context.newPage();
+  await second.goto(link);
+  await second.waitForFunction(() => Math.abs(window.pliant.frame.value?.head.cables[0].ratio - 0.91) < 1e-6, undefined, { timeout: 60_000 });
+  await settled(second);
+  near(await marker(second, 'tip'), there, 0.05, 'tip');
+  assert.equal(await second.getByTestId('field').inputValue(), 'displacement');
+  await second.waitForTimeout(500);
+  const differs = differ(await picture(second), before);
+  assert.ok(differs < 0.1 * elsewhere, `from where it was seen: ${differs} differ, and from elsewhere ${elsewhere}`);
+  const download = async (p, name) => {
+    const [file] = await Promise.all([
+      p.waitForEvent('download'),
+      (async () => {
+        await p.getByRole('button', { name: 'Export' }).click();
+        await p.locator('.popover .item', { hasText: name }).click();
+      })(),
+    ]);
+    return readFileSync(await file.path());
+  };
+  const webm = await download(second, 'Film');
+  assert.equal(webm.readUInt32BE(0), 0x1a45dfa3, 'EBML');
+  assert.ok(webm.length > 1000);
+  const png = await download(second, 'Picture for print');
+  assert.ok(Math.abs(png.readUInt32BE(16) - 3840) <= 2, `${png.readUInt32BE(16)} pixels wide`);
+  await second.close();
+  assert.deepEqual(wrong, []);
+});
+
+test('every template is a robot, in no file yet', async (t) => {
+  const own = await startStudio(['finger.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  for (const [label, name] of [['Finger with a cable', 'finger'], ['Bending chamber', 'bender'], ['Beam under its weight', 'beam']]) {
+    const revision = await page.evaluate(() => window.pliant.scene.value.head.revision);
+    await page.getByTestId('open').click();
+    await page.locator('.open-list .item', { hasText: label }).click();
+    const discard = page.getByTestId('discard');
+    if (await discard.waitFor({ timeout: 1000 }).then(() => true, () => false)) await discard.click();
+    await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, { timeout: 60_000 });
+    await settled(page);
+    assert.equal(await page.evaluate(() => window.pliant.scene.value.head.robot), name);
+    const state = await page.evaluate(() => window.pliant.documentState.value);
+    assert.equal(state.name, '');
+    assert.equal(state.unsaved, true);
+  }
+  assert.deepEqual(wrong, []);
 });
 
 test('several look, one steers, and the helm is handed over', async (t) => {
@@ -319,6 +477,88 @@ test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; 
   assert.deepEqual(wrong, []);
 });
 
+test('the view turns to its sides, is measured, cut by hand, and coloured over a range that is set', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.evaluate(() => localStorage.setItem('pliant_hints', '9'));
+  await page.reload();
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
+  await page.getByTestId('view-menu').click();
+  await page.getByTestId('view-top').click();
+  const label = (name) => page.locator('.labels span', { hasText: name }).boundingBox();
+  const perMm = async () => {
+    const bar = page.getByTestId('scale-bar');
+    return (await bar.boundingBox()).width / Number((await bar.textContent()).replace(' mm', ''));
+  };
+  // From the top x goes to the right and y up; the scale bar says how far it is.
+  await page.waitForTimeout(300);
+  const [canvas, tip, scale] = [await page.getByTestId('view').boundingBox(), await label('tip'), await perMm()];
+  const [x, , ] = await marker(page, 'tip');
+  const middle = await page.evaluate(() => {
+    const r = window.pliant.scene.value.f32('rest');
+    let [low, high] = [Infinity, -Infinity];
+    for (let i = 0; i < r.length; i += 3) [low, high] = [Math.min(low, r[i]), Math.max(high, r[i])];
+    return (low + high) / 2;
+  });
+  const expected = canvas.x + canvas.width / 2 + scale * (x - middle);
+  assert.ok(Math.abs(tip.x - 9 - expected) < 0.06 * canvas.width, `${tip.x - 9} is not ${expected}`);
+  // By key, and by the cube.
+  const picture = () => page.evaluate(() => document.querySelector('[data-testid=view]').toDataURL());
+  const top = await picture();
+  await page.getByTestId('view').focus();
+  await page.keyboard.press('1');
+  await page.waitForTimeout(200);
+  const front = await picture();
+  assert.notEqual(front, top);
+  await page.getByTestId('view-cube').locator('button', { hasText: 'Front' }).click();
+  await page.waitForTimeout(200);
+  assert.equal(await picture(), front, 'the cube and the key turn to the same side');
+  // Two presses are a distance.
+  await page.getByTestId('measure-toggle').click();
+  const dot = await label('tip');
+  const [px, py] = [dot.x - 9, dot.y + 10];
+  await page.mouse.click(px, py);
+  await page.mouse.click(px - 20 * (await perMm()), py);
+  const distance = Number((await page.getByTestId('measured-distance').locator('td').textContent()).replace(' mm', ''));
+  assert.ok(Math.abs(distance - 20) < 6, `${distance} mm`);
+  await page.mouse.click(px - 30 * (await perMm()), py);
+  assert.match(await page.getByTestId('measured-angle').textContent(), /^angle1[5-8]\d\.\d\d°$/);
+  await page.getByRole('button', { name: 'Stop measuring' }).click();
+  // The section by its handle.
+  await page.getByRole('button', { name: 'Section' }).click();
+  await page.getByRole('group', { name: 'Section plane' }).getByRole('button', { name: 'x' }).click();
+  const handle = page.getByTestId('section-handle');
+  await page.waitForTimeout(300);
+  const box = await handle.boundingBox();
+  await page.mouse.move(box.x + 15, box.y + 15);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 75, box.y + 15, { steps: 6 });
+  await page.mouse.up();
+  const dragged = Number(await handle.getAttribute('aria-valuenow'));
+  assert.ok(dragged > 52, `at ${dragged} %`);
+  await handle.press('PageDown');
+  assert.equal(Number(await handle.getAttribute('aria-valuenow')), dragged - 10);
+  await page.waitForTimeout(200);
+  const moved = await handle.boundingBox();
+  assert.ok(moved.x > box.x - 80 && moved.x !== box.x, 'the handle goes along');
+  await page.getByRole('group', { name: 'Section plane' }).getByRole('button', { name: 'off' }).click();
+  await page.getByRole('button', { name: 'Section' }).click();
+  // The legend.
+  await page.getByTestId('field').selectOption('displacement');
+  await page.getByTestId('legend-button').click();
+  await page.getByTestId('range-high').fill('40');
+  await page.getByTestId('range-high').press('Enter');
+  await page.waitForFunction(() => document.querySelector('[data-testid=legend] .ticks span').textContent === '40');
+  await page.getByTestId('colour-map').selectOption('cividis');
+  await page.getByTestId('colour-bands').selectOption('5');
+  assert.match(await page.locator('.field-legend .bar').getAttribute('style'), /linear-gradient/);
+  await page.getByTestId('range-auto').click();
+  await page.waitForFunction(() => document.querySelector('[data-testid=legend] .ticks span').textContent !== '40');
+  assert.deepEqual(wrong, []);
+});
+
 test('a graded body has the colours of both its materials, and says which', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
@@ -355,6 +595,12 @@ test('a lost connection comes back, still at the helm', async (t) => {
   near(await marker(page, 'tip'), before, 0.01, 'tip');
   const started = await tag(page);
   await page.getByTestId('number-flexor').fill('0.95');
+  // What is typed stays when the page is told everything again in the middle of it.
+  await page.evaluate(() => window.pliant.dropLine());
+  await page.waitForSelector('[data-testid=helm][data-state=offline]');
+  await page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
+  await settled(page);
+  assert.equal(await page.getByTestId('number-flexor').inputValue(), '0.95');
   await page.getByTestId('number-flexor').press('Enter');
   await answered(page, started);
   assert.ok(Math.abs((await marker(page, 'tip'))[2] - before[2]) > 0.1);

@@ -15,8 +15,6 @@ async function shoot(page, name) {
 
 async function simulate(page) {
   await settled(page);
-  await page.getByTestId('fine').click();
-  await settled(page);
   await page.getByTestId('field').selectOption({ label: 'Von Mises stress' });
   await page.getByRole('button', { name: 'Skip' }).click();
   for (const ratio of ['0.94', '0.88', '0.82', '0.76']) {

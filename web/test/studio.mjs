@@ -106,3 +106,14 @@ export async function startPrint(page) {
   for (const box of await page.locator('.checklist input').all()) await box.check();
   await page.getByTestId('start').click();
 }
+
+/// The robot file as it stands in the editor.
+export const readRobot = (page) => page.evaluate(() => window.pliant.robotText.value);
+
+/// Writes another text over it, as a person does.
+export async function typeRobot(page, text) {
+  await page.getByTestId('robot-file').focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.insertText(text);
+  await page.waitForFunction((t) => window.pliant.robotText.value === t, text);
+}

@@ -1,6 +1,6 @@
 // The page's functions without a page: texts, numbers and packets in, texts, numbers and packets out.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -24,7 +24,7 @@ function pretendBrowser() {
   define('localStorage', store());
   define('addEventListener', () => {});
   define('matchMedia', () => ({ matches: false, addEventListener() {} }));
-  define('document', { documentElement: { dataset: {} }, addEventListener() {} });
+  define('document', { documentElement: { dataset: {}, style: {} }, addEventListener() {} });
 }
 
 const folder = mkdtempSync(join(tmpdir(), 'pliant_units_'));
@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'orbit_keys'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'print/telling', 'orbit_keys'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -167,21 +167,42 @@ test('what was driven by another measure before does not become a key', () => {
   assert.equal(page.asProgram(), '[[program.key]]\ntime = "0.20 s"\nflexor = "3 N"\n"air \\"1\\"" = 1.5\n\n[[program.key]]\ntime = "0.40 s"\nflexor = "4 N"\n"air \\"1\\"" = 1.5');
 });
 
-test('what the plots show, as a table with names in quotes', () => {
+test('what the plots show, as a table: names in quotes where they need it, linear states named, no time while nothing moves', () => {
   const marker = { name: 'tip', rest: [0, 0, 0] };
-  page.scene.value = { head: { actuators, markers: [marker] } };
-  const frame = (sequence, x) => ({ head: { revision: 77, sequence, cables: [{ tension_N: x }], chambers: [{ pressure_kPa: 2 * x }], markers: [[x, 0, 0]], residual: 0 } });
-  page.frame.value = frame(1, 3);
-  page.frame.value = frame(1, 3); // the same state again
-  page.frame.value = frame(2, 4);
-  const rows = page.tracksCsv(page.scene.value.head).trimEnd().split('\r\n');
-  assert.equal(rows[0], 'seconds,"flexor_tension_N","air ""1""_pressure_kPa","tip_x_mm","tip_y_mm","tip_z_mm",residual');
-  assert.equal(rows.length, 3);
-  assert.match(rows[1], /^0\.0000,3,6,3,0,0,1e-16$/);
-  assert.match(rows[2], /^\d+\.\d{4},4,8,4,0,0,1e-16$/);
-  assert.deepEqual(page.tracks.markers, [[3, 4]]);
-  page.frame.value = { head: { ...frame(1, 5).head, revision: 78 } }; // another robot begins anew
-  assert.deepEqual(page.tracks.markers, [[5]]);
+  page.scene.value = { head: { order: 2, actuators, markers: [marker], supports: ['clamp'] } };
+  const frame = (sequence, x, order) => ({ head: { revision: 77, sequence, order, time: 0, energy_mJ: 1, cables: [{ tension_N: x, ratio: 1, length_mm: 80 }], chambers: [{ pressure_kPa: 2 * x, ratio: 1, volume_mm3: 5 }], markers: [[x, 4, 0]], supports: [[0, 3, 4]], residual: 0 } });
+  page.frame.value = frame(1, 3, 1);
+  page.frame.value = frame(1, 3, 1); // the same state again
+  const pause = performance.now() + 300;
+  while (performance.now() < pause);
+  page.frame.value = frame(2, 4, 2);
+  const [head, ...rows] = page.tracksCsv().trimEnd().split('\r\n').map((r) => r.split(','));
+  assert.equal(head.join(), 'seconds,elements,flexor_tension_N,flexor_shortening_mm,flexor_length_ratio,"air ""1""_pressure_kPa","air ""1""_volume_change_mm3","air ""1""_volume_ratio",tip_displacement_mm,tip_x_mm,tip_y_mm,tip_z_mm,clamp_force_N,energy_mJ,time,residual');
+  assert.equal(rows.length, 2);
+  const cell = (row, name) => Number(row[head.indexOf(name)]);
+  assert.deepEqual(rows.map((r) => cell(r, 'elements')), [1, 2]);
+  assert.deepEqual(rows.map((r) => cell(r, 'flexor_tension_N')), [3, 4]);
+  assert.deepEqual(rows.map((r) => cell(r, 'tip_displacement_mm')), [5, Math.hypot(4, 4)]);
+  assert.equal(cell(rows[0], 'clamp_force_N'), 5);
+  assert.equal(cell(rows[1], 'seconds'), 0.1);
+  page.keepRun('first');
+  assert.deepEqual(page.runs.value[0].columns.flexor_tension_N, [4], 'of a kept run the linear states are left out');
+  page.runs.value = [];
+  page.frame.value = { head: { ...frame(1, 5, 2).head, revision: 78 } }; // another robot begins anew
+  assert.deepEqual(page.valuesOf('tip_x_mm'), [5]);
+});
+
+test('a table of measurements is read, or its mistake is said with its line', () => {
+  const read = page.readTable('m.csv', '"tip, x",flexor_tension_N\r\n1,2\r\n\r\n3,\r\n');
+  assert.deepEqual(read.columns['tip, x'], [1, 3]);
+  assert.equal(read.columns.flexor_tension_N[0], 2);
+  assert.ok(Number.isNaN(read.columns.flexor_tension_N[1]));
+  assert.deepEqual(page.readTable('m.csv', 'a;b\n1;2\n').columns, { a: [1], b: [2] });
+  assert.match(page.readTable('m.csv', ''), /^m\.csv:1: a head line/);
+  assert.match(page.readTable('m.csv', '1,2\n3,4\n'), /^m\.csv:1: the first line must name/);
+  assert.match(page.readTable('m.csv', 'a,b\n1,2\n3\n'), /^m\.csv:3: 1 columns, and the head line names 2/);
+  assert.match(page.readTable('m.csv', 'a,b\n1,two\n'), /^m\.csv:2: "two" is not a number/);
+  assert.match(page.readTable('m.csv', 'a,b\n'), /no rows/);
 });
 
 test('a stop is told by what happened: asked for, the firmware\'s own, or none', () => {
@@ -212,4 +233,109 @@ test('keys turn a view; other keys are left to the page', () => {
   assert.deepEqual(turns, [[-0.12, 0, 1], [0, 0.12, 1], [0, 0, 0.9]]);
   assert.equal(home, 1);
   assert.equal(kept, 4);
+});
+
+test('a camera that fits sees every point, and one a little nearer does not, whatever the shape', () => {
+  let seed = 1;
+  const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647 - 0.5;
+  const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+  for (const size of [[100, 1, 1], [1, 1, 100], [3, 80, 2], [50, 50, 50], [1e-3, 2e-3, 1e-3]]) {
+    const points = Array.from({ length: 60 }, (_, i) => random() * size[i % 3] + 7);
+    const c = Math.SQRT1_2;
+    const [right, up, forward] = [[c, c, 0], [0, 0, 1], [-c, c, 0]];
+    const [tx, ty] = [0.4, 0.25];
+    const fit = page.fitPoints(points, right, up, forward, tx, ty);
+    const worst = (camera) => {
+      let most = 0;
+      for (let i = 0; i < points.length; i += 3) {
+        const p = [0, 1, 2].map((k) => points[i + k] - camera[k]);
+        const depth = dot(p, forward);
+        most = Math.max(most, depth <= 0 ? Infinity : Math.max(Math.abs(dot(p, right)) / (tx * depth), Math.abs(dot(p, up)) / (ty * depth)));
+      }
+      return most;
+    };
+    assert.ok(worst(fit.camera) < 1 + 1e-9, `${size}: ${worst(fit.camera)}`);
+    const nearer = fit.camera.map((v, k) => v + 0.02 * (fit.target[k] - v));
+    assert.ok(worst(nearer) > 1, `${size}: it could be nearer`);
+  }
+});
+
+test('a scale bar is 1, 2 or 5 times a power of ten', () => {
+  assert.deepEqual([137, 50, 49.9, 20, 19, 10, 9.99, 0.7, 0.013].map((v) => +page.niceBelow(v).toPrecision(12)), [100, 50, 20, 20, 10, 10, 5, 0.5, 0.01]);
+});
+
+test('colour maps go from end to end, in bands where they are asked for, and do without what is no number', () => {
+  for (const map of Object.keys(page.maps)) {
+    const at = (t, bands) => page.fieldColour(t, map, bands);
+    assert.deepEqual(at(0), [...page.maps[map].stops[0]]);
+    assert.deepEqual(at(2), [...page.maps[map].stops.at(-1)]);
+    assert.deepEqual(at(NaN), at(0));
+    assert.deepEqual(at(0.01, 5), at(0.19, 5));
+    assert.notDeepEqual(at(0.19, 5), at(0.21, 5));
+    assert.deepEqual(at(1, 5), at(0.9, 5));
+  }
+  assert.deepEqual(page.fieldColour(0.3, 'no such map'), page.fieldColour(0.3));
+});
+
+test('a face is laid down, whatever the part was turned by before; angles are those of the slicer', () => {
+  // The normals of a tilted roof, through every kind of turn.
+  for (const turn of [[0, 0, 0], [90, 0, 0], [30, -40, 70], [0, 90, 0], [180, 0, 45]]) {
+    const rotation = page.rotationOf(turn);
+    const again = page.rotationOf(page.degreesOf(rotation));
+    rotation.elements.forEach((v, k) => assert.ok(Math.abs(v - again.elements[k]) < 1e-4, `${turn}: ${v} is not ${again.elements[k]}`));
+    const drawn = { x: 0.6, y: -0.48, z: 0.64 }; // of length 1, in the part's own axes
+    const now = page.turned(turn, drawn);
+    const after = page.turned(page.layOnFace(turn, now), drawn);
+    assert.ok(Math.hypot(after.x, after.y, after.z + 1) < 1e-4, `${turn}: the face looks to ${after.x}, ${after.y}, ${after.z}`);
+  }
+  // About x first, then y, then z: as `pliant slice --turn 90 90 0`.
+  const z = page.turned([90, 90, 0], { x: 0, y: 1, z: 0 });
+  assert.ok(Math.hypot(z.x - 1, z.y, z.z) < 1e-9, `${z.x}, ${z.y}, ${z.z}`);
+});
+
+test('copies stand in rows as wide as the image, and what does not fit is told', () => {
+  const bar = new Float32Array([0, 0, 0, 40, 10, 5]);
+  const one = page.placed(bar, [0, 0, 0], 1, 2, [100, 60], 50);
+  assert.deepEqual(one.size, [40, 10, 5]);
+  const five = page.placed(bar, [0, 0, 0], 5, 2, [100, 60], 50);
+  assert.deepEqual(five.size, [82, 34, 5]); // two in a row, three rows
+  assert.deepEqual(five.shifts.at(-1), [0, 24]);
+  assert.ok(five.fits);
+  assert.ok(!page.placed(bar, [0, 0, 0], 11, 2, [100, 60], 50).fits, 'six rows are too deep');
+  assert.ok(!page.placed(bar, [0, 90, 0], 1, 2, [100, 60], 30).fits, 'upright it is too high');
+  assert.ok(page.placed(bar, [0, 90, 0], 1, 2, [100, 60], 40).fits);
+});
+
+test('the tab tells how far a print is, and only what is known', () => {
+  const is = { machine: true, known: true, busy: true, paused: false, error: false, finished: false, completion: 43.9, job: 'finger' };
+  assert.equal(page.tellingOf({ ...is, machine: false }, 'Pliant').title, 'Pliant');
+  assert.equal(page.tellingOf(is, 'Pliant').title, '43 % finger · Pliant');
+  assert.equal(page.tellingOf({ ...is, paused: true }, 'Pliant').title, 'Paused, 43 % finger · Pliant');
+  assert.deepEqual([page.tellingOf({ ...is, known: false }, 'Pliant').title, page.tellingOf({ ...is, known: false }, 'Pliant').share], ['? finger · Pliant', null]);
+  assert.equal(page.tellingOf({ ...is, error: true, busy: false }, 'Pliant').title, 'Stopped: finger · Pliant');
+  assert.equal(page.tellingOf({ ...is, busy: false, finished: true }, 'Pliant').title, 'Printed: finger · Pliant');
+  assert.equal(page.tellingOf({ ...is, busy: false }, 'Pliant').title, 'Pliant');
+});
+
+test('every key that the reference names in its tables can be completed', () => {
+  const reference = readFileSync(new URL('../../docs/reference/robot.md', import.meta.url), 'utf8');
+  let table = null;
+  let checked = 0;
+  for (const line of reference.split('\n')) {
+    const heading = /^##+ (.*)/.exec(line)?.[1];
+    if (heading !== undefined) table = heading === 'Top level' ? '' : (/^\[+([a-z_.A-Z]+)\]+$/.exec(heading)?.[1].replace('.NAME', '') ?? null);
+    const cell = table === null ? null : /^\| `([a-z_][a-z_0-9.]*)` \|/.exec(line);
+    if (!cell || (table === 'body' && ['from', 'shares', 'cell'].includes(cell[1]))) continue; // those are of its blend
+    assert.ok(page.robotKeys[table]?.[cell[1]], `[${table}] ${cell[1]}`);
+    checked += 1;
+  }
+  assert.ok(checked > 60, `${checked}`);
+});
+
+test('the table that a text ends in, and the numbers that formulas are made of', () => {
+  assert.equal(page.tableAt('name = "x"\n'), '');
+  assert.equal(page.tableAt('[material.soft]\na = 1\n'), 'material');
+  assert.equal(page.tableAt('[a]\n[[cable]]\npoints = [[0, 0, 0],\n[1, 1, 1]]\n'), 'cable');
+  assert.equal(page.tableAt('[[program.key]]\n'), 'program.key');
+  assert.deepEqual(page.parametersOf('x = 1\n[parameters] # p\nnotches = 4 # n\nlong-name=1_000.5e-1\nf = "= 80 / notches"\n[mesh]\nsize = 3\n'), [{ name: 'notches', value: 4 }, { name: 'long-name', value: 100.05 }]);
 });

@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+
+#include "simulation/run/describe.hpp"
 
 namespace pliant::report {
 namespace {
@@ -22,6 +25,21 @@ Obstacle drawn(const sim::contact::Obstacle& body, const Box3& motion) {
     const Vec3 center = motion.center();
     const Vec3 foot = center - dot(center - half.point, half.normal) * half.normal;
     return {body.name, disc(foot, half.normal, disc_share * motion.diagonal()), true, {}};
+}
+
+Obstacle object_of(const sim::Model& model, const sim::Trajectory& result, std::size_t k) {
+    const sim::FreeObject& object = model.description().objects[k];
+    const auto at = [&](std::span<const Vec3> nodes) {
+        return sim::object_state(model, k, {&nodes.data()->x, 3 * nodes.size()});
+    };
+    Obstacle drawn{object.name, object.surface, false, {}};
+    drawn.pivot_m = at(model.mesh().points).position_m;
+    for (const sim::Step& step : result.steps) {
+        const sim::ObjectState state = at(step.positions);
+        drawn.offset_m.push_back(state.position_m - drawn.pivot_m);
+        drawn.rotation.push_back(state.rotation);
+    }
+    return drawn;
 }
 
 }  // namespace
@@ -47,6 +65,19 @@ mesh::TriMesh disc(const Vec3& center, const Vec3& normal, double radius_m) {
     return mesh;
 }
 
+std::vector<Vec3> Obstacle::points_at(std::size_t step) const {
+    std::vector<Vec3> points = surface.points;
+    for (Vec3& p : points) {
+        if (!rotation.empty()) {
+            const auto& q = rotation[step];
+            const Vec3 axis{q[1], q[2], q[3]}, arm = p - pivot_m, side = 2.0 * cross(axis, arm);
+            p = pivot_m + arm + q[0] * side + cross(axis, side);
+        }
+        p += offset_m[step];
+    }
+    return points;
+}
+
 std::vector<Obstacle> obstacles_of(const sim::Model& model, const sim::Trajectory& result) {
     std::vector<Obstacle> obstacles;
     if (!model.description().contact) return obstacles;
@@ -56,6 +87,7 @@ std::vector<Obstacle> obstacles_of(const sim::Model& model, const sim::Trajector
         for (const sim::Step& step : result.steps)
             obstacles.back().offset_m.push_back(obstacle.share.at(step.time) * obstacle.move_m);
     }
+    for (std::size_t k = 0; k < model.objects().size(); ++k) obstacles.push_back(object_of(model, result, k));
     return obstacles;
 }
 

@@ -21,6 +21,13 @@ Vec3 y_up(const Vec3& v) {
     return {v.x, v.z, -v.y};
 }
 
+/// The same of a turn w, x, y, z, as x, y, z, w.
+std::array<float, 4> turn_y_up(const std::array<double, 4>& q) {
+    const Vec3 axis = y_up({q[1], q[2], q[3]});
+    return {static_cast<float>(axis.x), static_cast<float>(axis.y), static_cast<float>(axis.z),
+            static_cast<float>(q[0])};
+}
+
 /// The binary chunk and its accessors; every view starts at a multiple of four bytes.
 class Buffer {
 public:
@@ -35,6 +42,11 @@ public:
     }
     int scalars(const std::vector<float>& values, bool bounds) {
         return add(values, float_type, "SCALAR", 1, bounds, 0);
+    }
+    int quaternions(const std::vector<std::array<float, 4>>& values) {
+        std::vector<float> data;
+        for (const auto& q : values) data.insert(data.end(), q.begin(), q.end());
+        return add(data, float_type, "VEC4", 4, false, 0);
     }
     int indices(const std::vector<std::array<int, 3>>& triangles) {
         std::vector<std::uint32_t> data;
@@ -143,11 +155,11 @@ Motion cable_motion(const Simulation& s, std::size_t cable, const std::vector<st
     return motion;
 }
 
-/// A rigid thing without motion; its node moves.
+/// A rigid thing without motion, seen from the point about which it turns; its node moves.
 Motion rigid_motion(const Obstacle& obstacle) {
     const Surface surface = rigid_surface(obstacle.surface);
     Pose rest = pose(surface, obstacle.surface.points);
-    for (Vec3& p : rest.positions) p = y_up(p);
+    for (Vec3& p : rest.positions) p = y_up(p - obstacle.pivot_m);
     for (Vec3& n : rest.normals) n = y_up(n);
     return {surface.triangles, {std::move(rest)}};
 }
@@ -188,14 +200,21 @@ Json animation_json(Buffer& buffer, const Simulation& s, const std::vector<std::
     for (std::size_t node = 0; node < morphed; ++node) {
         animation["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
     }
+    const auto move = [&](std::size_t node, const char* path, int output_of_it) {
+        animation["channels"].push_back(
+            {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+        animation["samplers"].push_back({{"input", input}, {"output", output_of_it}, {"interpolation", "LINEAR"}});
+    };
     for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+        const Obstacle& obstacle = s.obstacles[k];
         std::vector<Vec3> places;
         places.reserve(steps.size());
-        for (const std::size_t step : steps) places.push_back(y_up(s.obstacles[k].offset_m[step]));
-        const int moves = buffer.vectors(places, false, false);
-        animation["samplers"].push_back({{"input", input}, {"output", moves}, {"interpolation", "LINEAR"}});
-        animation["channels"].push_back(
-            {{"sampler", k + 1}, {"target", {{"node", morphed + k}, {"path", "translation"}}}});
+        for (const std::size_t step : steps) places.push_back(y_up(obstacle.offset_m[step] + obstacle.pivot_m));
+        move(morphed + k, "translation", buffer.vectors(places, false, false));
+        if (obstacle.rotation.empty()) continue;
+        std::vector<std::array<float, 4>> turns;
+        for (const std::size_t step : steps) turns.push_back(turn_y_up(obstacle.rotation[step]));
+        move(morphed + k, "rotation", buffer.quaternions(turns));
     }
     return animation;
 }
@@ -282,6 +301,8 @@ private:
             Json primitives = Json::array({primitive_json(buffer_, rigid_motion(obstacle), material)});
             meshes_.push_back({{"name", obstacle.name}, {"primitives", std::move(primitives)}});
             nodes_.push_back({{"name", obstacle.name}, {"mesh", meshes_.size() - 1}});
+            const Vec3 pivot = y_up(obstacle.pivot_m);
+            if (!obstacle.rotation.empty()) nodes_.back()["translation"] = {pivot.x, pivot.y, pivot.z};
         }
     }
 

@@ -133,8 +133,10 @@ void Painter::add_obstacle(const Obstacle& obstacle, std::span<const std::size_t
     const Box3 at_rest = mesh::bounds(obstacle.surface);
     for (const std::size_t step : steps) {
         if (!is_framed(obstacle, at_rest, step)) continue;
-        floor_z_m_ = std::min(floor_z_m_, at_rest.low.z + obstacle.offset_m[step].z);
-        for (const Vec3& p : obstacle.surface.points) points_.push_back(p + obstacle.offset_m[step]);
+        for (const Vec3& p : obstacle.points_at(step)) {
+            floor_z_m_ = std::min(floor_z_m_, p.z);
+            points_.push_back(p);
+        }
     }
 }
 
@@ -154,6 +156,15 @@ std::vector<Colour> Painter::material_colours() const {
     return colours;
 }
 
+/// "obstacle", "objects", or both.
+std::string name_of_things(const std::vector<Obstacle>& things) {
+    const auto objects = std::ranges::count_if(things, [](const Obstacle& o) { return !o.rotation.empty(); });
+    const auto others = static_cast<std::ptrdiff_t>(things.size()) - objects;
+    std::string name = others == 0 ? "" : others == 1 ? "obstacle" : "obstacles";
+    if (objects > 0) name += std::string(name.empty() ? "" : ", ") + (objects == 1 ? "object" : "objects");
+    return name;
+}
+
 std::vector<std::pair<Colour, std::string>> Painter::legend() const {
     std::vector<std::pair<Colour, std::string>> entries;
     for (int m = 0; m < static_cast<int>(s_.materials.size()); ++m) {
@@ -169,8 +180,7 @@ std::vector<std::pair<Colour, std::string>> Painter::legend() const {
         entries.emplace_back(element_colour,
                              "elements of " + s_.mesh.region_names[static_cast<std::size_t>(first - actuates.begin())]);
     if (!s_.measured.empty()) entries.emplace_back(measured_colour, s_.measured_as);
-    if (!s_.obstacles.empty())
-        entries.emplace_back(obstacle_colour, s_.obstacles.size() == 1 ? "obstacle" : "obstacles");
+    if (!s_.obstacles.empty()) entries.emplace_back(obstacle_colour, name_of_things(s_.obstacles));
     return entries;
 }
 
@@ -185,9 +195,8 @@ Scene Painter::scene_of(std::size_t step) const {
         for (const auto& points : s_.cable_points[step]) scene.cables.push_back({points});
     }
     for (std::size_t k = 0; k < things_.size(); ++k) {
-        std::vector<Vec3> moved = s_.obstacles[k].surface.points;
-        for (Vec3& p : moved) p += s_.obstacles[k].offset_m[step];
-        scene.things.push_back({&things_[k], pose(things_[k], moved), opacity_[k], s_.obstacles[k].open});
+        scene.things.push_back(
+            {&things_[k], pose(things_[k], s_.obstacles[k].points_at(step)), opacity_[k], s_.obstacles[k].open});
     }
     return scene;
 }

@@ -52,6 +52,10 @@ Json step_json(const sim::Step& step, bool contact) {
         out["self_contact_N"] = step.self_contact_N;
         out["smallest_distance_mm"] = mm_per_m * step.smallest_distance_m;
     }
+    for (const auto& object : step.objects)
+        out["objects"][object.name] = {{"position_mm", vector_json(object.position_m, mm_per_m)},
+                                       {"rotation", object.rotation},
+                                       {"force_N", vector_json(object.force_N, 1)}};
     if (step.crossing_m) out["crossing_mm"] = vector_json(*step.crossing_m, mm_per_m);
     out["markers"] = Json::object();
     for (const auto& marker : step.markers) out["markers"][marker.name] = vector_json(marker.position_m, mm_per_m);

@@ -38,6 +38,8 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     static constexpr std::array<std::string_view, 3> chamber = {"volume_ratio", "volume_mm3", "pressure_kPa"};
     static constexpr std::array<std::string_view, 2> spring = {"length_mm", "force_N"};
     static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
+    static constexpr std::array<std::string_view, 10> object = {"x_mm", "y_mm", "z_mm",      "qw",        "qx",
+                                                                "qy",   "qz",   "force_x_N", "force_y_N", "force_z_N"};
     Row row;
     for (const std::string_view name : common) row.text(name);
     for (const auto& c : rest.cables) names(row, c.name, cable);
@@ -45,6 +47,7 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     for (const auto& s : rest.springs) names(row, s.name, spring);
     for (const auto& s : rest.supports) names(row, s.name, force);
     for (const auto& o : rest.contacts) names(row, o.name, force);
+    for (const auto& o : rest.objects) names(row, o.name, object);
     if (contact) {
         row.text("self_contact_N");
         row.text("smallest_distance_mm");
@@ -79,6 +82,11 @@ std::string steps_row(const sim::Step& step, bool contact) {
     }
     for (const auto& s : step.supports) row.vector(s.force_N, 1);
     for (const auto& o : step.contacts) row.vector(o.force_N, 1);
+    for (const auto& o : step.objects) {
+        row.vector(o.position_m, 1e3);
+        for (const double q : o.rotation) row.number(q);
+        row.vector(o.force_N, 1);
+    }
     if (contact) {
         row.number(step.self_contact_N);
         if (std::isfinite(step.smallest_distance_m))

@@ -8,6 +8,7 @@
 #include "base/core/share.hpp"
 #include "presentation/draw/colour.hpp"
 #include "presentation/scene/actuator_kind.hpp"
+#include "simulation/run/describe.hpp"
 #include "simulation/run/fields.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -176,7 +177,9 @@ std::string Scene::head() const {
     for (const sim::Marker& marker : d.markers)
         markers.push_back({{"name", marker.name},
                            {"rest", vector_json(mm * sim::position(marker.point, flat(model_.mesh().points)))}});
-    Json graded = Json::array();
+    Json graded = Json::array(), bodies = Json::array();
+    for (const robot::BodySpec& body : robot_.bodies)
+        bodies.push_back({{"name", body.name}, {"material", body.material}});
     for (const robot::BodySpec& body : robot_.bodies) {
         if (body.blend)
             graded.push_back({{"body", body.name}, {"material", body.material}, {"other", body.blend->material}});
@@ -187,6 +190,8 @@ std::string Scene::head() const {
                         std::any_of(d.supports.begin(), d.supports.end(), [](const auto& s) { return s.moves(); });
     const Json json = {{"robot", robot_.name},
                        {"materials", materials},
+                       {"bodies", bodies},
+                       {"unit_mm", mm * robot_.unit_m},
                        {"graded", graded},
                        {"actuators", actuators},
                        {"cable_points", cables},
@@ -274,11 +279,19 @@ std::string Scene::frame(const sim::Step& step, const std::set<std::string>& fie
     return packet.finish(head);
 }
 
-std::string Scene::obstacle_offsets(double time) const {
+std::string Scene::obstacle_offsets(double time, std::span<const Vec3> positions) const {
     Json offsets = Json::array();
     if (model_.description().contact) {
         for (const sim::Obstacle& obstacle : model_.description().contact->obstacles)
             offsets.push_back(vector_json(mm * (obstacle.share.at(time) * obstacle.move_m)));
+    }
+    for (std::size_t k = 0; k < model_.objects().size(); ++k) {
+        const sim::ObjectState state = sim::object_state(model_, k, flat(positions));
+        const auto& q = state.rotation;
+        const report::Obstacle& drawn = obstacles_[obstacles_.size() - model_.objects().size() + k];
+        report::Obstacle origin{{}, {{Vec3{}}, {}}, false, {state.position_m - drawn.pivot_m}, {q}, drawn.pivot_m};
+        const Vec3 to = mm * origin.points_at(0).front();
+        offsets.push_back({to.x, to.y, to.z, q[1], q[2], q[3], q[0]});
     }
     return offsets.dump();
 }

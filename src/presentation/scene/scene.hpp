@@ -3,6 +3,7 @@
 #pragma once
 
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,9 @@ public:
     /// Positions, cables, chambers and the fields that are wanted. `head`: JSON of the frame.
     [[nodiscard]] std::string frame(const sim::Step& step, const std::set<std::string>& fields,
                                     const std::string& head) const;
-    /// Where obstacles are: JSON, [[x, y, z] mm of offset].
-    [[nodiscard]] std::string obstacle_offsets(double time) const;
+    /// Where obstacles are: JSON, [[x, y, z] mm of offset]; then objects, where the nodes are at `positions`:
+    /// [x, y, z, and the unit quaternion x, y, z, w by which their points are turned before].
+    [[nodiscard]] std::string obstacle_offsets(double time, std::span<const Vec3> positions) const;
 
     [[nodiscard]] std::size_t vertex_count() const { return surface_.vertex_node.size(); }
     [[nodiscard]] int node_of_vertex(std::size_t vertex) const { return surface_.vertex_node[vertex]; }

@@ -57,4 +57,13 @@ std::string random_key() {
     return key;
 }
 
+std::string origin_of(std::string_view address) {
+    const std::size_t scheme = address.starts_with("https://") ? 8 : address.starts_with("http://") ? 7 : 0;
+    if (scheme == 0) return "";
+    const std::string_view host = address.substr(scheme, address.find_first_of("/?#", scheme) - scheme);
+    constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]";
+    if (host.empty() || host.find_first_not_of(allowed) != std::string_view::npos) return "";
+    return std::string(address.substr(0, scheme + host.size()));
+}
+
 }  // namespace pliant::studio

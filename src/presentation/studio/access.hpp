@@ -33,4 +33,8 @@ enum class Access { granted, wrong_host, wrong_origin, no_token };
 
 inline constexpr std::string_view cookie_name = "pliant_token";
 
+/// "http://camera:8080" of "http://camera:8080/stream?fps=5"; "" of what is no plain address by http or https: letters,
+/// digits, dots, hyphens, a port.
+[[nodiscard]] std::string origin_of(std::string_view address);
+
 }  // namespace pliant::studio

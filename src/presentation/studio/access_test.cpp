@@ -19,6 +19,15 @@ Credentials from(std::string_view host, std::string_view origin = "", bool webso
 
 }  // namespace
 
+TEST_CASE("the page may show pictures of one address more, and of nothing that is no address") {
+    CHECK(origin_of("http://camera:8080/stream?fps=5") == "http://camera:8080");
+    CHECK(origin_of("https://192.168.0.7") == "https://192.168.0.7");
+    CHECK(origin_of("http://[::1]:81/a.jpg") == "http://[::1]:81");
+    for (const char* wrong : {"", "camera", "ftp://camera/a", "http://", "http://a b/", "http://a;script-src *",
+                              "http://*/x", "http://user@camera/", "javascript:alert(1)"})
+        CHECK(origin_of(wrong) == "");
+}
+
 TEST_CASE("loopback lets its own page in, under each of its names") {
     const AccessRules rules{7117, ""};
     for (const char* host : {"localhost:7117", "127.0.0.1:7117", "[::1]:7117"}) {

@@ -12,12 +12,18 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// All that could be moved, each once.
-std::vector<sim::Steered> possible_inputs(const Built& built) {
+/// All that could be moved, each once, and the lengths and volumes of all actuators at rest.
+struct Possible {
+    std::vector<double> rest_measures;
+    std::vector<sim::Steered> inputs;
+};
+
+Possible possible_inputs(const Built& built) {
     const sim::Equilibrium system(built.model);
-    std::vector<double> measures;
-    for (const sim::Actuator& actuator : system.actuators()) measures.push_back(actuator.rest_measure());
-    return led_inputs(built.robot, built.model, measures);
+    Possible possible;
+    for (const sim::Actuator& actuator : system.actuators()) possible.rest_measures.push_back(actuator.rest_measure());
+    possible.inputs = led_inputs(built.robot, built.model, possible.rest_measures);
+    return possible;
 }
 
 /// Lengths, volumes and ratios have to stay above nothing, and no cable pushes.
@@ -29,9 +35,10 @@ bool is_possible(const sim::Steered& input, const view::ActuatorKind& kind, doub
     return name == "tension_N" ? input.low >= 0 : input.low > 0;
 }
 
-Result<sim::Steered> steered(const Built& built, std::vector<sim::Steered> possible, const InputRange& range) {
-    const auto found = std::ranges::find(possible, range.name, &sim::Steered::name);
-    if (found == possible.end()) return input_error("{}: cannot be moved: there is no such actuator", range.name);
+Result<sim::Steered> steered(const Built& built, const Possible& possible, const InputRange& range) {
+    const auto found = std::ranges::find(possible.inputs, range.name, &sim::Steered::name);
+    if (found == possible.inputs.end())
+        return input_error("{}: cannot be moved: there is no such actuator", range.name);
     const sim::Description& d = built.model.description();
     const view::ActuatorKind kind = view::kind_of(d, found->actuator);
     sim::Steered input = *found;
@@ -39,8 +46,7 @@ Result<sim::Steered> steered(const Built& built, std::vector<sim::Steered> possi
     input.high = range.high / kind.per_unit;
     if (!(input.low < input.high))
         return input_error("{}: the range from {:g} to {:g} is empty", range.name, range.low, range.high);
-    const sim::Equilibrium system(built.model);
-    if (!is_possible(input, kind, system.actuators()[input.actuator].rest_measure()))
+    if (!is_possible(input, kind, possible.rest_measures[input.actuator]))
         return input_error("{}: the range from {:g} to {:g} has values that it cannot have", range.name, range.low,
                            range.high);
     return input;
@@ -61,7 +67,7 @@ Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order) {
     for (const auto& [x, y, z] : order.path_mm) goal.wanted.push_back({1e-3 * Vec3{x, y, z}});
     sim::InverseTask task;
     task.goals = {std::move(goal)};
-    const std::vector<sim::Steered> possible = possible_inputs(built);
+    const Possible possible = possible_inputs(built);
     for (const InputRange& range : order.inputs) {
         Result<sim::Steered> input = steered(built, possible, range);
         if (!input) return tl::unexpected(input.error());
@@ -76,7 +82,8 @@ Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order) {
 std::string goal_inputs_json(const Built& built) {
     const sim::Description& d = built.model.description();
     Json list = Json::array();
-    for (const sim::Steered& input : possible_inputs(built)) {
+    const Possible possible = possible_inputs(built);
+    for (const sim::Steered& input : possible.inputs) {
         const view::ActuatorKind kind = view::kind_of(d, input.actuator);
         list.push_back({{"name", input.name},
                         {"kind", kind.name},

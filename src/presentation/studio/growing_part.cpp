@@ -144,15 +144,19 @@ std::string GrowingPart::news() {
 std::string GrowingPart::packet(int known, std::size_t from) const {
     const std::lock_guard lock(mutex_);
     from = known == revision() ? std::min(from, part_.closed()) : 0;
-    const auto& slabs = part_.slabs();
+    return part_packet(part_, cured_ ? "cured" : "exposed", revision(), from);
+}
+
+std::string part_packet(const twin::CoarsePart& part, std::string_view kind, int revision, std::size_t from) {
+    const auto& slabs = part.slabs();
     std::vector<float> heights;
     for (std::size_t s = from; s < slabs.size(); ++s) {
         heights.push_back(static_cast<float>(slabs[s].bottom_um) / 1000);
         heights.push_back(static_cast<float>(slabs[s].top_um) / 1000);
     }
     std::vector<std::uint32_t> words;
-    for (std::size_t r = from < slabs.size() ? slabs[from].first : part_.runs().size(); r < part_.runs().size(); ++r) {
-        const twin::CoarsePart::CellRun& run = part_.runs()[r];
+    for (std::size_t r = from < slabs.size() ? slabs[from].first : part.runs().size(); r < part.runs().size(); ++r) {
+        const twin::CoarsePart::CellRun& run = part.runs()[r];
         words.push_back(run.slab | static_cast<std::uint32_t>(run.material) << 24U);
         words.push_back(run.row);
         words.push_back(run.begin | static_cast<std::uint32_t>(run.end) << 16U);
@@ -160,9 +164,9 @@ std::string GrowingPart::packet(int known, std::size_t from) const {
     view::Packet packet;
     packet.add("slabs", heights);
     packet.add("runs", words);
-    return packet.finish(fmt::format(
-        R"({{"kind":"{}","revision":{},"from":{},"closed":{},"cell_px":{},"height_mm":{:.4f}}})",
-        cured_ ? "cured" : "exposed", revision(), from, part_.closed(), part_.cell_px(), part_.top_um() / 1000.0));
+    return packet.finish(
+        fmt::format(R"({{"kind":"{}","revision":{},"from":{},"closed":{},"cell_px":{},"height_mm":{:.4f}}})", kind,
+                    revision, from, part.closed(), part.cell_px(), part.top_um() / 1000.0));
 }
 
 std::shared_ptr<const report::CuredBlock> block_of(PacedTwin& twin, const std::filesystem::path& file) {

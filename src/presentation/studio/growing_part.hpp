@@ -63,6 +63,10 @@ private:
     bool grown_ = false;
 };
 
+/// The slabs of a part from `from` on, as GrowingPart::packet() tells them.
+[[nodiscard]] std::string part_packet(const twin::CoarsePart& part, std::string_view kind, int revision,
+                                      std::size_t from);
+
 /// The block against the drawing, for the report. The print must be over. Null if an image of the job cannot be read.
 [[nodiscard]] std::shared_ptr<const report::CuredBlock> block_of(PacedTwin& twin, const std::filesystem::path& file);
 

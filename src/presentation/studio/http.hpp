@@ -22,10 +22,11 @@ struct Response {
     int status = 200;
     std::string type = "application/json";
     std::string body{};
-    std::string file_name{};  ///< not empty: the browser saves it under this name
-    bool packed = false;      ///< body is gzip
-    bool keep = false;        ///< may be kept for good: its address changes with its content
-    std::string location{};   ///< not empty: where the browser goes instead
+    std::string file_name{};    ///< not empty: the browser saves it under this name
+    bool packed = false;        ///< body is gzip
+    bool keep = false;          ///< may be kept for good: its address changes with its content
+    std::string images_from{};  ///< origin that the page may also show images from
+    std::string location{};     ///< not empty: where the browser goes instead
 };
 
 [[nodiscard]] Response json_response(std::string json);

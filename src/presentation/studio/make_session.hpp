@@ -34,6 +34,7 @@ struct OpenJob {
     int revision;
     std::vector<std::string> colours{};  ///< (materials)
     std::mutex mutex{};                  ///< an archive is for one thread at a time
+    std::string part{};                  ///< see job_part(); "": nobody has asked for it yet
 };
 
 class MakeSession {

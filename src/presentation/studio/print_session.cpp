@@ -67,7 +67,7 @@ void add_safety(Json& json, const machine::Printer& p) {
 }
 
 /// How images lie on the platform.
-Json projector_json(const machine::Projector& p) {
+Json json_of(const machine::Projector& p) {
     return {{"width", p.width_px},
             {"height", p.height_px},
             {"pixel", p.pixel_um / 1e3},
@@ -105,7 +105,7 @@ Json printer_json(const machine::Printer& p) {
           {"height", mm(p.platform.build_height_um)}}},
         {"tower", {{"slots", p.tower.slots}, {"first", mm(p.tower.first_slot_um)}, {"pitch", mm(p.tower.pitch_um)}}},
         {"wall", mm(p.vat_shape.wall_um)},
-        {"projector", projector_json(p.projector)}};
+        {"projector", json_of(p.projector)}};
     add_safety(json, p);
     return json;
 }
@@ -171,11 +171,15 @@ struct PrintSession::Machine {
     GrowingPart part;
     host::Control control;
     std::atomic<bool> ending = false;
+    std::mutex block_mutex;
+    std::shared_ptr<const report::CuredBlock> block;  ///< of the last complete print; null: nobody has asked yet
     std::thread worker, watcher;
 };
 
-PrintSession::PrintSession(std::function<void(const std::string&)> tell)
-    : tell_(std::move(tell)), scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
+PrintSession::PrintSession(std::function<void(const std::string&)> tell, std::string notify)
+    : tell_(std::move(tell)),
+      notify_(std::move(notify)),
+      scratch_(std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key())) {}
 
 PrintSession::~PrintSession() {
     end(machine());
@@ -207,9 +211,25 @@ report::PrintExtras PrintSession::extras() const {
 
 std::string PrintSession::verdict() const {
     const auto machine = this->machine();
-    if (!machine || !machine->twin || !machine->is_free() || !machine->control.snapshot().finished) return "null";
-    const auto block = block_of(*machine->twin, machine->file);
-    return block ? dumped({{"passed", block->report.passed}}) : "null";
+    const auto block = machine ? finished_block(*machine) : nullptr;
+    if (!block) return "null";
+    return dumped(
+        {{"passed", block->report.passed}, {"reasons", Json::parse(twin::report_json(block->report))["reasons"]}});
+}
+
+/// Null: the print is not complete, or it is at a port.
+std::shared_ptr<const report::CuredBlock> PrintSession::finished_block(Machine& machine) {
+    if (!machine.twin || !machine.is_free() || !machine.control.snapshot().finished) return nullptr;
+    const std::lock_guard lock(machine.block_mutex);
+    if (!machine.block) machine.block = block_of(*machine.twin, machine.file);
+    return machine.block;
+}
+
+Result<std::string> PrintSession::verdict_picture() const {
+    const auto machine = this->machine();
+    const auto block = machine ? finished_block(*machine) : nullptr;
+    if (!block) return input_error("no virtual print is complete");
+    return report::block_picture(*block, machine->ready.archive->manifest(), machine->ready.printer.projector);
 }
 
 Status PrintSession::take_twin(const Order& order, double speed) {
@@ -267,7 +287,11 @@ void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
     machine->watcher = std::thread([this, m = machine.get()] {
         long last = 0;
         std::string before;
+        host::Snapshot known = m->control.snapshot();
         while (!m->ending) {
+            host::Snapshot now = m->control.snapshot();
+            if (const auto news = news_between(known, now)) announce(*news, m->ready.job.name);
+            known = std::move(now);
             std::string message = host::current_message(m->control, last);
             if (message != before) tell_(event_of(message));
             before = std::move(message);
@@ -276,6 +300,13 @@ void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
             std::this_thread::sleep_for(between_messages);
         }
     });
+}
+
+void PrintSession::announce(const PrintNews& news, const std::string& job) const {
+    tell_(dumped({{"type", "news"}, {"event", news.event}, {"text", news.text}, {"job", job}}));
+    if (notify_.empty()) return;
+    if (const Status told = tell_by_command(notify_, news, job); !told)
+        tell_(dumped({{"type", "error"}, {"error", "--notify: " + told.error().message}}));
 }
 
 void PrintSession::end(const std::shared_ptr<Machine>& machine) {
@@ -336,6 +367,8 @@ void PrintSession::prepare_start(Machine& machine) {
         });
     }
     machine.part.clear();
+    const std::lock_guard lock(machine.block_mutex);
+    machine.block.reset();
 }
 
 /// Whoever says that a vat is filled has filled the virtual one.
@@ -417,6 +450,10 @@ std::string PrintSession::part(int revision, std::size_t from) const {
 /// That there is none is news too: to a page that knew a machine before the studio was started again.
 std::vector<std::string> PrintSession::news() const {
     return {R"({"type":"machine"})"};
+}
+
+std::string projector_json(const machine::Projector& projector) {
+    return dumped(json_of(projector));
 }
 
 std::string ports_json() {

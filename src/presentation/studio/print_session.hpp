@@ -12,6 +12,7 @@
 
 #include "presentation/print_report/print_report.hpp"
 #include "presentation/studio/paced_twin.hpp"
+#include "presentation/studio/print_news.hpp"
 #include "printing/host/control.hpp"
 #include "printing/host/control_api.hpp"
 #include "printing/operate/port_station.hpp"
@@ -22,7 +23,8 @@ namespace pliant::studio {
 class PrintSession {
 public:
     /// `tell` sends a JSON event to all pages.
-    explicit PrintSession(std::function<void(const std::string& json)> tell);
+    /// `notify`: a command that hears of what news_between() finds; "": none.
+    explicit PrintSession(std::function<void(const std::string& json)> tell, std::string notify = "");
     ~PrintSession();  ///< a print under way is suspended
     PrintSession(const PrintSession&) = delete;
     PrintSession& operator=(const PrintSession&) = delete;
@@ -64,9 +66,11 @@ public:
     [[nodiscard]] Files files() const;
     /// What its journal does not hold.
     [[nodiscard]] report::PrintExtras extras() const;
-    /// What has come of a print that is complete, JSON: {"passed"}, null where nobody can know (at a port, in
-    /// mid-print). Cost: as report::cured_block().
+    /// What has come of a print that is complete, JSON: {"passed", "reasons": [...]}, null where nobody can know (at a
+    /// port, in mid-print). Cost: as report::cured_block(), once a print.
     [[nodiscard]] std::string verdict() const;
+    /// The cured block beside the drawing, PNG. Errors: as verdict() is null; nothing to draw.
+    [[nodiscard]] Result<std::string> verdict_picture() const;
 
 private:
     struct Machine;
@@ -77,14 +81,20 @@ private:
     static void pour(Machine& machine);
     [[nodiscard]] std::shared_ptr<Machine> machine() const;
     void end(const std::shared_ptr<Machine>& machine);
+    void announce(const PrintNews& news, const std::string& job) const;
+    [[nodiscard]] static std::shared_ptr<const report::CuredBlock> finished_block(Machine& machine);
 
     std::function<void(const std::string& json)> tell_;
+    std::string notify_;
     std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; gone with the session
     std::atomic<int> taken_ = 0;     ///< machines, so far
     std::mutex orders_;              ///< held while a machine is taken or left, or a print is begun: one at a time
     mutable std::mutex mutex_;
     std::shared_ptr<Machine> machine_;
 };
+
+/// How the machine's images lie on its platform, for pages that draw them: JSON.
+[[nodiscard]] std::string projector_json(const machine::Projector& projector);
 
 /// The ports that have something behind them and the displays that a projector may be: JSON.
 [[nodiscard]] std::string ports_json();

@@ -102,7 +102,7 @@ TEST_CASE("a job is printed on the virtual printer and judged; then the machine 
     CHECK(b.session.verdict() == "null");
     b.wait_for_state("Operational");
     REQUIRE(b.command("start").status < 300);
-    CHECK(b.verdict() == R"({"passed":true})");
+    CHECK(b.verdict() == R"({"passed":true,"reasons":[]})");
     CHECK_FALSE(b.session.part(0, 0).empty());
     CHECK(fs::exists(b.session.files().journal));
     const fs::path scratch = b.session.files().journal.parent_path();
@@ -122,7 +122,7 @@ TEST_CASE("nobody takes the machine away from a print that is under way") {
     CHECK(holds(b.session.take_twin(b.order, 1).error().message, "a print is under way"));
     CHECK(b.about()["taken"] == 1);
     REQUIRE(b.session.set_speed(10000).has_value());
-    CHECK(b.verdict() == R"({"passed":true})");
+    CHECK(b.verdict() == R"({"passed":true,"reasons":[]})");
     CHECK(b.session.take_twin(b.order, 1).has_value());
     CHECK(b.about()["taken"] == 2);
 }

@@ -23,6 +23,7 @@ std::string_view next_segment(std::string_view& path) {
 std::vector<Route> all_routes() {
     std::vector<Route> routes;
     add_project_routes(routes);
+    add_edit_routes(routes);
     add_simulation_routes(routes);
     add_search_routes(routes);
     add_make_routes(routes);

@@ -23,6 +23,7 @@ struct Route {
 
 [[nodiscard]] std::vector<Route> all_routes();
 void add_project_routes(std::vector<Route>& routes);
+void add_edit_routes(std::vector<Route>& routes);
 void add_simulation_routes(std::vector<Route>& routes);
 void add_search_routes(std::vector<Route>& routes);
 void add_make_routes(std::vector<Route>& routes);

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "base/core/files.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/job_part.hpp"
 #include "presentation/studio/slice_order.hpp"
+#include "presentation/studio/slice_robot.hpp"
 #include "presentation/studio/studio.hpp"
 #include "printing/job/manifest.hpp"
 #include "printing/operate/job_file.hpp"
@@ -44,6 +47,21 @@ int layer_of(const std::string& remark) {
     return -1;
 }
 
+/// The same text with layers counted from 1, as the page counts them; the slicer's own count from 0.
+std::string from_one(const std::string& text) {
+    static const std::regex layers(R"(\b(layers? )(\d+)( to )?(\d+)?)");
+    const auto next = [](const std::string& digits) { return std::to_string(std::stol(digits) + 1); };
+    std::string out;
+    std::size_t at = 0;
+    for (std::sregex_iterator m(text.begin(), text.end(), layers); m != std::sregex_iterator(); ++m) {
+        const auto begin = static_cast<std::size_t>(m->position());
+        out += text.substr(at, begin - at) + (*m)[1].str() + next((*m)[2]) + (*m)[3].str();
+        if ((*m)[4].matched) out += (*m)[3].matched ? next((*m)[4]) : (*m)[4].str();
+        at = begin + static_cast<std::size_t>(m->length());
+    }
+    return out + text.substr(at);
+}
+
 /// What the slicer has found, with a place; then its remarks.
 Json issues_json(const job::Manifest& manifest) {
     static const std::map<std::string, const char*> names = {{"island", "island, begins in mid-air"},
@@ -63,7 +81,7 @@ Json issues_json(const job::Manifest& manifest) {
                           {"column", f.column}});
     }
     for (const std::string& warning : manifest.warnings)
-        issues.push_back({{"text", warning}, {"layer", layer_of(warning)}});
+        issues.push_back({{"text", from_one(warning)}, {"layer", layer_of(warning)}});
     return issues;
 }
 
@@ -92,6 +110,7 @@ Response job(Studio& studio, const Request&) {
                  {"manifest", Json::parse(job::to_json(manifest))},
                  {"colours", open->colours},
                  {"issues", issues_json(manifest)},
+                 {"projector", Json::parse(projector_json(p.projector))},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
                  {"printer", p.name}};
     if (plan) {
@@ -144,6 +163,16 @@ Response image(Studio& studio, const Request& request) {
         return response;
     }
     return error_response(404, "nothing of this material is in this layer");
+}
+
+Response part(Studio& studio, const Request&) {
+    const auto open = studio.make().job();
+    if (!open) return no_job();
+    Result<std::string> packet = job_part(*open);
+    if (!packet) return error_response(packet.error());
+    Response response{200, "application/octet-stream", std::move(*packet)};
+    response.keep = true;
+    return response;
 }
 
 Response download(Studio& studio, const Request&) {
@@ -236,6 +265,18 @@ Response slice(Studio& studio, const Request& request) {
     return status ? json_response("{}") : error_response(status.error());
 }
 
+/// What it will take, before it is sliced.
+Response estimate(Studio& studio, const Request& request) {
+    Result<SliceOrder> order = read_order(studio, request);
+    if (!order) return error_response(order.error());
+    const Result<plan::Plan> plan = estimate_robot(*order);
+    if (!plan) return error_response(plan.error());
+    Json resin = Json::object();
+    for (const plan::VatUse& vat : plan->vats) resin[vat.resin] = resin.value(vat.resin, 0.0) + vat.resin_ml;
+    return json_response(dumped(
+        {{"layers", plan->layers}, {"seconds", plan->seconds.total}, {"swaps", plan->swaps}, {"resin_ml", resin}}));
+}
+
 /// What a form about slicing for it wants to know.
 Response printer(Studio& studio, const Request& request) {
     const auto name = request.query.find("name");
@@ -248,12 +289,19 @@ Response printer(Studio& studio, const Request& request) {
         resins.push_back(
             {{"name", resin.name}, {"exposure_s", resin.exposure_s}, {"bottom_exposure_s", resin.bottom_exposure_s}});
     for (const machine::Vat& vat : p.vats) vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}});
-    return json_response(dumped({{"name", p.name},
-                                 {"layer_um", p.layer_um},
-                                 {"pixel_um", p.projector.pixel_um},
-                                 {"mask", p.projector.mask},
-                                 {"resins", resins},
-                                 {"vats", vats}}));
+    return json_response(dumped(
+        {{"name", p.name},
+         {"layer_um", p.layer_um},
+         {"pixel_um", p.projector.pixel_um},
+         {"mask", p.projector.mask},
+         {"image_mm",
+          {p.projector.width_px * p.projector.pixel_um / 1e3, p.projector.height_px * p.projector.pixel_um / 1e3}},
+         {"platform",
+          {{"width_mm", p.platform.width_um / 1e3},
+           {"depth_mm", p.platform.depth_um / 1e3},
+           {"height_mm", p.platform.build_height_um / 1e3}}},
+         {"resins", resins},
+         {"vats", vats}}));
 }
 
 Response cancel(Studio& studio, const Request&) {
@@ -267,10 +315,14 @@ void add_make_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
     routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\"} and the options of pliant slice", json,
                       true, slice, json});
+    routes.push_back({"POST", "/api/job/estimate", "what the print will take: the body of /api/job/slice", json, false,
+                      estimate, json});
     routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
     routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back(
+        {"GET", "/api/job/part", "the job as it will stand, a packet", "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});
     routes.push_back({"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare});
     routes.push_back({"GET", "/api/job/file", "the job file", "application/zip", false, download});

@@ -164,8 +164,14 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or closes the door of the virtual printer", json,
                       true, set_door, json});
     routes.push_back({"GET", "/api/print/verdict",
-                      "of a complete print on the virtual printer: {\"passed\"}, whether it cured as drawn; else null",
-                      json, false, [](Studio& s, const Request&) { return json_response(s.print().verdict()); }});
+                      "of a complete print on the virtual printer: {\"passed\", \"reasons\"}; else null", json, false,
+                      [](Studio& s, const Request&) { return json_response(s.print().verdict()); }});
+    routes.push_back(
+        {"GET", "/api/print/verdict/picture", "the cured block beside the drawing", "image/png", false,
+         [](Studio& s, const Request&) {
+             Result<std::string> png = s.print().verdict_picture();
+             return png ? Response{200, "image/png", std::move(*png)} : error_response(404, png.error().message);
+         }});
     routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
                       "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",

@@ -39,7 +39,8 @@ Response project(Studio& studio, const Request&) {
     add_own_printers(studio.folder(), printers);
     const Json json = {
         {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},
-        {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers}};
+        {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers},
+        {"webcam", studio.webcam()}};
     return json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -48,10 +49,9 @@ Response robot_text(Studio& studio, const Request&) {
 }
 
 Response set_accuracy(Studio& studio, const Request& request) {
-    const std::string accuracy = body_text(request, "accuracy");
-    if (accuracy != "preview" && accuracy != "fine")
-        return error_response(422, R"(accuracy: "preview" or "fine" is needed)");
-    studio.set_accuracy(accuracy == "fine" ? Accuracy::fine : Accuracy::preview);
+    const std::optional<Accuracy> accuracy = accuracy_named(body_text(request, "accuracy"));
+    if (!accuracy) return error_response(422, R"(accuracy: "preview", "automatic" or "fine" is needed)");
+    studio.set_accuracy(*accuracy);
     return json_response("{}");
 }
 
@@ -81,9 +81,11 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
     routes.push_back(
         {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
-    routes.push_back({"POST", "/api/accuracy",
-                      "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones", json, true,
-                      set_accuracy, json});
+    routes.push_back(
+        {"POST", "/api/accuracy",
+         "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones, \"automatic\" for linear ones "
+         "while a hand moves",
+         json, true, set_accuracy, json});
 }
 
 }  // namespace pliant::studio

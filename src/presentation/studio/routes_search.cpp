@@ -32,10 +32,11 @@ Response unknowns(Studio& studio, const Request&) {
 Response begin_goal(Studio& studio, const Request& request) {
     auto built = studio.simulation().built();
     if (!built) return nothing_built();
-    Result<GoalOrder> order = parse_goal_order(request.body);
+    const Result<GoalOrder> order = parse_goal_order(request.body);
     if (!order) return error_response(order.error());
-    if (const auto task = goal_task(*built, *order); !task) return error_response(task.error());
-    const Status begun = studio.search().find_inputs(std::move(built), std::move(*order));
+    Result<sim::InverseTask> task = goal_task(*built, *order);
+    if (!task) return error_response(task.error());
+    const Status begun = studio.search().find_inputs(std::move(built), std::move(*task));
     return begun ? json_response("{}") : error_response(begun.error());
 }
 

@@ -6,12 +6,12 @@
 
 #include "presentation/report/identified.hpp"
 #include "presentation/report/inverse_tables.hpp"
-#include "presentation/studio/goal_task.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/identify/identify.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/run/simulate.hpp"
+#include "simulation/scene/build_goals.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -22,16 +22,13 @@ std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Result<SearchResult> found_inputs(const Built& built, const GoalOrder& order, Progress& progress) {
-    const Result<sim::InverseTask> task = goal_task(built, order);
-    if (!task) return tl::unexpected(task.error());
-    constexpr double tightest_needed = 1e-5;
+Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& task, Progress& progress) {
     sim::StepperOptions stepping = sim::stepper_options(built.robot.program);
-    stepping.tolerance = std::min(stepping.tolerance, tightest_needed);
+    stepping.tolerance = robot::goal_tolerance(built.robot.program);
     sim::Stepper stepper(built.model, stepping);
-    const sim::inverse::InverseResult found = sim::inverse::follow(stepper, *task, {}, progress);
+    const sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {}, progress);
     if (found.cancelled) return tl::unexpected(cancelled());
-    Json json = Json::parse(report::inverse_json({built.robot.name, built.model, *task, found}));
+    Json json = Json::parse(report::inverse_json({built.robot.name, built.model, task, found}));
     return SearchResult{dumped({{"kind", "goal"}, {"revision", built.revision}, {"found", std::move(json)}})};
 }
 
@@ -52,19 +49,15 @@ sim::identify::JudgeOn judge_of(const std::string& name) {
 }
 
 Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, Progress& progress) {
-    std::vector<sim::identify::Unknown> unknowns;
-    for (const std::string& text : order.unknowns) {
-        auto unknown = sim::identify::find_unknown(built.robot, text);
-        if (!unknown) return tl::unexpected(unknown.error());
-        unknowns.push_back(std::move(*unknown));
-    }
+    const auto unknowns = sim::identify::find_unknowns(built.robot, order.unknowns);
+    if (!unknowns) return tl::unexpected(unknowns.error());
     const auto measurements = sim::identify::parse_measurements(order.csv, order.file, built.model.description(),
                                                                 built.robot.program, judge_of(order.judge));
     if (!measurements) return tl::unexpected(measurements.error());
     Result<mesh::TetMesh> mesh = robot::build_mesh(built.robot, progress);
     if (!mesh) return tl::unexpected(mesh.error());
     const auto found =
-        sim::identify::identify(source_of(built.source, std::move(*mesh)), unknowns, *measurements, progress);
+        sim::identify::identify(source_of(built.source, std::move(*mesh)), *unknowns, *measurements, progress);
     if (!found) return tl::unexpected(found.error());
     Json json = Json::parse(sim::identify::identification_json(*found));
     for (const sim::identify::Found& one : found->found) {
@@ -109,9 +102,9 @@ SearchSession::~SearchSession() {
     if (thread_.joinable()) thread_.join();
 }
 
-Status SearchSession::find_inputs(std::shared_ptr<const Built> built, GoalOrder order) {
-    return begin("goal", [built = std::move(built), order = std::move(order)](Progress& progress) {
-        return found_inputs(*built, order, progress);
+Status SearchSession::find_inputs(std::shared_ptr<const Built> built, sim::InverseTask task) {
+    return begin("goal", [built = std::move(built), task = std::move(task)](Progress& progress) {
+        return found_inputs(*built, task, progress);
     });
 }
 

@@ -12,6 +12,7 @@
 
 #include "presentation/studio/search_order.hpp"
 #include "presentation/studio/simulation_session.hpp"
+#include "simulation/parts/inverse_task.hpp"
 
 namespace pliant::studio {
 
@@ -34,7 +35,7 @@ public:
     SearchSession& operator=(const SearchSession&) = delete;
 
     /// Begins; the pages hear of its progress and of its end. Errors: one is running already.
-    [[nodiscard]] Status find_inputs(std::shared_ptr<const Built> built, GoalOrder order);
+    [[nodiscard]] Status find_inputs(std::shared_ptr<const Built> built, sim::InverseTask task);
     [[nodiscard]] Status identify(std::shared_ptr<const Built> built, IdentifyOrder order);
     void cancel() { cancelled_ = true; }
 

@@ -88,7 +88,7 @@ TEST_CASE("a search tells of its end, and its result stays until the next one") 
     Bench b;
     CHECK(b.session.result() == nullptr);
     CHECK(Json::parse(b.session.news()[0])["result"] == 0);
-    REQUIRE(b.session.find_inputs(built, goal_at(1.5)));
+    REQUIRE(b.session.find_inputs(built, *goal_task(*built, goal_at(1.5))));
     CHECK(b.end() == "");
     const Json result = b.result();
     CHECK(result["kind"] == "goal");
@@ -120,8 +120,9 @@ TEST_CASE("one search at a time, and one that is cancelled leaves nothing") {
     GoalOrder long_one = goal_at(1.5);
     for (int k = 0; k < 200; ++k) long_one.path_mm.push_back({4, 1.5, 1 + 0.002 * k});
     long_one.tolerance_mm = 1e-6;
-    REQUIRE(b.session.find_inputs(built, long_one));
-    CHECK(b.session.find_inputs(built, long_one).error().message == "a search is running already; cancel it first");
+    REQUIRE(b.session.find_inputs(built, *goal_task(*built, long_one)));
+    CHECK(b.session.find_inputs(built, *goal_task(*built, long_one)).error().message ==
+          "a search is running already; cancel it first");
     b.session.cancel();
     CHECK(b.end() == "");
     CHECK(b.session.result() == nullptr);

@@ -53,12 +53,14 @@ constexpr const char* safety_headers =
     "Referrer-Policy: no-referrer\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n"
     "Cross-Origin-Opener-Policy: same-origin\r\n"
-    "Content-Security-Policy: default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
-    "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n";
+    "Content-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; img-src "
+    "'self' blob: data:";
 
 void write(mg_connection* wire, const Response& response, const std::string& more = "") {
-    std::string head = fmt::format("HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n{}", response.status,
-                                   reason(response.status), response.type, response.body.size(), safety_headers);
+    std::string head = fmt::format("HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n{}{}{}\r\n",
+                                   response.status, reason(response.status), response.type, response.body.size(),
+                                   safety_headers, response.images_from.empty() ? "" : " ", response.images_from);
     head += response.keep ? "Cache-Control: private, max-age=31536000, immutable\r\n" : "Cache-Control: no-store\r\n";
     if (response.packed) head += "Content-Encoding: gzip\r\n";
     if (!response.file_name.empty())
@@ -141,7 +143,9 @@ struct Server::State {
         if (request.path.starts_with("/api/")) return answer(wire, studio.handle(request));
         if (request.method == "GET" && (request.path == "/help" || request.path.starts_with("/help/")))
             return answer(wire, help_page(help, request.path));
-        return answer(wire, page_file(request));
+        Response page = page_file(request);
+        page.images_from = origin_of(studio.webcam());
+        return answer(wire, page);
     }
 
     static int refuse(mg_connection* wire, int status, const char* text) {

@@ -19,7 +19,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double mm = 1e3;
 constexpr std::size_t history_bytes = std::size_t{96} << 20;
 constexpr std::chrono::milliseconds frame_gap{15};  // more than a screen shows is not worth sending
-constexpr double patch_share = 0.04;                // of the robot's size: what a hand takes hold of
+constexpr std::chrono::milliseconds pause{80};      // of a hand that rests: several inputs would have come
+constexpr double quick_s = 0.05;                    // of a piece: frames of a hand that moves
+constexpr double slow_s = 0.15;
 
 std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -40,16 +42,26 @@ double diagonal(const std::vector<Vec3>& points) {
     return norm(high - low);
 }
 
-/// What is wrong, and in which line; 0 where it is about no line.
-Json problem_lines(const Error& error) {
-    if (error.problems.empty()) return Json::array({{{"line", 0}, {"text", error.message}}});
+}  // namespace
+
+std::string problem_lines(const Error& error) {
+    if (error.problems.empty()) return dumped(Json::array({{{"line", 0}, {"text", error.message}}}));
     Json lines = Json::array();
     for (const Diagnostic& problem : error.problems)
         lines.push_back({{"line", problem.line}, {"text", shown({"", 0, problem.key, problem.text})}});
-    return lines;
+    return dumped(lines);
 }
 
-}  // namespace
+std::string_view name(Accuracy accuracy) {
+    if (accuracy == Accuracy::automatic) return "automatic";
+    return accuracy == Accuracy::preview ? "preview" : "fine";
+}
+
+std::optional<Accuracy> accuracy_named(std::string_view name) {
+    for (const Accuracy one : {Accuracy::preview, Accuracy::automatic, Accuracy::fine})
+        if (studio::name(one) == name) return one;
+    return std::nullopt;
+}
 
 Built::Built(RobotText source_, robot::Scene scene_, int revision_)
     : source(std::move(source_)),
@@ -57,14 +69,15 @@ Built::Built(RobotText source_, robot::Scene scene_, int revision_)
       model(std::move(scene_.model)),
       revision(revision_),
       scene(robot, model),
-      attacher(model.mesh()),
+      preview(source.accuracy == Accuracy::automatic ? Preview::of(robot, model) : nullptr),
       size_m(diagonal(model.mesh().points)),
       warnings(sim::warnings_at_rest(model)) {}
 
 /// Reports building, and stops it when something else is to be built.
 class SimulationSession::Watch final : public Progress {
 public:
-    explicit Watch(SimulationSession& session) : session_(session) {}
+    /// `any_input`: stops it too.
+    explicit Watch(SimulationSession& session, bool any_input = false) : session_(session), any_input_(any_input) {}
     void advance(std::string_view stage, double fraction) override {
         if (Clock::now() - last_ < std::chrono::milliseconds(100)) return;
         last_ = Clock::now();
@@ -73,11 +86,12 @@ public:
     [[nodiscard]] bool cancelled() const override {
         if (session_.stopping_) return true;
         const std::lock_guard lock(session_.mutex_);
-        return session_.to_build_.has_value();
+        return session_.to_build_.has_value() || (any_input_ && session_.input_);
     }
 
 private:
     SimulationSession& session_;
+    bool any_input_;
     Clock::time_point last_{};
 };
 
@@ -99,7 +113,13 @@ void SimulationSession::open(RobotText source, After after) {
     wanted_.lead.reset();
     wanted_.playing = wanted_.to_rest = false;
     wanted_.again = after == After::as_before;
-    input_ = wanted_.again;
+    input_ = wanted_.changed = wanted_.again;
+    changed_.notify_all();
+}
+
+void SimulationSession::take_input() {
+    wanted_.changed = true;
+    input_ = true;
     changed_.notify_all();
 }
 
@@ -115,8 +135,7 @@ void SimulationSession::drive(const DriveMessage& message) {
     wanted_.playing = false;
     wanted_.lead.reset();
     wanted_.let_go = false;
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::follow(const Follow& message) {
@@ -127,8 +146,7 @@ void SimulationSession::follow(const Follow& message) {
     wanted_.follow = true;
     wanted_.playing = false;
     wanted_.lead.reset();
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::play(bool on) {
@@ -136,24 +154,21 @@ void SimulationSession::play(bool on) {
     wanted_.playing = on;
     if (on) wanted_.actuators.clear();
     if (on) wanted_.lead.reset();
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::rest() {
     const std::lock_guard lock(mutex_);
     wanted_ = {};
     wanted_.to_rest = true;
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::pull(const PullMessage& message) {
     const std::lock_guard lock(mutex_);
     wanted_.pull = message;
     wanted_.tag = message.tag;
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::lead(const LeadMessage& message) {
@@ -162,8 +177,7 @@ void SimulationSession::lead(const LeadMessage& message) {
     wanted_.pull.reset();
     wanted_.playing = false;
     wanted_.tag = message.tag;
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::release() {
@@ -171,8 +185,7 @@ void SimulationSession::release() {
     wanted_.pull.reset();
     wanted_.let_go = wanted_.lead.has_value();
     wanted_.lead.reset();
-    input_ = true;
-    changed_.notify_all();
+    take_input();
 }
 
 void SimulationSession::show_again() {
@@ -225,7 +238,10 @@ void SimulationSession::work() {
         std::optional<Wanted> wanted;
         {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] { return stopping_ || to_build_ || input_ || !settled_ || playing_; });
+            const auto called = [&] { return stopping_ || to_build_ || input_; };
+            const auto busy = [&] { return called() || !settled_ || playing_ || may_refine(); };
+            changed_.wait(lock, busy);
+            if (settled_ && !playing_) changed_.wait_for(lock, pause, called);  // or there is something to refine
             if (stopping_) return;
             if (to_build_) {
                 source = *to_build_;
@@ -233,14 +249,19 @@ void SimulationSession::work() {
             } else if (input_) {
                 wanted = wanted_;
                 wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = wanted_.let_go = false;
+                wanted_.changed = false;
                 input_ = false;
             }
         }
         if (source) build(std::move(*source));
-        if (!live_) continue;
+        if (hand_ == nullptr) continue;
         if (wanted) apply(*wanted);
         if (playing_ && settled_) go_on_playing();
-        if (!settled_) advance();
+        if (!settled_) {
+            advance();
+        } else if (!source && !wanted && may_refine()) {
+            refine();
+        }
     }
 }
 
@@ -259,7 +280,9 @@ void SimulationSession::build(RobotText source) {
         changed_.notify_all();
     };
     const auto refuse = [&](const Error& error) {
-        finished(error.cause == Cause::cancelled ? "" : dumped({{"type", "problem"}, {"lines", problem_lines(error)}}));
+        finished(error.cause == Cause::cancelled
+                     ? ""
+                     : fmt::format(R"({{"type":"problem","lines":{}}})", problem_lines(error)));
     };
     std::vector<std::string> assignments;
     if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
@@ -269,26 +292,36 @@ void SimulationSession::build(RobotText source) {
     if (!scene) return refuse(scene.error());
     const std::shared_ptr<const Built> before = this->built();
     auto built = std::make_shared<const Built>(std::move(source), std::move(*scene), ++revision_);
-    led_.reset();
-    live_.reset();
-    live_.emplace(built->model, built->robot.program);
-    target_ = live_->target_at(0);
-    driven_.clear();
-    pulled_vertex_ = -1;
+    start(built);
     want_as_before(before.get(), *built);
     {
         const std::lock_guard lock(mutex_);
         built_ = built;
-        scene_ = std::make_shared<const std::string>(
-            built->scene.packet(fmt::format(R"(,"revision":{},"accuracy":"{}")", built->revision,
-                                            built->source.accuracy == Accuracy::preview ? "preview" : "fine")));
-        history_ = {};
-        history_stride_ = 1;
-        history_seen_ = 0;
+        scene_ = std::make_shared<const std::string>(built->scene.packet(
+            fmt::format(R"(,"revision":{},"accuracy":"{}")", built->revision, name(built->source.accuracy))));
     }
+    forget_history();
     tell("scene", dumped({{"type", "scene"}, {"revision", built->revision}}));
-    publish({true, true, 0, 0, ""});
+    publish({true, !is_input_waiting(), 0, 0, ""}, *fine_);  // rest is not where a robot is wanted that was elsewhere
     finished("");
+}
+
+bool SimulationSession::is_input_waiting() const {
+    const std::lock_guard lock(mutex_);
+    return input_;
+}
+
+void SimulationSession::start(const std::shared_ptr<const Built>& built) {
+    hand_ = shown_ = nullptr;
+    preview_.reset();
+    fine_ = std::make_unique<LiveRobot>(built->robot, built->model, built->size_m);
+    hand_ = fine_.get();
+    if (built->preview) {
+        preview_ = std::make_unique<LiveRobot>(built->preview->robot(), built->preview->model(), built->size_m);
+        hand_ = preview_.get();
+    }
+    now_ = {};
+    refining_ = catching_up_ = false;
 }
 
 /// Names tell whether what was wanted of the robot before still says something.
@@ -307,176 +340,156 @@ void SimulationSession::want_as_before(const Built* before, const Built& now) {
 }
 
 void SimulationSession::apply(const Wanted& wanted) {
-    if (wanted.to_rest) {
-        led_.reset();
-        live_->return_to_rest();
-        target_ = live_->target_at(0);
-        driven_.clear();
-        pulled_vertex_ = -1;
-        playing_ = false;
-        settled_ = true;
-        const std::lock_guard lock(mutex_);
-        history_ = {};
-        history_stride_ = 1;
-        history_seen_ = 0;
-    }
     tag_ = wanted.tag;
-    if (wanted.to_rest || wanted.show_again) publish({false, settled_, 0, 0, ""});
-    if (wanted.to_rest) return;
+    now_ = wanted;
+    if (wanted.to_rest) return to_rest();
+    if (wanted.show_again && shown_ != nullptr) publish({false, settled_ && !refining_, 0, 0, ""}, *shown_);
+    if (!wanted.changed) return;
     if (playing_ != wanted.playing) {
         playing_ = wanted.playing;
         const double end = built_->robot.program.duration;
-        if (playing_ && target_.time >= end * (1 - 1e-9)) target_ = live_->target_at(0);
-        if (!playing_) publish({false, settled_, 0, 0, ""});
+        if (playing_ && hand_->target().time >= end * (1 - 1e-9)) hand_->follow(0);
+        if (!playing_) publish({false, settled_ && !refining_, 0, 0, ""}, *shown_);
     }
     settled_ = false;
-    if (set_lead(wanted.lead)) return;
-    if (led_ && wanted.let_go) return let_go_of_marker();
-    led_.reset();
-    set_target(wanted);
-    set_pull(wanted.pull);
+    refining_ = false;
+    if (wanted.lead && hand_->lead(*wanted.lead)) return;
+    if (hand_->is_led() && wanted.let_go) return let_go_of_marker();
+    hand_->stop_leading();
+    move_by_hand(wanted);
 }
 
-bool SimulationSession::set_lead(const std::optional<LeadMessage>& message) {
-    const auto& markers = built_->model.description().markers;
-    const auto named = [&](const sim::Marker& marker) { return message && marker.name == message->marker; };
-    const auto marker = static_cast<std::size_t>(std::ranges::find_if(markers, named) - markers.begin());
-    if (marker == markers.size()) return false;
-    if (!led_ || led_->marker() != marker) {
-        auto inputs = led_inputs(built_->robot, built_->model, live_->rest_measures());
-        if (inputs.empty()) return false;
-        led_.emplace(*live_, built_->model, std::move(inputs), marker);
-    }
-    led_to_m_ = 1 / mm * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]};
-    return true;
+void SimulationSession::to_rest() {
+    fine_->to_rest();
+    if (preview_) preview_->to_rest();
+    playing_ = refining_ = catching_up_ = false;
+    settled_ = true;
+    forget_history();
+    publish({false, true, 0, 0, ""}, *fine_);
+}
+
+void SimulationSession::move_by_hand(const Wanted& wanted) {
+    if (wanted.follow || wanted.again) hand_->follow(wanted.followed);
+    if (!playing_ && !wanted.follow) hand_->drive(wanted.time, wanted.actuators);
+    hand_->pull(pulled(wanted.pull));
 }
 
 /// The sliders stay where the hand has led the actuators.
 void SimulationSession::let_go_of_marker() {
-    driven_ = led_->actuators();
-    led_.reset();
-    target_.time = live_->state().inputs.time;
-    target_.drives = live_->state().inputs.drives;
-    target_.pull.reset();
+    hand_->let_go();
     {
         const std::lock_guard lock(mutex_);
-        wanted_.actuators = driven_;
-        wanted_.time = target_.time;
+        wanted_.actuators = now_.actuators = hand_->driven();
+        wanted_.time = now_.time = hand_->target().time;
     }
     settled_ = true;
-    publish({false, true, 0, 0, ""});
+    refining_ = hand_ != fine_.get();
+    publish({false, !refining_, 0, 0, ""}, *hand_);
 }
 
-void SimulationSession::set_target(const Wanted& wanted) {
-    const double end = built_->robot.program.duration;
-    if (wanted.follow || wanted.again) {
-        auto pull = std::move(target_.pull);
-        target_ = live_->target_at(std::min(wanted.followed, end));
-        target_.pull = std::move(pull);
-    }
-    driven_.clear();
-    if (playing_ || wanted.follow) return;
-    target_.time = std::min(wanted.time, end);
-    for (const ActuatorValue& value : wanted.actuators) {
-        if (set_actuator(value)) driven_.push_back(value);
-    }
-}
-
-bool SimulationSession::set_actuator(const ActuatorValue& value) {
-    using Kind = sim::Drive::Kind;
-    const sim::Description& d = built_->model.description();
-    const std::vector<double> rest = live_->rest_measures();
-    const double v = value.value;
-    bool possible = false;
-    // The thesis' elements know lengths and volumes only.
-    const auto by_elements = [&](std::size_t a) {
-        return std::any_of(d.growths.begin(), d.growths.end(),
-                           [&](const sim::Growth& growth) { return growth.actuator == static_cast<int>(a); });
-    };
-    const auto set = [&](sim::Drive& drive, const char* kind, bool can_be, const sim::Drive& next) {
-        if (value.kind != kind || !can_be) return;
-        drive = next;
-        possible = true;
-    };
-    for (std::size_t c = 0; c < d.cables.size(); ++c) {
-        if (d.cables[c].name != value.name) continue;
-        sim::Drive& drive = target_.drives[c];
-        set(drive, "length_ratio", v > 0, {Kind::measure, v * rest[c]});
-        set(drive, "shortening_mm", v / mm < rest[c], {Kind::measure, rest[c] - v / mm});
-        set(drive, "tension_N", !by_elements(c), {Kind::multiplier, std::max(v, 0.0)});
-    }
-    for (std::size_t k = 0; k < d.chambers.size(); ++k) {
-        if (d.chambers[k].name != value.name) continue;
-        const std::size_t a = d.cables.size() + k;
-        sim::Drive& drive = target_.drives[a];
-        set(drive, "volume_ratio", v > 0, {Kind::measure, v * rest[a]});
-        set(drive, "volume_change_mm3", rest[a] + 1e-9 * v > 0, {Kind::measure, rest[a] + 1e-9 * v});
-        set(drive, "pressure_kPa", !by_elements(a), {Kind::multiplier, 0 - 1e3 * v});
-        set(drive, "gas_ratio", v > 0 && !by_elements(a), {Kind::gas, v * d.ambient_pressure_Pa * rest[a]});
-    }
-    return possible;
-}
-
-void SimulationSession::set_pull(const std::optional<PullMessage>& message) {
-    if (!message || message->vertex >= static_cast<int>(built_->scene.vertex_count())) {
-        target_.pull.reset();
-        pulled_vertex_ = -1;
-        return;
-    }
-    const Vec3 to = 1 / mm * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]};
-    if (target_.pull && pulled_vertex_ == message->vertex) {
-        target_.pull->handle_m = to;
-        return;
-    }
-    pulled_vertex_ = message->vertex;
+std::optional<Pulled> SimulationSession::pulled(const std::optional<PullMessage>& message) const {
+    if (!message || message->vertex >= static_cast<int>(built_->scene.vertex_count())) return std::nullopt;
     const int node = built_->scene.node_of_vertex(static_cast<std::size_t>(message->vertex));
-    const Vec3& rest = built_->model.mesh().points[static_cast<std::size_t>(node)];
-    Result<sim::Attachment> patch = built_->attacher.spread(rest, patch_share * built_->size_m, 1e-3 * built_->size_m);
-    target_.pull = sim::Pull{patch ? std::move(*patch) : sim::Attachment{{node}, {1.0}, {}}, to};
+    return Pulled{message->vertex, built_->model.mesh().points[static_cast<std::size_t>(node)],
+                  1 / mm * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]}};
 }
 
 void SimulationSession::go_on_playing() {
     const sim::Program& program = built_->robot.program;
     const double step = program.duration / program.steps;
-    if (target_.time >= program.duration * (1 - 1e-9)) {
-        playing_ = false;
-        {
-            const std::lock_guard lock(mutex_);
-            wanted_.playing = false;
-            wanted_.time = wanted_.followed = target_.time;
+    const double time = hand_->target().time;
+    const bool over = time >= program.duration * (1 - 1e-9);
+    if (!over) hand_->follow(std::min(time + step, program.duration));
+    {
+        const std::lock_guard lock(mutex_);
+        now_.time = now_.followed = hand_->target().time;
+        now_.actuators.clear();
+        now_.playing = !over;
+        if (!wanted_.changed) {
+            wanted_.time = wanted_.followed = now_.time;
+            wanted_.playing = now_.playing;
         }
-        publish({false, true, 0, 0, ""});
-        return;
     }
-    const auto pull = target_.pull;
-    target_ = live_->target_at(std::min(target_.time + step, program.duration));
-    target_.pull = pull;
-    settled_ = false;
-    const std::lock_guard lock(mutex_);
-    wanted_.time = wanted_.followed = target_.time;
+    settled_ = over;
+    if (!over) return;
+    playing_ = false;
+    refining_ = hand_ != fine_.get();
+    publish({false, !refining_, 0, 0, ""}, *hand_);
 }
 
 void SimulationSession::advance() {
     Watch watch(*this);
-    const sim::LiveProgress progress = led_ ? led_->lead(led_to_m_, watch) : live_->advance(target_, watch);
-    if (led_) driven_ = led_->actuators();
+    sim::LiveProgress progress = hand_->advance(watch);
     if (!progress.reason.empty()) playing_ = false;
     settled_ = progress.arrived || !progress.reason.empty();
+    catching_up_ = catching_up_ && !settled_;
+    if (hand_ != fine_.get()) {
+        refining_ = settled_ && !playing_ && !hand_->is_led();
+        progress.arrived = false;  // whether there is an equilibrium only the finer one knows
+        progress.reason.clear();
+    }
+    const bool slow = progress.wall_s > slow_s;
     const bool due = Clock::now() - last_frame_at_ >= frame_gap;
-    if (due || settled_) publish(progress);
+    if ((due || settled_) && !catching_up_) publish(progress, *hand_);
+    if (preview_ && hand_ == fine_.get() && slow && !settled_ && !hand_->is_led()) give_way();
 }
 
-void SimulationSession::publish(const sim::LiveProgress& progress) {
+/// Rests: nothing moves, and nobody holds a marker.
+bool SimulationSession::may_refine() const {
+    return refining_ && settled_ && !playing_ && hand_ != nullptr && !hand_->is_led();
+}
+
+/// The answer of the finer robot to what is wanted, unless something else is wanted meanwhile.
+void SimulationSession::refine() {
+    Watch watch(*this, true);
+    fine_->follow(now_.followed);
+    if (!now_.actuators.empty() || now_.time != now_.followed) fine_->drive(now_.time, now_.actuators);
+    fine_->pull(pulled(now_.pull));
+    double slowest_s = 0;
+    for (;;) {
+        const sim::LiveProgress progress = fine_->advance(watch);
+        if (watch.cancelled()) return;
+        if (progress.moved) slowest_s = std::max(slowest_s, progress.wall_s);
+        if (progress.arrived || !progress.reason.empty()) {
+            refining_ = false;
+            publish(progress, *fine_);
+            break;
+        }
+        if (progress.moved) remember(fine_->live().describe());
+    }
+    if (slowest_s > 0 && slowest_s < quick_s) hand_ = fine_.get();
+}
+
+/// The finer robot is too slow for this hand.
+void SimulationSession::give_way() {
+    hand_ = preview_.get();
+    catching_up_ = true;
+    hand_->follow(now_.followed);
+    if (!playing_) hand_->drive(now_.time, now_.actuators);
+    hand_->pull(pulled(now_.pull));
+}
+
+void SimulationSession::publish(const sim::LiveProgress& progress, const LiveRobot& shown) {
     last_frame_at_ = Clock::now();
-    const sim::Step step = live_->describe();
-    if (progress.moved) remember(step);
-    auto frame =
-        std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), frame_head(step, progress)));
+    shown_ = &shown == fine_.get() ? fine_.get() : preview_.get();
+    sim::Step step = shown.live().describe();
+    const std::string head = frame_head(step, progress, shown);
+    // What is taken home of a robot that has a preview is never the preview's.
+    if (progress.moved && shown_ == fine_.get() && !refining_) remember(step);
+    if (shown_ == preview_.get()) step.positions = built_->preview->lifted(step.positions);
+    auto frame = std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), head));
     {
         const std::lock_guard lock(mutex_);
         frame_ = frame;
     }
     events_.frame(std::move(frame));
+}
+
+void SimulationSession::forget_history() {
+    const std::lock_guard lock(mutex_);
+    history_ = {};
+    history_stride_ = 1;
+    history_seen_ = 0;
 }
 
 void SimulationSession::remember(const sim::Step& step) {
@@ -491,7 +504,8 @@ void SimulationSession::remember(const sim::Step& step) {
     history_stride_ *= 2;
 }
 
-std::string SimulationSession::frame_head(const sim::Step& step, const sim::LiveProgress& progress) {
+std::string SimulationSession::frame_head(const sim::Step& step, const sim::LiveProgress& progress,
+                                          const LiveRobot& shown) {
     Json cables = Json::array(), chambers = Json::array(), markers = Json::array(), supports = Json::array();
     for (const auto& c : step.cables)
         cables.push_back({{"ratio", c.length_ratio}, {"length_mm", mm * c.length_m}, {"tension_N", c.tension_N}});
@@ -500,13 +514,15 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
             {{"ratio", c.volume_ratio}, {"volume_mm3", 1e9 * c.volume_m3}, {"pressure_kPa", 1e-3 * c.pressure_Pa}});
     for (const auto& m : step.markers) markers.push_back(mm_json(m.position_m));
     for (const auto& s : step.supports) supports.push_back(Json::array({s.force_N.x, s.force_N.y, s.force_N.z}));
-    std::vector<std::string> warnings = live_->warnings(step);
+    std::vector<std::string> warnings = shown.live().warnings(step);
     warnings.insert(warnings.begin(), built_->warnings.begin(), built_->warnings.end());
     Json json = {{"type", "frame"},
                  {"revision", built_->revision},
                  {"sequence", sequence_++},
                  {"tag", tag_},
                  {"time", step.time},
+                 {"order", shown.model().mesh().order},
+                 {"refining", refining_},
                  {"arrived", progress.arrived},
                  {"stuck", progress.reason},
                  {"warnings", warnings},
@@ -521,23 +537,23 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
                  {"markers", markers},
                  {"supports", supports},
                  {"self_contact_N", step.self_contact_N}};
-    if (pulled_vertex_ >= 0) {
-        const Vec3 force = live_->pull_force_N();
-        json["pull"] = {{"vertex", pulled_vertex_}, {"force_N", Json::array({force.x, force.y, force.z})}};
+    if (shown.pulled_vertex() >= 0) {
+        const Vec3 force = shown.live().pull_force_N();
+        json["pull"] = {{"vertex", shown.pulled_vertex()}, {"force_N", Json::array({force.x, force.y, force.z})}};
     }
-    if (led_) json["lead"] = Json::parse(led_->json());
+    if (hand_->led()) json["lead"] = Json::parse(hand_->led()->json());
     std::string text = dumped(json);
     text.insert(text.size() - 1, fmt::format(R"(,"wanted":{},"obstacles":{})", wanted_json(),
-                                             built_->scene.obstacle_offsets(step.time)));
+                                             built_->scene.obstacle_offsets(step.time, step.positions)));
     return text;
 }
 
 /// Where the robot is led, so that every page shows that and not what it has asked for itself.
 std::string SimulationSession::wanted_json() const {
     Json actuators = Json::array();
-    for (const ActuatorValue& v : driven_)
+    for (const ActuatorValue& v : hand_->driven())
         actuators.push_back({{"name", v.name}, {"kind", v.kind}, {"value", v.value}});
-    return dumped({{"time", target_.time}, {"actuators", actuators}});
+    return dumped({{"time", hand_->target().time}, {"actuators", actuators}});
 }
 
 }  // namespace pliant::studio

@@ -11,30 +11,37 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "presentation/scene/scene.hpp"
-#include "presentation/studio/led_marker.hpp"
+#include "presentation/studio/live_robot.hpp"
 #include "presentation/studio/message.hpp"
+#include "presentation/studio/preview.hpp"
 #include "robot/description/robot.hpp"
-#include "simulation/actuators/attach.hpp"
-#include "simulation/run/live.hpp"
 #include "simulation/scene/scene.hpp"
 
 namespace pliant::studio {
 
 /// How fine: linear tets answer at once and bend too little; quadratic ones are those of `pliant simulate`.
-enum class Accuracy { preview, fine };
+/// `automatic`: linear ones while a hand moves, where the quadratic ones are not quick enough for that, and quadratic
+/// ones as soon as it rests.
+enum class Accuracy { preview, automatic, fine };
+[[nodiscard]] std::string_view name(Accuracy accuracy);
+[[nodiscard]] std::optional<Accuracy> accuracy_named(std::string_view name);
 
 /// Where a robot goes once it has been built: one that was only changed goes where the one before was wanted.
 enum class After { from_rest, as_before };
+
+/// What is wrong, as JSON: a list of {"line", "text"}; line 0 where it is about no line.
+[[nodiscard]] std::string problem_lines(const Error& error);
 
 /// A robot file as the studio has it.
 struct RobotText {
     std::filesystem::path file;  ///< what messages call it, and what paths in it are relative to
     std::string text;
-    Accuracy accuracy = Accuracy::preview;
+    Accuracy accuracy = Accuracy::automatic;
 };
 
 /// Everything that belongs to one robot; immutable once it has been made.
@@ -45,7 +52,7 @@ struct Built {
     sim::Model model;
     int revision;
     view::Scene scene;
-    sim::Attacher attacher;
+    std::unique_ptr<const Preview> preview;  ///< null: there is one model, for everything
     double size_m;
     std::vector<std::string> warnings;  ///< at rest, see sim::warnings_at_rest()
 };
@@ -100,6 +107,7 @@ private:
         std::optional<PullMessage> pull;
         std::optional<LeadMessage> lead;
         bool playing = false;
+        bool changed = false;  ///< it is another wish than the last one
         bool to_rest = false;
         bool show_again = false;
         bool follow = false;
@@ -108,21 +116,27 @@ private:
     };
 
     void work();
+    /// Under the lock: something else is wanted.
+    void take_input();
     void build(RobotText source);
+    void start(const std::shared_ptr<const Built>& built);
+    [[nodiscard]] bool is_input_waiting() const;
     void want_as_before(const Built* before, const Built& now);
-    void advance();
     void apply(const Wanted& wanted);
-    void set_target(const Wanted& wanted);
-    /// False for what cannot be: a length below nothing, an actuator that is not there.
-    bool set_actuator(const ActuatorValue& value);
-    void set_pull(const std::optional<PullMessage>& message);
-    /// True if a marker is led.
-    bool set_lead(const std::optional<LeadMessage>& message);
+    void to_rest();
+    void move_by_hand(const Wanted& wanted);
+    [[nodiscard]] std::optional<Pulled> pulled(const std::optional<PullMessage>& message) const;
     void let_go_of_marker();
     void go_on_playing();
-    void publish(const sim::LiveProgress& progress);
+    void advance();
+    [[nodiscard]] bool may_refine() const;
+    void refine();
+    void give_way();
+    void publish(const sim::LiveProgress& progress, const LiveRobot& shown);
+    void forget_history();
     void remember(const sim::Step& step);
-    [[nodiscard]] std::string frame_head(const sim::Step& step, const sim::LiveProgress& progress);
+    [[nodiscard]] std::string frame_head(const sim::Step& step, const sim::LiveProgress& progress,
+                                         const LiveRobot& shown);
     [[nodiscard]] std::string wanted_json() const;
     void tell(const std::string& key, const std::string& json);
 
@@ -142,14 +156,15 @@ private:
     std::size_t history_stride_ = 1, history_seen_ = 0;
 
     // Of the thread alone.
-    std::optional<sim::Live> live_;
-    sim::LiveTarget target_;
-    std::optional<LedMarker> led_;  ///< a marker in somebody's hand
-    Vec3 led_to_m_;
+    std::unique_ptr<LiveRobot> fine_;     ///< its answers are those of the robot that was built
+    std::unique_ptr<LiveRobot> preview_;  ///< of Built::preview; null without one
+    LiveRobot* hand_ = nullptr;           ///< the one of the two that follows the hand
+    LiveRobot* shown_ = nullptr;          ///< the one of the two that was published last
+    Wanted now_;                          ///< what was applied last
     double tag_ = 0;
-    std::vector<ActuatorValue> driven_;  ///< what the target has by hand; empty: all of it follows the program
-    int pulled_vertex_ = -1;
     bool settled_ = true, playing_ = false;
+    bool refining_ = false;     ///< the hand's robot has arrived, and the finer one has not
+    bool catching_up_ = false;  ///< the hand's robot is behind what was shown
     int revision_ = 0;
     std::uint64_t sequence_ = 0;
     std::chrono::steady_clock::time_point last_frame_at_{};

@@ -130,6 +130,59 @@ TEST_CASE("a marker that is led takes the cable along, and stays where it is let
     CHECK_FALSE(b.arrived(5).contains("lead"));
 }
 
+TEST_CASE("by itself the answer is that of quadratic tets, and linear ones are named as such") {
+    // Coarse and nearly incompressible: linear tets lock, and pull three times as hard.
+    const auto tension = [](const Json& f) { return f["cables"][0]["tension_N"].get<double>(); };
+    Bench fine, linear, automatic;
+    fine.open(bar, Accuracy::fine);
+    linear.open(bar, Accuracy::preview);
+    automatic.open(bar, Accuracy::automatic);
+    for (Bench* b : {&fine, &linear, &automatic}) {
+        REQUIRE(b->session.wait_until_built());
+        b->drive(1, "flexor", "shortening_mm", 0.3);
+    }
+    const Json right = fine.arrived(1), rough = linear.arrived(1), answer = automatic.arrived(1);
+    REQUIRE(tension(rough) > 1.1 * tension(right));
+    CHECK(answer["order"] == 2);
+    CHECK(answer["refining"] == false);
+    CHECK(tension(answer) == near(tension(right), {.relative = 1e-3}));
+    const Json before = automatic.frames.wait_for([](const Json& f) { return f["tag"] == 1 && f["refining"] == true; });
+    CHECK(before["order"] == 1);
+    CHECK(before["arrived"] == false);
+    CHECK(tension(before) == near(tension(rough), {.relative = 1e-3}));
+    CHECK(before["sequence"] < answer["sequence"]);
+    // What is exported is never the preview's.
+    for (const sim::Step& step : automatic.session.history().steps)
+        CHECK(step.positions.size() == automatic.session.built()->model.mesh().points.size());
+    CHECK(automatic.session.history().steps.back().cables[0].tension_N == near(tension(right), {.relative = 1e-3}));
+}
+
+TEST_CASE("a hand that moves again has an answer to where it is last, and to where the program and a pull have it") {
+    Bench fine, automatic;
+    fine.open(bar, Accuracy::fine);
+    automatic.open(bar, Accuracy::automatic);
+    const auto both = [&](const auto& act) {
+        for (Bench* b : {&fine, &automatic}) act(b->session);
+    };
+    const auto same = [&](double tag, double within_mm = 2e-3) {
+        const Json a = fine.arrived(tag), b = automatic.arrived(tag);
+        CHECK(b["order"] == 2);
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(b["markers"][0][k].get<double>() == near(a["markers"][0][k].get<double>(), {.absolute = within_mm}));
+    };
+    both([](SimulationSession& s) { REQUIRE(s.wait_until_built()); });
+    for (int i = 1; i <= 30; ++i)
+        both([&](SimulationSession& s) { s.drive({1.0 * i, -1, {{"flexor", "shortening_mm", 0.01 * i}}}); });
+    same(30);
+    both([](SimulationSession& s) { s.pull({31, 3, {4.5, 2, 2.5}}); });
+    same(31, 0.02);  // a spring comes to rest within a share of its force
+    both([](SimulationSession& s) { s.release(); });
+    both([](SimulationSession& s) { s.follow({32, 0.5}); });
+    same(32);
+    both([](SimulationSession& s) { s.drive({33, 0.5, {{"flexor", "tension_N", 0.02}}}); });
+    same(33);
+}
+
 TEST_CASE("what cannot be is not wanted: strange actuators, kinds and values") {
     Bench b;
     b.open(bar);

@@ -2,6 +2,7 @@
 
 #include "presentation/draw/colour.hpp"
 #include "presentation/scene/scene.hpp"
+#include "printing/prepare/estimate.hpp"
 #include "robot/file/robot_file.hpp"
 
 namespace pliant::studio {
@@ -39,6 +40,15 @@ Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std
     const auto made = prepare::slice_job(wanted.order, wanted.printer, std::move(*drawing), job, progress);
     if (!made) return tl::unexpected(made.error());
     return colours_of(made->manifest, *robot);
+}
+
+Result<plan::Plan> estimate_robot(const SliceOrder& wanted) {
+    Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
+    if (!robot) return tl::unexpected(robot.error());
+    Progress silent;
+    Result<prepare::Drawing> drawing = prepare::drawing_of(*robot, silent);
+    if (!drawing) return tl::unexpected(drawing.error());
+    return prepare::estimate(wanted.order, wanted.printer.printer, std::move(*drawing));
 }
 
 }  // namespace pliant::studio

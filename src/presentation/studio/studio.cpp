@@ -9,6 +9,7 @@
 #include "base/core/files.hpp"
 #include "presentation/studio/examples.hpp"
 #include "printing/machine/printer.hpp"
+#include "robot/file/robot_file.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -18,10 +19,8 @@ constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
 
 std::string document_event(const Studio::Document& d) {
-    const nlohmann::json json = {
-        {"type", "document"},           {"name", d.name},
-        {"unsaved", d.text != d.saved}, {"undo", d.undo.size()},
-        {"redo", d.redo.size()},        {"accuracy", d.accuracy == Accuracy::preview ? "preview" : "fine"}};
+    const nlohmann::json json = {{"type", "document"},    {"name", d.name},        {"unsaved", d.text != d.saved},
+                                 {"undo", d.undo.size()}, {"redo", d.redo.size()}, {"accuracy", name(d.accuracy)}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -37,19 +36,19 @@ Status check_kind(const std::string& text, const std::filesystem::path& file) {
 Result<std::unique_ptr<Studio>> Studio::open(const Start& start) {
     Result<ProjectFolder> folder = ProjectFolder::open(start.file.parent_path());
     if (!folder) return tl::unexpected(folder.error());
-    std::unique_ptr<Studio> studio(new Studio(std::move(*folder), start.version));
+    std::unique_ptr<Studio> studio(new Studio(std::move(*folder), start));
     if (Status status = studio->start(start.file); !status) return tl::unexpected(status.error());
     return studio;
 }
 
-Studio::Studio(ProjectFolder folder, std::string version)
-    : folder_(std::move(folder)), version_(std::move(version)), routes_(all_routes()) {
+Studio::Studio(ProjectFolder folder, Start start)
+    : folder_(std::move(folder)), start_(std::move(start)), routes_(all_routes()) {
     const auto send = [this](const std::string& json) { hub_.send_text(json); };
     simulation_ = std::make_unique<SimulationSession>(
         SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
     search_ = std::make_unique<SearchSession>(send);
-    make_ = std::make_unique<MakeSession>(send, version_);
-    print_ = std::make_unique<PrintSession>(send);
+    make_ = std::make_unique<MakeSession>(send, start_.version);
+    print_ = std::make_unique<PrintSession>(send, start_.notify);
 }
 
 Studio::~Studio() = default;
@@ -66,7 +65,7 @@ Status Studio::start(const std::filesystem::path& file) {
     if (!text) return tl::unexpected(text.error());
     if (Status status = check_kind(*text, file); !status) return status;
     const std::string name = file.filename().string();
-    document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::preview, {}};
+    document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::automatic, {}};
     // What the user's own file names lies where the user wants it.
     document_.outside = folder_.texts_leading_outside(*text, document_.file);
     rebuild(After::from_rest);
@@ -105,6 +104,14 @@ Status Studio::edit(const std::string& text) {
     }
     rebuild(After::as_before);
     return {};
+}
+
+Status Studio::check(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
+    if (Status status = check_files(text); !status) return status;
+    const Result<robot::Robot> robot = robot::parse_robot(text, document_.file);
+    return robot ? Status{} : tl::unexpected(robot.error());
 }
 
 void Studio::take_back(std::vector<std::string>& from, std::vector<std::string>& to) {
@@ -170,6 +177,19 @@ void Studio::open_example(const std::string& name) {
     const std::string text(example->text);
     document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}};
     rebuild(After::from_rest);
+}
+
+Status Studio::open_new(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
+    Document fresh{"", folder_.path() / "robot.toml", text, "", {}, {}, document_.accuracy, {}};
+    std::swap(document_, fresh);
+    if (Status status = check_files(text); !status) {
+        std::swap(document_, fresh);
+        return status;
+    }
+    rebuild(After::from_rest);
+    return {};
 }
 
 void Studio::set_accuracy(Accuracy accuracy) {

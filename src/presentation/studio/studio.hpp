@@ -21,6 +21,8 @@ namespace pliant::studio {
 struct Start {
     std::filesystem::path file;  ///< robot file or job; empty: the example that is built in
     std::string version;
+    std::string notify{};  ///< command that hears of the end of a print, and of what it waits for; "": none
+    std::string webcam{};  ///< address of a picture of the machine, http or https; "": none
 };
 
 class Studio {
@@ -47,7 +49,8 @@ public:
     [[nodiscard]] SearchSession& search() { return *search_; }
     [[nodiscard]] MakeSession& make() { return *make_; }
     [[nodiscard]] PrintSession& print() { return *print_; }
-    [[nodiscard]] const std::string& version() const { return version_; }
+    [[nodiscard]] const std::string& version() const { return start_.version; }
+    [[nodiscard]] const std::string& webcam() const { return start_.webcam; }
     [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
     /// The robot file that is being edited: what was opened, as it is now, and what it was before.
@@ -56,21 +59,25 @@ public:
         std::filesystem::path file;
         std::string text, saved;
         std::vector<std::string> undo, redo;
-        Accuracy accuracy = Accuracy::preview;
+        Accuracy accuracy = Accuracy::automatic;
         std::vector<std::string> outside;  ///< paths out of the folder that the user's own file names
     };
     [[nodiscard]] Document document();
     /// Checks and builds the new text. `because` tells the pages who did it.
     [[nodiscard]] Status edit(const std::string& text);
+    /// What is wrong with a text, without building it.
+    [[nodiscard]] Status check(const std::string& text);
     [[nodiscard]] Status undo();
     [[nodiscard]] Status redo();
     [[nodiscard]] Status save(const std::string& name);
     [[nodiscard]] Status open_file(const std::string& name);
     void open_example(const std::string& name);
+    /// A robot that is in no file yet. Errors: as of edit().
+    [[nodiscard]] Status open_new(const std::string& text);
     void set_accuracy(Accuracy accuracy);
 
 private:
-    Studio(ProjectFolder folder, std::string version);
+    Studio(ProjectFolder folder, Start start);
     [[nodiscard]] Status start(const std::filesystem::path& file);
     [[nodiscard]] Status check_files(const std::string& text) const;
     /// Goes to the last text of `from`; what there was goes to the end of `to`.
@@ -79,7 +86,7 @@ private:
     void greet(const std::shared_ptr<Connection>& connection);
 
     ProjectFolder folder_;
-    std::string version_;
+    Start start_;
     Hub hub_;
     std::unique_ptr<SimulationSession> simulation_;
     std::unique_ptr<SearchSession> search_;

@@ -326,6 +326,21 @@ TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be 
          {"/api/job/layers/20/0", "/api/job/layers/-1/0", "/api/job/layers/0/7", "/api/job/layers/x/0"})
         CHECK_MESSAGE(ask(studio, "GET", path).status == 404, path);
     CHECK(Json::parse(ask(studio, "GET", "/api/job/compare").body).size() >= 5);
+    CHECK(job["projector"]["width"] == 1920);
+    // The job in 3D: slabs of runs of one material up to the height of the part.
+    const Response part = ask(studio, "GET", "/api/job/part");
+    CHECK(part.status == 200);
+    const Json drawn = head_of(part.body);
+    CHECK(drawn["kind"] == "drawn");
+    CHECK(drawn["height_mm"] == job["manifest"]["layers"].back()["z_um"].get<double>() / 1000);
+    CHECK(part.body == ask(studio, "GET", "/api/job/part").body);
+    // What it takes was told before it was sliced.
+    const Json estimate =
+        Json::parse(ask(studio, "POST", "/api/job/estimate", R"({"printer":"tower","layer_um":500})").body);
+    CHECK(estimate["layers"] == job["plan"]["layers"]);
+    CHECK(estimate["swaps"] == job["plan"]["swaps"]);
+    CHECK(estimate["seconds"].get<double>() == near(job["plan"]["seconds"]["total"].get<double>(), {.relative = 0.01}));
+    CHECK(ask(studio, "POST", "/api/job/estimate", R"({"printer":"tower","layer":"thick"})").status == 422);
     CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"bar.zip"})").status == 200);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"bar.zip"})").status == 200);
 
@@ -355,4 +370,48 @@ TEST_CASE("what is not there, and what the description says") {
 TEST_CASE("what is neither a robot nor a job is refused") {
     CHECK_FALSE(Studio::open({"no/such/robot.toml", "test"}));
     CHECK_FALSE(Studio::open({"no/such/job.zip", "test"}));
+}
+
+TEST_CASE("values and entries of the robot file are changed by request, and a text is checked without being built") {
+    const Project project;
+    const auto studio = built(project);
+    const auto page = joined(*studio, "somebody");
+    const auto post = [&](const std::string& path, const std::string& body) {
+        return studio->handle({"POST", path, {}, {}, "somebody", body});
+    };
+    CHECK(
+        post(
+            "/api/robot/set",
+            R"({"changes": [{"key": "mesh.size", "value": "7 mm"}, {"key": "marker.tip.point", "value": [40, 5, 4.5]}]})")
+            .status == 200);
+    CHECK(studio->document().text.find("mesh = { size = \"7 mm\" }") != std::string::npos);
+    CHECK(studio->document().text.find("point = [40, 5, 4.5]") != std::string::npos);
+    CHECK(studio->document().undo.size() == 1);  // both are one step
+    CHECK(post("/api/robot/add", R"({"list": "marker", "entry": {"name": "middle", "point": [20, 5, 5]}})").status ==
+          200);
+    REQUIRE(studio->simulation().wait_until_built());
+    CHECK(studio->simulation().built()->robot.markers.size() == 2);
+    for (const auto& [path, body] :
+         {std::pair{"/api/robot/set", "{}"},
+          {"/api/robot/set", R"({"changes": []})"},
+          {"/api/robot/set", R"({"changes": [{"key": "name"}]})"},
+          {"/api/robot/set", R"({"changes": [{"key": "name", "value": null}]})"},
+          {"/api/robot/set", R"({"changes": [{"key": "cable.nobody.friction", "value": 1}]})"},
+          {"/api/robot/add", R"({"list": "marker"})"},
+          {"/api/robot/add", R"({"list": "name", "entry": {"a": 1}})"},
+          {"/api/robot/set", R"({"changes": [{"key": "mesh.file", "value": "../../etc/passwd"}]})"}}) {
+        INFO(body);
+        CHECK(post(path, body).status == 422);
+    }
+    const std::string before = studio->document().text;
+    std::string wrong = bar;
+    wrong.replace(wrong.find("marker ="), 8, "markr =");
+    const Json found = Json::parse(post("/api/robot/check", wrong).body);
+    REQUIRE(found["lines"].size() == 1);
+    CHECK(found["lines"][0]["line"] == 6);
+    CHECK(Json::parse(post("/api/robot/check", bar).body)["lines"].empty());
+    CHECK(studio->document().text == before);
+    CHECK(Json::parse(studio->handle({"GET", "/api/materials"}).body).size() > 10);
+    CHECK(post("/api/robot/new", bar).status == 200);
+    CHECK(studio->document().name.empty());
 }

@@ -120,7 +120,7 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
       if (right - left > 54) {
         g.fillStyle = '#101418';
         g.textAlign = 'center';
-        g.fillText(`layer ${visits[k][0]}`, (left + right) / 2, 0.5 * rowHeight);
+        g.fillText(`layer ${visits[k][0] + 1}`, (left + right) / 2, 0.5 * rowHeight);
       }
     }
     const kinds: Record<string, string> = { light: '--c-expose', spray: '--c-clean', fans: '--c-clean' };
@@ -153,7 +153,7 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
     }
     const t = timeAt(e);
     const k = line.visits.findIndex((v) => v[2] <= t && t <= v[3]);
-    setUnder(t < 0 || t > line.seconds ? '' : `${clock(t)} · ${k < 0 ? 'no vat under the platform' : `layer ${line.visits[k][0]}, slot ${line.visits[k][1]}`}`);
+    setUnder(t < 0 || t > line.seconds ? '' : `${clock(t)} · ${k < 0 ? 'no vat under the platform' : `layer ${line.visits[k][0] + 1}, slot ${line.visits[k][1]}`}`);
   };
   const keys: Record<string, () => void> = {
     '+': () => zoom(0.6),

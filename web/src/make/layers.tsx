@@ -206,7 +206,7 @@ export function Layers({ job }: { job: Job }) {
     const g = image.current?.getContext('2d') as OffscreenCanvasRenderingContext2D | null;
     if (!g || x < 0 || y < 0 || x >= job.manifest.width_px || y >= job.manifest.height_px) return setPixel('');
     const grey = g.getImageData(x, y, 1, 1).data[3];
-    setPixel(`column ${x}, row ${y}: ${grey}`);
+    setPixel(`column ${x}, row ${y}: grey ${grey}`);
   };
   const step = (by: number) => (layer.value = Math.min(Math.max(l + by, 0), count - 1));
   const info = job.manifest.layers[l];
@@ -217,7 +217,7 @@ export function Layers({ job }: { job: Job }) {
         <canvas
           ref={canvas}
           tabIndex={0}
-          aria-label={`Layer ${l}. Arrow keys step through the layers.`}
+          aria-label={`Layer ${l + 1} of ${count}. Arrow keys step through the layers.`}
           data-testid="layer-view"
           onWheel={wheel}
           onPointerMove={move}
@@ -247,7 +247,7 @@ export function Layers({ job }: { job: Job }) {
       </div>
       <div class="layer-info">
         <b>
-          layer {l} of {count}
+          layer {l + 1} of {count}
         </b>
         <span class="quiet">
           {((info?.z_um ?? 0) / 1000).toFixed(2)} mm · {area.toFixed(1)} mm² {pixel && `· ${pixel}`} {loading && '· loading'}
@@ -263,12 +263,12 @@ export function Layers({ job }: { job: Job }) {
         type="range"
         aria-label="Layer"
         data-testid="layer"
-        min={0}
-        max={Math.max(count - 1, 1)}
+        min={1}
+        max={Math.max(count, 2)}
         step={1}
-        value={l}
+        value={l + 1}
         style={{ '--at': `${(100 * l) / Math.max(count - 1, 1)}%` }}
-        onInput={(e) => (layer.value = Number(e.currentTarget.value))}
+        onInput={(e) => (layer.value = Math.min(Number(e.currentTarget.value), count) - 1)}
       />
     </div>
   );

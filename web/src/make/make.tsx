@@ -4,12 +4,26 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { job, mayDrive, post, say } from '../store';
+import { Bed } from './bed';
 import { goal, Layers, layer } from './layers';
 import { SliceForm } from './order';
 import { PlanView } from './plan';
 import { Stack } from './stack';
 
-const tab = signal<'layers' | 'stack' | 'plan'>('layers');
+/// Before anything is sliced the robot stands on the platform.
+const tabs = ['bed', 'layers', 'stack', 'plan'] as const;
+const tab = signal<(typeof tabs)[number]>('layers');
+
+/// Arrow keys, Home and End lead from tab to tab.
+function walk(e: KeyboardEvent) {
+  const at = tabs.indexOf(tab.value);
+  const to = { ArrowRight: (at + 1) % tabs.length, ArrowLeft: (at + tabs.length - 1) % tabs.length, Home: 0, End: tabs.length - 1 }[e.key];
+  if (to === undefined) return;
+  e.preventDefault();
+  tab.value = tabs[to];
+  (e.currentTarget as HTMLElement).querySelectorAll<HTMLElement>('[role=tab]')[to].focus();
+}
+
 function Issues() {
   const j = job.value!;
   return (
@@ -29,7 +43,7 @@ function Issues() {
           <span>{issue.text}</span>
           {issue.layer >= 0 && (
             <span class="quiet">
-              {issue.severity && `${issue.severity} severity, `}layer {issue.layer}
+              {issue.severity && `${issue.severity} severity, `}layer {issue.layer + 1}
             </span>
           )}
         </button>
@@ -72,6 +86,8 @@ export function Make() {
   useEffect(() => {
     // Where form and layers stand one below the other, a new job is led to.
     if (j && j.revision !== seen.current && window.matchMedia('(max-width: 900px)').matches) stage.current?.scrollIntoView({ behavior: 'smooth' });
+    // Whoever has sliced wants to see what came of it.
+    if (j && j.revision !== seen.current && tab.value === 'bed') tab.value = 'layers';
     seen.current = j?.revision;
   }, [j?.revision]);
   return (
@@ -105,24 +121,20 @@ export function Make() {
       <section class="stage" ref={stage}>
         {j ? (
           <>
-            <nav class="tabs floating" role="tablist">
-              {(['layers', 'stack', 'plan'] as const).map((t) => (
-                <button role="tab" aria-selected={tab.value === t} onClick={() => (tab.value = t)} data-testid={`make-${t}`}>
-                  {{ layers: 'Layers', stack: '3D', plan: 'Plan' }[t]}
+            <div class="tabs floating" role="tablist" aria-label="Views of the job" onKeyDown={walk}>
+              {tabs.map((t) => (
+                <button role="tab" tabIndex={tab.value === t ? 0 : -1} aria-selected={tab.value === t} onClick={() => (tab.value = t)} data-testid={`make-${t}`}>
+                  {{ bed: 'Placement', layers: 'Layers', stack: '3D', plan: 'Plan' }[t]}
                 </button>
               ))}
-            </nav>
+            </div>
+            {tab.value === 'bed' && <Bed />}
             {tab.value === 'layers' && <Layers key={j.revision} job={j} />}
-            {tab.value === 'stack' && <Stack key={j.revision} job={j} />}
+            {tab.value === 'stack' && <Stack key={j.revision} job={j} openLayers={() => (tab.value = 'layers')} />}
             {tab.value === 'plan' && <PlanView key={j.revision} job={j} />}
           </>
         ) : (
-          <div class="empty">
-            <h2>No job yet</h2>
-            <p>
-              Slice the robot for a printer. Its layers, their issues and the print plan appear here.
-            </p>
-          </div>
+          <Bed />
         )}
       </section>
     </main>

@@ -5,11 +5,13 @@ import { useEffect, useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
 
-interface PrinterInfo {
+export interface PrinterInfo {
   name: string;
   layer_um: number;
   pixel_um: number;
   mask: string;
+  image_mm: [number, number];
+  platform: { width_mm: number; depth_mm: number; height_mm: number };
   resins: { name: string; exposure_s: number; bottom_exposure_s: number }[];
   vats: { slot: number; resin: string }[];
 }
@@ -28,12 +30,12 @@ interface Light {
   bottom: string;
 }
 
-const printer = signal('tower');
-const printerInfo = signal<PrinterInfo | null>(null);
-const copies = signal(1);
+export const printer = signal('tower');
+export const printerInfo = signal<PrinterInfo | null>(null);
+export const copies = signal(1);
 /// Texts of the fields, by option; "" is not given.
-const fields = signal<Record<string, string>>({ layer: '100' });
-const turn = signal<[number, number, number]>([0, 0, 0]);
+export const fields = signal<Record<string, string>>({ layer: '100' });
+export const turn = signal<[number, number, number]>([0, 0, 0]);
 const plainPixels = signal(false);
 const bonds = signal<Bond[]>([]);
 const lights = signal<Record<string, Light>>({});
@@ -55,7 +57,7 @@ function quantity(option: string, text: string): string {
 
 const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
 
-function orderJson(materials: string[]) {
+export function orderJson(materials: string[]) {
   const order: Record<string, unknown> = { printer: printer.value, copies: copies.value };
   const needSupport = ['support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
   for (const [option, text] of Object.entries(fields.value)) {

@@ -1,17 +1,38 @@
-// The layers as they will stand on the platform: every so many of them as a sheet.
+// The job as it will stand on the platform: its outer faces, cut open at a layer, whose image lies on the cut; and a mark
+// at each place that the slicer has remarked on.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Icon } from '../icons';
+import { placeLabels, type Label } from '../labels';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
-import { theme } from '../theme';
+import { partOf, type Part } from '../print/part';
+import { PartMesh } from '../print/part_mesh';
+import { api, say } from '../store';
+import { cssColour, theme } from '../theme';
 import type { Job } from '../types';
-import { layer, load } from './layers';
+import { goal, layer, load } from './layers';
 
-const mostSheets = 90;
+const mostMarks = 40;
+type Issue = Job['issues'][number];
+const isMarked = (issue: Issue) => issue.row !== undefined && issue.layer >= 0;
 
-/// A material's image with its colour, shrunk.
-function sheetCanvas(job: Job, images: (ImageData | null)[], box: number[], shrink: number): HTMLCanvasElement {
-  const [x0, y0, x1, y1] = box;
+/// The first and last row and column of anything in the part, in pixels.
+function boundsOf(part: Part) {
+  const box = { x0: Infinity, y0: Infinity, x1: 0, y1: 0 };
+  for (const { runs } of part.slabs)
+    for (let r = 0; r < runs.length; r += 3) {
+      box.y0 = Math.min(box.y0, runs[r + 1] * part.cell_px);
+      box.y1 = Math.max(box.y1, (runs[r + 1] + 1) * part.cell_px);
+      box.x0 = Math.min(box.x0, (runs[r + 2] & 0xffff) * part.cell_px);
+      box.x1 = Math.max(box.x1, (runs[r + 2] >>> 16) * part.cell_px);
+    }
+  return box;
+}
+
+/// The layer in its materials' colours, as far as `box` goes.
+function sheetCanvas(job: Job, images: (ImageData | null)[], { x0, y0, x1, y1 }: ReturnType<typeof boundsOf>) {
+  const shrink = Math.max(1, Math.ceil(Math.max(x1 - x0, y1 - y0) / 1024));
   const canvas = document.createElement('canvas');
   canvas.width = Math.max(1, Math.ceil((x1 - x0) / shrink));
   canvas.height = Math.max(1, Math.ceil((y1 - y0) / shrink));
@@ -23,135 +44,256 @@ function sheetCanvas(job: Job, images: (ImageData | null)[], box: number[], shri
     for (let y = 0; y < canvas.height; ++y)
       for (let x = 0; x < canvas.width; ++x) {
         const from = 4 * (Math.min(y0 + y * shrink, image.height - 1) * image.width + Math.min(x0 + x * shrink, image.width - 1));
-        if (image.data[from] < 128) continue;
-        data.data.set([n >> 16, (n >> 8) & 255, n & 255, 255], 4 * (y * canvas.width + x));
+        if (image.data[from] >= 128) data.data.set([n >> 16, (n >> 8) & 255, n & 255, 255], 4 * (y * canvas.width + x));
       }
   });
   g.putImageData(data, 0, 0);
   return canvas;
 }
 
-async function bounds(job: Job, layers: number[]): Promise<number[]> {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const l of layers)
-    for (let m = 0; m < job.manifest.materials.length; ++m) {
-      const image = await load(job, l, m);
-      if (!image) continue;
-      for (let y = 0; y < image.height; y += 2)
-        for (let x = 0; x < image.width; x += 2)
-          if (image.data[4 * (y * image.width + x)]) {
-            box[0] = Math.min(box[0], x);
-            box[1] = Math.min(box[1], y);
-            box[2] = Math.max(box[2], x + 2);
-            box[3] = Math.max(box[3], y + 2);
-          }
-    }
-  return box;
+class StackView {
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly world = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(32, 1, 1, 5000);
+  private readonly controls: OrbitControls;
+  private readonly mesh: PartMesh;
+  private readonly pivot = new THREE.Group(); // the part stands: it is drawn as it hangs
+  private readonly resize: ResizeObserver;
+  private readonly sheet: THREE.Mesh;
+  private readonly keys: (e: KeyboardEvent) => void;
+  private bounds = { x0: 0, y0: 0, x1: 1, y1: 1 };
+  private labels: Label[] = [];
+  private frame = 0;
+  private sized = false; // the shape of the window is known
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly job: Job) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.camera.up.set(0, 0, 1);
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
+    const key = new THREE.DirectionalLight(0xffffff, 1.6);
+    key.position.set(-1, -2, 3);
+    this.world.add(key);
+    this.mesh = new PartMesh(job.projector, job.colours.map((c) => new THREE.Color(c)));
+    this.pivot.scale.z = -1;
+    this.pivot.add(this.mesh.group);
+    this.world.add(this.pivot);
+    const { width_mm, depth_mm } = job.platform;
+    this.world.add(platformMesh(width_mm, depth_mm));
+    this.sheet = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.MeshBasicMaterial({ alphaTest: 0.5, side: THREE.DoubleSide }));
+    this.sheet.visible = false;
+    this.mesh.group.add(this.sheet);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => this.draw());
+    this.keys = (e) => orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.home());
+    canvas.addEventListener('keydown', this.keys);
+    this.resize = new ResizeObserver(() => this.fit());
+    this.resize.observe(canvas.parentElement!);
+  }
+
+  show(part: Part) {
+    this.mesh.show(part);
+    this.bounds = boundsOf(part);
+    this.home();
+  }
+
+  mark(labels: { element: HTMLElement; issue: Issue }[]) {
+    this.world.updateMatrixWorld(true);
+    this.labels = labels.map(({ element, issue }) => {
+      const z = this.job.manifest.layers[Math.min(issue.layer, this.job.manifest.layers.length - 1)].z_um / 1000;
+      return { element, at: this.mesh.group.localToWorld(this.mesh.placeOf(issue.row!, issue.column ?? 0, z)) };
+    });
+    this.draw();
+  }
+
+  /// Nothing above this height is seen; null: all is.
+  cut(z_mm: number | null) {
+    this.renderer.clippingPlanes = z_mm === null ? [] : [new THREE.Plane(new THREE.Vector3(0, 0, -1), z_mm + 1e-3)];
+    this.sheet.visible = false;
+    this.draw();
+  }
+
+  /// The image of the layer that the part is cut at.
+  lay(images: (ImageData | null)[], z_mm: number) {
+    const material = this.sheet.material as THREE.MeshBasicMaterial;
+    material.map?.dispose();
+    const texture = new THREE.CanvasTexture(sheetCanvas(this.job, images, this.bounds));
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.magFilter = THREE.NearestFilter;
+    material.map = texture;
+    material.needsUpdate = true;
+    const [a, b] = [this.mesh.placeOf(this.bounds.y0, this.bounds.x0, z_mm), this.mesh.placeOf(this.bounds.y1, this.bounds.x1, z_mm)];
+    this.sheet.position.copy(a).add(b).multiplyScalar(0.5);
+    // The image's columns go to +x of the plane, its rows to -y.
+    this.sheet.scale.set(b.x - a.x, a.y - b.y, 1);
+    this.sheet.visible = true;
+    this.draw();
+  }
+
+  private home() {
+    const box = this.mesh.box;
+    if (box.isEmpty()) return;
+    const size = box.getSize(new THREE.Vector3());
+    const far = size.length();
+    this.pivot.updateMatrixWorld(true);
+    const centre = this.mesh.group.localToWorld(box.getCenter(new THREE.Vector3()));
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).add(new THREE.Vector3(0.6, -1.5, 0.9).multiplyScalar(1.1 * far * Math.max(1, 1.4 / this.camera.aspect)));
+    this.controls.update();
+    this.draw();
+  }
+
+  private fit() {
+    const box = this.canvas.parentElement!.getBoundingClientRect();
+    if (!box.width) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(box.width, box.height, false);
+    this.camera.aspect = box.width / box.height;
+    this.camera.updateProjectionMatrix();
+    if (!this.sized) this.home();
+    this.sized = true;
+    this.draw();
+  }
+
+  private draw() {
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.renderer.render(this.world, this.camera);
+      placeLabels(this.labels, this.camera, this.canvas.clientWidth, this.canvas.clientHeight);
+    });
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.frame);
+    this.canvas.removeEventListener('keydown', this.keys);
+    this.resize.disconnect();
+    this.mesh.dispose();
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
 }
 
-/// At the first layer, where the slider stands in the beginning, the whole part is seen.
-const isSeen = (l: number, upTo: number) => upTo === 0 || l <= upTo;
+/// The platform with its border and a line every 10 mm.
+export function platformMesh(width: number, depth: number) {
+  const group = new THREE.Group();
+  const plate = new THREE.Mesh(new THREE.PlaneGeometry(width, depth), new THREE.MeshBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.14, side: THREE.DoubleSide, depthWrite: false }));
+  const points: THREE.Vector3[] = [];
+  const lines = (size: number, line: (t: number) => [THREE.Vector3, THREE.Vector3]) => {
+    for (let t = -Math.floor(size / 20) * 10; t <= size / 2; t += 10) points.push(...line(t));
+  };
+  lines(width, (x) => [new THREE.Vector3(x, -depth / 2, 0), new THREE.Vector3(x, depth / 2, 0)]);
+  lines(depth, (y) => [new THREE.Vector3(-width / 2, y, 0), new THREE.Vector3(width / 2, y, 0)]);
+  const grid = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.35 }));
+  const rim = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => new THREE.Vector3((x * width) / 2, (y * depth) / 2, 0));
+  const border = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(rim), new THREE.LineBasicMaterial({ color: new THREE.Color(cssColour('--faint') || '#8a93a0') }));
+  group.add(plate, grid, border);
+  group.position.z = -0.05;
+  return group;
+}
 
-export function Stack({ job }: { job: Job }) {
+/// A mark is a button: it leads to the layer and the pixel.
+function Marks({ issues, marks, open }: { issues: Issue[]; marks: { current: (HTMLElement | null)[] }; open: () => void }) {
+  return (
+    <div class="marks">
+      {issues.map((issue, k) => (
+        <button
+          key={k}
+          class={`mark ${issue.severity ?? ''}`}
+          ref={(e) => void (marks.current[k] = e)}
+          title={`${issue.text}, layer ${issue.layer + 1}`}
+          aria-label={`${issue.text}, layer ${issue.layer + 1}: show it`}
+          onClick={() => {
+            layer.value = issue.layer;
+            goal.value = { row: issue.row!, column: issue.column ?? 0 };
+            open();
+          }}
+        >
+          <Icon name="warn" />
+        </button>
+      ))}
+    </div>
+  );
+}
+
+export function Stack({ job, openLayers }: { job: Job; openLayers: () => void }) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const sheets = useRef<{ layer: number; mesh: THREE.Mesh }[]>([]);
-  const redraw = useRef(() => {});
-  const [done, setDone] = useState(0);
+  const shown = useRef<StackView | null>(null);
+  const marks = useRef<(HTMLElement | null)[]>([]);
+  const [state, setState] = useState<'loading' | 'shown' | 'failed'>('loading');
+  const count = job.manifest.layers.length;
+  const [upTo, setUpTo] = useState(count - 1);
+  const issues = job.issues.filter(isMarked).slice(0, mostMarks);
 
   useEffect(() => {
-    const renderer = new THREE.WebGLRenderer({ canvas: canvas.current!, antialias: true, alpha: true });
-    const world = new THREE.Scene();
-    const camera = new THREE.PerspectiveCamera(32, 1, 1, 5000);
-    camera.up.set(0, 0, 1);
-    const controls = new OrbitControls(camera, canvas.current!);
-    const draw = () => renderer.render(world, camera);
-    let home = () => {};
-    const keys = (e: KeyboardEvent) => orbitKeys(e, (around, up, nearer) => turnAround(camera, controls, around, up, nearer), home);
-    const view = canvas.current!;
-    view.addEventListener('keydown', keys);
-    redraw.current = draw;
-    controls.addEventListener('change', draw);
-    const resize = new ResizeObserver(() => {
-      const box = canvas.current!.parentElement!.getBoundingClientRect();
-      renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-      renderer.setSize(box.width, box.height, false);
-      camera.aspect = box.width / box.height;
-      camera.updateProjectionMatrix();
-      draw();
-    });
-    resize.observe(canvas.current!.parentElement!);
     let gone = false;
-    void (async () => {
-      const layers = job.manifest.layers;
-      const every = Math.max(1, Math.ceil(layers.length / mostSheets));
-      const shown = layers.map((_, l) => l).filter((l) => l % every === 0);
-      const box = await bounds(job, [0, 1, 2, 3, 4].map((k) => Math.floor((k * (layers.length - 1)) / 4)));
-      const pixel = job.manifest.pixel_um / 1000;
-      const [width, depth] = [(box[2] - box[0]) * pixel, (box[3] - box[1]) * pixel];
-      const height = layers[layers.length - 1].z_um / 1000;
-      const shrink = Math.max(1, Math.floor(Math.max(box[2] - box[0], box[3] - box[1]) / 640));
-      const size = Math.hypot(width, depth, height);
-      const plate = new THREE.Mesh(
-        new THREE.PlaneGeometry(job.platform.width_mm, job.platform.depth_mm),
-        new THREE.MeshBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.16, side: THREE.DoubleSide }),
-      );
-      plate.position.z = -0.3;
-      world.add(plate);
-      home = () => {
-        controls.target.set(0, 0, height / 2);
-        camera.position.set(0.7 * size, -1.5 * size, 1.0 * size);
-        controls.update();
-      };
-      home();
-      const geometry = new THREE.PlaneGeometry(width, depth);
-      for (const l of shown) {
-        const images = await Promise.all(job.manifest.materials.map((_, m) => load(job, l, m)));
+    let view: StackView;
+    try {
+      view = new StackView(canvas.current!, job);
+    } catch {
+      setState('failed');
+      return;
+    }
+    shown.current = view;
+    api(`/api/job/part?job=${job.revision}`)
+      .then((r) => r.arrayBuffer())
+      .then((buffer) => {
         if (gone) return;
-        const texture = new THREE.CanvasTexture(sheetCanvas(job, images, box, shrink));
-        texture.colorSpace = THREE.SRGBColorSpace;
-        texture.magFilter = THREE.NearestFilter;
-        texture.minFilter = THREE.LinearFilter;
-        texture.generateMipmaps = false;
-        const shade = 0.72 + 0.28 * (l / layers.length);
-        const mesh = new THREE.Mesh(
-          geometry,
-          new THREE.MeshBasicMaterial({ map: texture, alphaTest: 0.5, side: THREE.DoubleSide, color: new THREE.Color(shade, shade, shade) }),
-        );
-        mesh.position.z = layers[l].z_um / 1000;
-        mesh.visible = isSeen(l, layer.peek());
-        sheets.current.push({ layer: l, mesh });
-        world.add(mesh);
-        setDone((100 * sheets.current.length) / shown.length);
-        draw();
-      }
-    })();
+        view.show(partOf(buffer, null).part);
+        view.mark(issues.flatMap((issue, k) => (marks.current[k] ? [{ element: marks.current[k]!, issue }] : [])));
+        setState('shown');
+      })
+      .catch((e: Error) => {
+        setState('failed');
+        say(e.message);
+      });
     return () => {
       gone = true;
-      view.removeEventListener('keydown', keys);
-      resize.disconnect();
-      controls.dispose();
-      renderer.dispose();
-      sheets.current = [];
+      shown.current = null;
+      view.dispose();
     };
   }, [job.revision, theme.value]);
 
   useEffect(() => {
-    for (const s of sheets.current) s.mesh.visible = isSeen(s.layer, layer.value);
-    redraw.current();
-  }, [layer.value]);
+    const view = shown.current;
+    if (!view || state !== 'shown') return;
+    if (upTo >= count - 1) return view.cut(null);
+    const z = job.manifest.layers[upTo].z_um / 1000;
+    view.cut(z);
+    let gone = false;
+    void Promise.all(job.manifest.materials.map((_, m) => load(job, upTo, m))).then((images) => gone || view.lay(images, z));
+    return () => {
+      gone = true;
+    };
+  }, [upTo, state, theme.value]);
 
-  const count = job.manifest.layers.length;
-  const top = Math.min(layer.value, count - 1);
   return (
     <div class="layers">
       <div class="canvas">
-        <canvas ref={canvas} tabIndex={0} aria-label={`The layers in 3D. ${orbitHelp}`} data-testid="stack-view" data-done={done >= 100} />
+        <canvas ref={canvas} tabIndex={0} aria-label={`The job in 3D. ${orbitHelp}`} data-testid="stack-view" data-state={state} />
+        <Marks issues={issues} marks={marks} open={openLayers} />
       </div>
       <div class="layer-info">
-        <b>{layer.value === 0 ? `all ${count} layers` : `up to layer ${top}`}</b>
-        <span class="quiet">{done < 100 ? `Building preview, ${Math.round(done)} %` : `${((job.manifest.layers[layer.value === 0 ? count - 1 : top]?.z_um ?? 0) / 1000).toFixed(2)} mm`}</span>
+        <b>{upTo >= count - 1 ? `all ${count} layers` : `up to layer ${upTo + 1} of ${count}`}</b>
+        <span class="quiet">
+          {state === 'loading' ? 'Building preview' : state === 'failed' ? 'No preview: this browser has no WebGL' : `${(job.manifest.layers[upTo].z_um / 1000).toFixed(2)} mm`}
+        </span>
       </div>
-      <input class="upright" type="range" aria-label="Layer" min={0} max={Math.max(count - 1, 1)} step={1} value={layer.value} style={{ '--at': `${(100 * layer.value) / Math.max(count - 1, 1)}%` }} onInput={(e) => (layer.value = Number(e.currentTarget.value))} />
+      <input
+        class="upright"
+        type="range"
+        aria-label="Cut at layer"
+        data-testid="stack-layer"
+        min={1}
+        max={Math.max(count, 2)}
+        step={1}
+        value={upTo + 1}
+        style={{ '--at': `${(100 * upTo) / Math.max(count - 1, 1)}%` }}
+        onInput={(e) => {
+          const l = Math.min(Number(e.currentTarget.value), count) - 1;
+          setUpTo(l);
+          layer.value = l;
+        }}
+      />
     </div>
   );
 }

@@ -1,6 +1,7 @@
 // The machine in 3D, from simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { placeLabels } from '../labels';
 import { orbitKeys, turnAround } from '../orbit_keys';
 import type { Part } from './part';
 import { PartMesh } from './part_mesh';
@@ -32,7 +33,7 @@ export class MachineView {
   private frame = 0;
 
   /// `colours` of what is in the vats, by resin; `materials`: those of the job.
-  constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[]) {
+  constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[], private readonly names: HTMLElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -81,6 +82,7 @@ export class MachineView {
     this.floor = new THREE.Mesh(new THREE.CircleGeometry(4 * w, 64), new THREE.MeshBasicMaterial({ color: grey, transparent: true, opacity: 0.08 }));
     this.floor.position.z = -h - 40 - this.depth();
     this.world.add(this.floor);
+    this.nameParts();
     this.look();
     this.resize = new ResizeObserver(() => {
       const box = canvas.parentElement!.getBoundingClientRect();
@@ -239,12 +241,44 @@ export class MachineView {
     this.light.scale.set(box.max.x - box.min.x, box.max.y - box.min.y, 1);
   }
 
+  /// What is what: the vats by their slot and resin, and the things that move.
+  private nameParts() {
+    this.names.replaceChildren();
+    const add = (text: string, of: THREE.Object3D, up: number) => {
+      const element = document.createElement('span');
+      element.textContent = text;
+      this.names.append(element);
+      this.named.push({ element, of, up });
+    };
+    const h = Math.max(this.machine.wall, 20);
+    add('platform', this.platform, 30);
+    for (const vat of this.machine.vats) {
+      const group = this.vats.get(vat.slot);
+      if (group) add(`${vat.slot} ${vat.resin}`, group, -h / 2);
+    }
+    if (this.machine.store === 'tower') add('cleaning vat', this.cleaning, -h / 2);
+  }
+  private readonly named: { element: HTMLElement; of: THREE.Object3D; up: number }[] = [];
+
+  private placeNames() {
+    const side = 0.5 * this.machine.platform.depth;
+    const seen = this.named.filter(({ element, of }) => {
+      const shows = of.visible && !this.near;
+      if (!shows) element.style.visibility = 'hidden';
+      return shows;
+    });
+    const labels = seen.map(({ element, of, up }) => ({ element, at: of.getWorldPosition(new THREE.Vector3()).add(new THREE.Vector3(0, -side, up)) }));
+    const canvas = this.renderer.domElement;
+    placeLabels(labels, this.camera, canvas.clientWidth, canvas.clientHeight);
+  }
+
   /// At most once a frame.
   private draw() {
     if (this.frame) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       this.renderer.render(this.world, this.camera);
+      this.placeNames();
     });
   }
 
@@ -254,5 +288,6 @@ export class MachineView {
     this.part.dispose();
     this.controls.dispose();
     this.renderer.dispose();
+    this.names.replaceChildren();
   }
 }

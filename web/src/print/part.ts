@@ -4,7 +4,7 @@ import { readPacket } from '../packet';
 import { api, onEvent } from '../store';
 
 interface Head {
-  kind: 'cured' | 'exposed';
+  kind: 'cured' | 'exposed' | 'drawn';
   revision: number;
   from: number;
   closed: number;
@@ -19,7 +19,7 @@ export interface Slab {
 }
 
 export interface Part {
-  kind: 'cured' | 'exposed';
+  kind: 'cured' | 'exposed' | 'drawn';
   height: number;
   cell_px: number;
   revision: number;
@@ -34,11 +34,12 @@ let fetching = false;
 let stale = false;
 let wanted = 0; // views that show it
 
-function take(buffer: ArrayBuffer) {
+/// What a packet says of a part, of which `known` was there before.
+export function partOf(buffer: ArrayBuffer, known: Part | null): { part: Part; closed: number } {
   const packet = readPacket<Head>(buffer);
   const { head } = packet;
-  const same = part.value !== null && part.value.revision === head.revision;
-  const slabs = same ? part.value!.slabs.slice(0, head.from) : [];
+  const same = known !== null && known.revision === head.revision;
+  const slabs = same ? known.slabs.slice(0, head.from) : [];
   const heights = packet.f32('slabs');
   const runs = packet.u32('runs');
   let at = 0;
@@ -47,8 +48,14 @@ function take(buffer: ArrayBuffer) {
     while (at < runs.length && (runs[at] & 0xffffff) === head.from + s) at += 3;
     slabs.push({ bottom: heights[2 * s], top: heights[2 * s + 1], runs: runs.slice(first, at) });
   }
-  closed = head.closed;
-  part.value = { kind: head.kind, height: head.height_mm, cell_px: head.cell_px, revision: head.revision, slabs, changedFrom: same ? head.from : 0 };
+  const { kind, height_mm: height, cell_px, revision } = head;
+  return { part: { kind, height, cell_px, revision, slabs, changedFrom: same ? head.from : 0 }, closed: head.closed };
+}
+
+function take(buffer: ArrayBuffer) {
+  const read = partOf(buffer, part.value);
+  closed = read.closed;
+  part.value = read.part;
 }
 
 /// One request at a time: a page on a slow line gets larger steps.

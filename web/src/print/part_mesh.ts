@@ -2,7 +2,7 @@
 // costs little however many cells it has. It hangs from the platform, whose underside is z = 0.
 import * as THREE from 'three';
 import type { Part } from './part';
-import type { MachineInfo } from './state';
+import type { Projector } from '../types';
 
 const grey = new THREE.Color(0x8f99a5);
 
@@ -83,7 +83,7 @@ export class PartMesh {
   private rows = 0;
 
   constructor(
-    private readonly projector: MachineInfo['projector'],
+    private readonly projector: Projector,
     private readonly colours: THREE.Color[],
   ) {
     // Faces of different lengths meet; through the hair between them the other side of the part is seen, not the background.
@@ -92,6 +92,14 @@ export class PartMesh {
     this.group.add(this.mesh);
     // Images are turned with the part.
     this.group.rotation.z = (-projector.rotation * Math.PI) / 180;
+  }
+
+  /// Where a pixel of a layer is in the group.
+  placeOf(row: number, column: number, z_mm: number) {
+    const { width, height, pixel, mirror_x, mirror_y, offset_x, offset_y } = this.projector;
+    const x = (mirror_x ? -1 : 1) * (column - width / 2) * pixel - offset_x;
+    const y = (mirror_y ? 1 : -1) * (row - height / 2) * pixel - offset_y;
+    return new THREE.Vector3(x, y, -z_mm);
   }
 
   show(part: Part | null) {

@@ -12,7 +12,10 @@ import { MachineView } from './machine_view';
 import { followPart, part } from './part';
 import { Safety } from './safety';
 import { busy, events, flags, host, info, known, maySteer, now, verdict } from './state';
+import { enlarged } from './enlarged';
 import { stopOf } from './stopped';
+import { Notifications } from './tell';
+import { Webcam } from './webcam';
 import { TakeMachine } from './take';
 
 const speeds = [1, 10, 60, 300];
@@ -185,7 +188,7 @@ function Light() {
       >
         <span>Skip layer</span>
         <span class="number">
-          <input type="number" min={(n.progress.layer ?? 0) + 2} max={n.job.layers} step={1} value={skip} onInput={(e) => setSkip(e.currentTarget.value)} />
+          <input type="number" aria-label="Layer to skip" min={(n.progress.layer ?? 0) + 2} max={n.job.layers} step={1} value={skip} onInput={(e) => setSkip(e.currentTarget.value)} />
           <button class="small" disabled={!skip || !maySteer.value}>
             Skip
           </button>
@@ -294,17 +297,39 @@ function Steering() {
   );
 }
 
+/// The cured block beside the drawing; enlarged when it is clicked.
+function VerdictPicture() {
+  const [failed, setFailed] = useState(false);
+  if (failed) return null;
+  const address = `/api/print/verdict/picture?taken=${info.value!.taken}&at=${now.value!.progress.begun ?? 0}`;
+  return (
+    <button class="verdict-picture" data-testid="verdict-picture" aria-label="Enlarge the picture of the drawing and the cured block" onClick={() => (enlarged.value = { address, title: 'Drawing and cured block' })}>
+      <img src={address} alt="Drawing and cured block" onError={() => setFailed(true)} />
+    </button>
+  );
+}
+
 /// What came of it, where that can be known.
 function Verdict() {
   if (!known.value || busy.value || !now.value!.progress.finished) return null;
   if (!info.value!.twin) return <p class="quiet">Everything was exposed as planned. Inspect the part to see whether it cured.</p>;
   if (!verdict.value) return <p class="quiet">The cured block is compared with the drawing…</p>;
-  const { passed } = verdict.value;
+  const { passed, reasons } = verdict.value;
   return (
+    <>
     <p class={`verdict ${passed ? 'good' : 'bad'}`} data-testid="verdict" data-passed={passed}>
       <Icon name={passed ? 'check' : 'warn'} />
       {passed ? 'As drawn: every pixel of the cured block matches its image.' : 'Not as drawn: see the report for where and how.'}
     </p>
+    {!passed && reasons.length > 0 && (
+      <ul class="reasons" data-testid="reasons">
+        {reasons.slice(0, 5).map((r) => (
+          <li>{r}</li>
+        ))}
+      </ul>
+    )}
+    <VerdictPicture />
+    </>
   );
 }
 
@@ -379,9 +404,16 @@ function Picture() {
   const begun = p.layer !== null && p.material !== null;
   const lit = p.lit && known.value;
   const name = begun ? i.materials[p.material!]?.name : '';
+  const address = `/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`;
   return (
     <figure class={`picture ${lit ? 'lit' : ''}`}>
-      {begun ? <img alt={`Layer ${p.layer! + 1}, ${name}`} src={`/api/print/image/${p.layer}/${p.material}?taken=${i.taken}`} /> : <div class="dark">no exposure yet</div>}
+      {begun ? (
+        <button class="enlarge" aria-label={`Enlarge the image of layer ${p.layer! + 1}, ${name}`} data-testid="enlarge-light" onClick={() => (enlarged.value = { address, title: `Layer ${p.layer! + 1}, ${name}`, pixels: true })}>
+          <img alt={`Layer ${p.layer! + 1}, ${name}`} src={address} />
+        </button>
+      ) : (
+        <div class="dark">no exposure yet</div>
+      )}
       <figcaption>
         {name}
         <span>{!known.value ? 'light unknown' : lit ? `exposure ${p.litTime.toFixed(1)} of ${p.exposureTime.toFixed(1)} s` : 'dark'}</span>
@@ -405,6 +437,7 @@ function PartCaption() {
 function Machine3D() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const shown = useRef<MachineView | null>(null);
+  const names = useRef<HTMLDivElement>(null);
   const [near, setNear] = useState(false);
   const i = info.value!;
   useEffect(() => {
@@ -413,7 +446,7 @@ function Machine3D() {
     for (const m of i.materials) colours[m.resin] ??= m.colour;
     let view: MachineView;
     try {
-      view = new MachineView(canvas.current!, i.machine, colours, i.materials.map((m) => m.colour));
+      view = new MachineView(canvas.current!, i.machine, colours, i.materials.map((m) => m.colour), names.current!);
     } catch {
       return; // no WebGL: the print is steered without the picture
     }
@@ -430,6 +463,7 @@ function Machine3D() {
     <>
       <div class="machine-view">
         <canvas ref={canvas} tabIndex={0} aria-label={`The machine in 3D. ${orbitHelp}`} data-testid="machine-view" />
+        <div class="names" ref={names} aria-hidden="true" />
       </div>
       <span class="segments view-of" role="group" aria-label="What is shown">
         {([[false, 'Machine'], [true, 'Part']] as const).map(([only, name]) => (
@@ -560,6 +594,7 @@ export function Print() {
       <div class="watch">
         <Machine3D />
         <Picture />
+        <Webcam />
       </div>
       <div class="steer">
         <div class="row machine-name">
@@ -588,6 +623,7 @@ export function Print() {
               ))}
             </span>
           )}
+          <Notifications />
           <a class="button small" href="/api/print/report" download data-testid="print-report">
             <Icon name="download" /> Report
           </a>

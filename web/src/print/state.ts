@@ -1,6 +1,7 @@
 // The print as the studio tells it.
 import { batch, computed, effect, signal } from '@preact/signals';
 import { api, lines, mayDrive, onEvent, online, post, say } from '../store';
+import type { Projector } from '../types';
 
 export interface Now {
   state: { text: string; message: string; flags: Record<string, boolean> };
@@ -43,7 +44,7 @@ export interface MachineInfo {
   platform: { width: number; depth: number; height: number };
   tower: { slots: number; first: number; pitch: number };
   wall: number;
-  projector: { width: number; height: number; pixel: number; mirror_x: boolean; mirror_y: boolean; rotation: number; offset_x: number; offset_y: number };
+  projector: Projector;
   switches: { axis: string; end: 'min' | 'max'; name: string }[];
   door: string | null; // the input that its switch is at
   emergency: { signal: 'none' | 'controller' | 'dtr' | 'rts' | 'file'; device: string; pin: number };
@@ -72,7 +73,7 @@ export const flags = computed(() => now.value?.state.flags ?? {});
 export const busy = computed(() => ['printing', 'pausing', 'paused', 'cancelling'].some((f) => flags.value[f]));
 
 /// What came of a complete print; null: nobody knows.
-export const verdict = signal<{ passed: boolean } | null>(null);
+export const verdict = signal<{ passed: boolean; reasons: string[] } | null>(null);
 
 /// The line whose studio has told where the print stands.
 const toldBy = signal(0);
@@ -134,7 +135,7 @@ effect(() => {
   }
   api('/api/print/verdict')
     .then((r) => r.json())
-    .then((v: { passed: boolean } | null) => complete.value && (verdict.value = v))
+    .then((v: { passed: boolean; reasons: string[] } | null) => complete.value && (verdict.value = v))
     .catch((e: Error) => say(e.message));
 });
 

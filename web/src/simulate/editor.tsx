@@ -1,9 +1,11 @@
 // The robot's materials and its file.
 import { batch, effect, signal } from '@preact/signals';
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
-import { api, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
+import { api, building, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
+import type { Problem } from '../types';
+import { CodeArea } from './code_area';
 import { setKey } from './toml_edit';
 import { pinned } from './view_state';
 
@@ -109,22 +111,33 @@ export function Materials() {
   );
 }
 
+let checking = 0;
+let checked = '';
+/// What is typed is checked a moment later, without being built.
+effect(() => {
+  const next = text.value;
+  clearTimeout(checking);
+  // What the studio has built it has checked, unless something else was said meanwhile.
+  if (next === checked || (next === theirs.peek() && checked === '') || !mayDrive.peek()) return;
+  checking = window.setTimeout(async () => {
+    const response = await api('/api/robot/check', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: next }).catch(() => null);
+    if (!response || text.peek() !== next) return;
+    checked = next === theirs.peek() ? '' : next;
+    problems.value = ((await response.json()) as { lines: Problem[] }).lines;
+  }, 400);
+});
+
+export const autosave = signal(localStorage.getItem('pliant_autosave') === 'on');
+autosave.subscribe((on) => localStorage.setItem('pliant_autosave', on ? 'on' : 'off'));
+effect(() => {
+  const d = documentState.value;
+  if (autosave.value && d.unsaved && d.name && mayDrive.value && problems.value.length === 0 && !building.value) void post('/api/robot/save', {});
+});
+
 export function Editor() {
-  const area = useRef<HTMLTextAreaElement>(null);
-  const gutter = useRef<HTMLDivElement>(null);
   const [saveAs, setSaveAs] = useState('');
-  const lines = text.value.split('\n').length;
-  const wrong = new Map(problems.value.map((p) => [p.line, p.text]));
   const d = documentState.value;
   const changed = text.value !== theirs.value;
-  useEffect(
-    () =>
-      effect(() => {
-        const first = problems.value.find((p) => p.line > 0);
-        if (first && area.current) area.current.scrollTop = Math.max(0, (first.line - 6) * 18);
-      }),
-    [],
-  );
   const save = () => (d.name ? post('/api/robot/save', {}) : setSaveAs(`${(scene.value?.head.robot ?? 'robot').replace(/[^a-z0-9]+/gi, '_')}.toml`));
   return (
     <div class="editor">
@@ -175,29 +188,11 @@ export function Editor() {
           </ul>
         </div>
       )}
-      <div class="code">
-        <div class="gutter" ref={gutter} aria-hidden="true">
-          {Array.from({ length: lines }, (_, i) => (
-            <div class={wrong.has(i + 1) ? 'wrong' : ''} title={wrong.get(i + 1)} data-line={i + 1}>
-              {i + 1}
-            </div>
-          ))}
-        </div>
-        <textarea
-          ref={area}
-          spellcheck={false}
-          wrap="off"
-          aria-label="Robot file"
-          data-testid="robot-file"
-          value={text.value}
-          readOnly={!mayDrive.value}
-          onInput={(e) => (text.value = e.currentTarget.value)}
-          onScroll={(e) => (gutter.current!.scrollTop = e.currentTarget.scrollTop)}
-          onKeyDown={(e) => {
-            if (e.key === 'Enter' && (e.ctrlKey || e.metaKey)) void apply(text.value);
-          }}
-        />
-      </div>
+      <CodeArea text={text} problems={problems} readOnly={!mayDrive.value} onApply={() => void apply(text.peek())} />
+      <label class="tick autosave">
+        <input type="checkbox" checked={autosave.value} onChange={(e) => (autosave.value = e.currentTarget.checked)} data-testid="autosave" />
+        Save every applied change to the file
+      </label>
     </div>
   );
 }

@@ -1,7 +1,7 @@
 // Where a marker is wanted, and which actuators may bring it there.
 import { batch, effect, signal } from '@preact/signals';
 import { NumberField } from '../number_field';
-import { api, frame, mayDrive, rough, say, scene } from '../store';
+import { api, frame, mayDrive, say, scene } from '../store';
 import { driveTo, units } from './actuators';
 import { text } from './editor';
 import { insertKeys, programKeys } from './recorder';
@@ -16,6 +16,9 @@ interface Input {
   high: number;
   used: boolean;
 }
+
+/// The search uses the elements of the robot that was built.
+const isLinear = () => scene.value?.head.order === 1;
 
 const marker = signal('');
 /// Where it is wanted, one place after the other; the view shows them.
@@ -156,7 +159,7 @@ function Waypoint({ at }: { at: WaypointFound }) {
     <li data-testid={`waypoint-${at.index}`} data-reached={at.reached}>
       <div class="row">
         <span>
-          <span class={`lamp ${at.reached ? (rough.value ? 'warn' : 'good') : 'bad'}`} /> {at.index}: {rough.value && '≈ '}
+          <span class={`lamp ${at.reached ? (isLinear() ? 'warn' : 'good') : 'bad'}`} /> {at.index}: {isLinear() && '≈ '}
           {at.reached ? 'reached' : 'nearest point'}, {+at.error_mm.toPrecision(2)} mm away
         </span>
         <button class="small" disabled={!mayDrive.value} onClick={() => driveTo(Object.fromEntries(values.map(([name, value]) => [name, { kind: kinds[name], value }])))} data-testid={`go-${at.index}`}>

@@ -1,18 +1,12 @@
-// Tension, pressure, markers and residual beside the robot.
+// Results beside the robot: over the motion, or any over any other; kept runs and measurements over them.
+import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { rough, scene } from '../store';
+import { Icon } from '../icons';
+import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
-import { pinned } from './view_state';
-import { tracks, tracksVersion } from './tracks';
-
-interface Line {
-  label: string;
-  colour: string;
-  values: () => number[];
-  unit: string;
-}
+import { keepRun, readTable, runs, tracks, tracksVersion, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, few enough to be told apart: every line of a logarithmic axis over many decades is a grey block.
 function decades(least: number, most: number): number[] {
@@ -24,106 +18,289 @@ function decades(least: number, most: number): number[] {
   return lines;
 }
 
-const palette = ['#d1495b', '#2e86ab', '#e08e2b', '#4c956c', '#8e6bbf', '#5f6b7a'];
+// Told apart by people who do not tell red from green (Okabe and Ito), on light and on dark.
+const palette = ['#d55e00', '#0072b2', '#009e73', '#b9770e', '#a64d86', '#3f8fc4'];
 
-function Plot({ title, lines, log, extra }: { title: string; lines: Line[]; log?: boolean; extra?: string }) {
+/// Over the seconds of motion (''), or over a channel.
+interface Shown {
+  title: string;
+  y: string[];
+  x: string;
+  log?: boolean;
+  extra?: string;
+}
+
+type Curve = { label: string; x: number[]; y: number[]; colour: string; dash?: number[]; points?: boolean; now?: string };
+
+const channel = (key: string): Channel | undefined => tracks.channels.find((c) => c.key === key);
+const shortLabel = (c: Channel, all: boolean) => (all ? c.label.replace(/: [^:]*$/, '') : c.label);
+const readable = (v: number | undefined, unit: string, log = false) =>
+  v === undefined || !Number.isFinite(v) ? '–' : `${log ? v.toExponential(1) : +v.toPrecision(5)}${unit && ` ${unit}`}`;
+
+/// What is drawn: of every result the quadratic states, and where there are any the linear ones apart, dashed.
+function curvesOf(shown: Shown): Curve[] {
+  const sameKind = new Set(shown.y.map((k) => channel(k)?.kind)).size === 1;
+  const xs = shown.x ? valuesOf(shown.x) : tracks.seconds;
+  const curves: Curve[] = [];
+  shown.y.forEach((key, k) => {
+    const c = channel(key);
+    if (!c) return;
+    const ys = valuesOf(key);
+    const pick = (rough: boolean) => ys.map((v, i) => (tracks.rough[i] === rough ? v : NaN));
+    const colour = palette[k % palette.length];
+    const roughNow = tracks.rough.at(-1) ?? false;
+    const label = shortLabel(c, sameKind);
+    const now = `${roughNow ? '≈ ' : ''}${readable(ys.at(-1), c.unit, shown.log)}`;
+    curves.push({ label, x: xs, y: shown.log ? ys : pick(false), colour, now });
+    if (!shown.log && tracks.rough.includes(true)) curves.push({ label: `≈ ${label}`, x: xs, y: pick(true), colour, dash: [3, 4] });
+    for (const [r, run] of runs.value.entries()) {
+      const [x, y] = [run.columns[shown.x || 'seconds'] ?? run.columns.time, run.columns[key]];
+      if (x && y) curves.push({ label: `${run.name}: ${label}`, x, y, colour: palette[(k + shown.y.length + r) % palette.length], dash: [8, 4], points: x.length < 60 });
+    }
+  });
+  return curves;
+}
+
+/// All points in the order of x, for the scales and the cursor.
+function aligned(curves: Curve[]): uPlot.AlignedData {
+  const x: number[] = [];
+  const ys: (number | null | undefined)[][] = curves.map(() => []);
+  const rows = curves.flatMap((c, k) => c.x.map((at, i) => ({ at, k, i }))).filter((r) => Number.isFinite(r.at) && Number.isFinite(curves[r.k].y[r.i]));
+  rows.sort((a, b) => a.at - b.at);
+  for (const { at, k, i } of rows) {
+    x.push(at);
+    ys.forEach((list, j) => list.push(j === k ? curves[k].y[i] : undefined));
+  }
+  return [x, ...ys] as uPlot.AlignedData;
+}
+
+/// Each curve in the order of its states: over another result it may turn back.
+function drawCurves(u: uPlot, curves: Curve[]) {
+  const { ctx } = u;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+  ctx.clip();
+  ctx.lineJoin = 'round';
+  for (const c of curves) {
+    ctx.strokeStyle = ctx.fillStyle = c.colour;
+    ctx.lineWidth = (c.dash ? 1.5 : 2) * devicePixelRatio;
+    ctx.setLineDash((c.dash ?? []).map((d) => d * devicePixelRatio));
+    ctx.beginPath();
+    let down = false;
+    c.x.forEach((at, i) => {
+      const here = Number.isFinite(at) && Number.isFinite(c.y[i]);
+      if (here) {
+        const [px, py] = [u.valToPos(at, 'x', true), u.valToPos(c.y[i], 'y', true)];
+        if (down) ctx.lineTo(px, py);
+        else ctx.moveTo(px, py);
+      }
+      down = here;
+    });
+    ctx.stroke();
+    ctx.setLineDash([]);
+    c.x.forEach((at, i) => {
+      const alone = !Number.isFinite(c.y[i - 1]) && !Number.isFinite(c.y[i + 1]);
+      if (!Number.isFinite(c.y[i]) || !(c.points || alone)) return;
+      ctx.beginPath();
+      ctx.arc(u.valToPos(at, 'x', true), u.valToPos(c.y[i], 'y', true), 2.5 * devicePixelRatio, 0, 7);
+      ctx.fill();
+    });
+  }
+  ctx.restore();
+}
+
+const isEmpty = (curves: Curve[]) => !curves.some((c) => c.y.filter((v) => Number.isFinite(v)).length > 1);
+
+function seriesOf(curves: Curve[]): uPlot.Series[] {
+  return [
+    {},
+    ...curves.map((c): uPlot.Series => ({ label: c.label, stroke: c.colour, paths: () => null, points: { show: false } })),
+  ];
+}
+
+function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
+  tracksVersion.value;
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
-  const key = lines.map((l) => l.label).join('|') + theme.value;
+  const drawn = useRef<Curve[]>([]);
+  const curves = (drawn.current = curvesOf(shown));
+  const empty = isEmpty(curves);
+  const unit = channel(shown.y[0])?.unit ?? '';
+  const x = shown.x ? channel(shown.x) : undefined;
+  const key = [...curves.map((c) => c.label + c.colour), theme.value, shown.log, empty, shown.x].join('|');
   useEffect(() => {
+    if (empty || !box.current) return;
     const ink = cssColour('--faint');
     const grid = { stroke: cssColour('--line'), width: 1 };
     const axis = { stroke: ink, grid, ticks: { show: false }, font: '11px system-ui', size: 34, gap: 4 };
     const made = new uPlot(
       {
-        width: box.current!.clientWidth,
-        height: 132,
+        width: box.current.clientWidth,
+        height: 150,
         padding: [8, 8, 0, 0],
         cursor: { points: { size: 7 }, drag: { x: false, y: false } },
-        legend: { show: true, live: true },
-        scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
+        legend: { show: false },
+        scales: { x: { time: false }, y: shown.log ? { distr: 3 } : {} },
         axes: [
-          { ...axis, size: 24, values: (_, v) => v.map((s) => `${s} s`) },
-          { ...axis, size: 44, ...(log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((x) => (x == null ? '' : log ? x.toExponential(0) : `${+x.toPrecision(4)}`)) },
+          { ...axis, size: 24, values: (_, v) => v.map((s) => `${+s.toPrecision(4)}`) },
+          { ...axis, size: 44, ...(shown.log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((y) => (y == null ? '' : shown.log ? y.toExponential(0) : `${+y.toPrecision(4)}`)) },
         ],
-        series: [
-          { label: 'time', value: (_, v) => (v == null ? '–' : `${v.toFixed(2)} s`) },
-          ...lines.map((l) => ({
-            label: l.label,
-            stroke: l.colour,
-            width: 2,
-            points: { show: false },
-            value: (_: uPlot, v: number | null) => (v == null ? '–' : `${log ? v.toExponential(1) : v.toPrecision(5)} ${l.unit}`),
-          })),
-        ],
+        series: seriesOf(curves),
+        hooks: { draw: [(u) => drawCurves(u, drawn.current)] },
       },
-      [[], ...lines.map(() => [])] as uPlot.AlignedData,
-      box.current!,
+      aligned(curves),
+      box.current,
     );
     plot.current = made;
-    const resize = new ResizeObserver(() => made.setSize({ width: box.current!.clientWidth, height: 132 }));
-    resize.observe(box.current!);
+    const resize = new ResizeObserver(() => box.current && made.setSize({ width: box.current.clientWidth, height: 150 }));
+    resize.observe(box.current);
     return () => {
       resize.disconnect();
       made.destroy();
+      plot.current = null;
     };
   }, [key]);
-  useEffect(() => {
-    let waiting = 0;
-    const stop = tracksVersion.subscribe(() => {
-      waiting ||= requestAnimationFrame(() => {
-        waiting = 0;
-        plot.current?.setData([tracks.seconds, ...lines.map((l) => l.values())] as uPlot.AlignedData);
-      });
-    });
-    return () => {
-      cancelAnimationFrame(waiting);
-      stop();
-    };
-  }, [key]);
+  useEffect(() => plot.current?.setData(aligned(curves)));
   return (
-    <figure class="plot">
+    <figure class="plot" data-testid={`plot-${shown.title}`}>
       <figcaption>
-        {rough.value && !log && '≈ '}
-        {title} {extra && <span class="quiet">{extra}</span>}
+        <span>
+          {shown.title} {unit && <span class="quiet">{unit}</span>} {shown.extra && <span class="quiet">{shown.extra}</span>}
+        </span>
+        {onClose && (
+          <button class="bare" aria-label={`Remove the plot ${shown.title}`} onClick={onClose}>
+            <Icon name="close" />
+          </button>
+        )}
       </figcaption>
-      <div ref={box} />
+      {empty ? (
+        <p class="plot-empty quiet">Move {scene.value?.head.actuators.length ? 'a slider, or play the program' : 'the robot, or play its program'}: the curve begins with the second state.</p>
+      ) : (
+        <>
+          <div ref={box} role="img" aria-label={`${shown.title} over ${x?.label ?? 'seconds of motion'}`} />
+          <p class="plot-foot">
+            {curves.map((c) => (
+              <span key={c.label} class="curve-name">
+                <svg viewBox="0 0 18 6" aria-hidden="true">
+                  <path d="M0 3H18" stroke={c.colour} stroke-width="2.4" stroke-dasharray={c.dash?.join(' ')} />
+                </svg>
+                {c.label} {c.now && <b data-testid={`now-${c.label}`}>{c.now}</b>}
+              </span>
+            ))}
+            <span class="grow" />
+            <span class="quiet">over {x ? `${x.label}${x.unit && `, ${x.unit}`}` : 's of motion'}</span>
+          </p>
+        </>
+      )}
     </figure>
   );
 }
 
-export function Plots() {
+/// Plots that were asked for: a result over another.
+export const asked = signal<{ x: string; y: string }[]>([]);
+const wantX = signal('');
+const wantY = signal('');
+
+function Ask() {
+  const channels = tracks.channels;
+  const default_ = channels[0]?.key ?? '';
+  const y = wantY.value && channel(wantY.value) ? wantY.value : default_;
+  const x = wantX.value && channel(wantX.value) ? wantX.value : (channels[1]?.key ?? '');
+  const options = channels.map((c) => (
+    <option value={c.key} key={c.key}>
+      {c.label}
+    </option>
+  ));
+  return (
+    <div class="ask-plot">
+      <label>
+        Plot
+        <select value={y} data-testid="plot-y" onChange={(e) => (wantY.value = e.currentTarget.value)}>
+          {options}
+        </select>
+      </label>
+      <label>
+        over
+        <select value={x} data-testid="plot-x" onChange={(e) => (wantX.value = e.currentTarget.value)}>
+          {options}
+        </select>
+      </label>
+      <button class="small" data-testid="plot-add" onClick={() => (asked.value = [...asked.value.filter((a) => a.x !== x || a.y !== y), { x, y }])}>
+        Add
+      </button>
+    </div>
+  );
+}
+
+async function takeTable(input: HTMLInputElement) {
+  const file = input.files?.[0];
+  if (!file) return;
+  const read = readTable(file.name, await file.text());
+  if (typeof read === 'string') say(read);
+  else runs.value = [...runs.value, read];
+  input.value = '';
+}
+
+function Runs() {
+  const keys = new Set(tracks.channels.map((c) => c.key));
+  return (
+    <div class="runs">
+      <div class="row left wrap">
+        <button class="small" data-testid="keep-run" onClick={() => keepRun(`run ${runs.value.length + 1}`)}>
+          Keep this run
+        </button>
+        <label class="button small">
+          Overlay a CSV…
+          <input class="unseen" type="file" accept=".csv,text/csv" data-testid="overlay" onChange={(e) => void takeTable(e.currentTarget)} />
+        </label>
+      </div>
+      {runs.value.map((run) => {
+        const known = Object.keys(run.columns).filter((c) => keys.has(c));
+        return (
+          <div class="run" key={run.name} data-testid={`run-${run.name}`}>
+            <b>{run.name}</b>
+            <span class="quiet">
+              {Object.values(run.columns)[0].length} states{' '}
+              {known.length === 0 && `· none of its columns (${Object.keys(run.columns).join(', ')}) is a result of this robot: columns are named as in ${[...keys].slice(0, 2).join(', ')}`}
+            </span>
+            <button class="bare" aria-label={`Remove ${run.name}`} onClick={() => (runs.value = runs.value.filter((r) => r !== run))}>
+              <Icon name="close" />
+            </button>
+          </div>
+        );
+      })}
+    </div>
+  );
+}
+
+export function Plots({ all = false }: { all?: boolean }) {
+  tracksVersion.value;
   const head = scene.value?.head;
   if (!head) return null;
-  const cables = head.actuators.filter((a) => a.type === 'cable');
-  const chambers = head.actuators.filter((a) => a.type === 'chamber');
-  const before = pinned.value?.frame.head;
-  const line = (label: string, k: number, unit: string, values: () => number[]): Line => ({
-    label,
-    colour: palette[k % palette.length],
-    unit,
-    values,
-  });
+  const keys = (kind: string) => tracks.channels.filter((c) => c.kind === kind).map((c) => c.key);
+  const given: Shown[] = [
+    { title: 'Tension', y: keys('tension_N'), x: '' },
+    { title: 'Pressure', y: keys('pressure_kPa'), x: '' },
+    { title: 'Marker displacement', y: keys('displacement_mm'), x: '' },
+  ].filter((s) => s.y.length > 0);
   return (
     <div class="plots" key={head.revision}>
-      {cables.length > 0 && (
-        <Plot
-          title="Tension"
-          extra={before && `pinned: ${before.cables.map((c) => c.tension_N.toPrecision(4)).join(', ')} N`}
-          lines={cables.map((c, k) => line(c.name, k, 'N', () => tracks.cables[k] ?? []))}
-        />
+      {all && (
+        <>
+          <Ask />
+          <Runs />
+          {asked.value.map((a) => {
+            const [x, y] = [channel(a.x), channel(a.y)];
+            if (!x || !y) return null;
+            return <Plot key={`${a.x}|${a.y}`} shown={{ title: y.label, x: a.x, y: [a.y] }} onClose={() => (asked.value = asked.value.filter((b) => b !== a))} />;
+          })}
+        </>
       )}
-      {chambers.length > 0 && (
-        <Plot
-          title="Pressure"
-          extra={before && `pinned: ${before.chambers.map((c) => c.pressure_kPa.toPrecision(4)).join(', ')} kPa`}
-          lines={chambers.map((c, k) => line(c.name, k, 'kPa', () => tracks.chambers[k] ?? []))}
-        />
-      )}
-      {head.markers.length > 0 && (
-        <Plot title="Marker displacement" lines={head.markers.map((m, k) => line(m.name, k, 'mm', () => tracks.markers[k] ?? []))} />
-      )}
-      <Plot title="Residual" extra={`converged below ${head.tolerance}`} log lines={[line('residual', 5, '', () => tracks.residual)]} />
+      {given.map((s) => (
+        <Plot key={s.title} shown={s} />
+      ))}
+      {all && <Plot shown={{ title: 'Residual', y: ['residual'], x: '', log: true, extra: `converged below ${head.tolerance}` }} />}
     </div>
   );
 }

@@ -13,6 +13,7 @@ import {
   mayDrive,
   post,
   problems,
+  isRough,
   rough,
   say,
   scene,
@@ -25,21 +26,27 @@ import {
   restValue,
   toRest as askForRest,
 } from '../store';
+import type { Accuracy } from '../types';
 import { Actuators } from './actuators';
-import { gradientCss } from './colormap';
+import { Build, placed, takePlace } from './build';
 import { Editor, Materials, pinNow, text } from './editor';
+import { film, filming } from './film';
 import { Goal, path } from './goal';
 import { Identify } from './identify';
 import { Plots } from './plots';
 import { asProgram, insertKeys, recorded, recording, startRecording, stopRecording } from './recorder';
 import { clearTracks, frames, tracksCsv, tracksVersion } from './tracks';
+import { Legend } from './legend';
+import { linkText, restoreLink } from './link';
+import { Measure, presetKey, ScaleBar, SectionHandle, takePick, ViewCube, ViewMenu } from './stage_tools';
+import { drawn, theView } from './the_view';
 import { RobotView } from './view';
 import * as look from './view_state';
 
-let view: RobotView | null = null;
-const panel = signal<'move' | 'goal' | 'identify' | 'plots' | 'file'>('move');
+const panel = signal<'move' | 'build' | 'goal' | 'identify' | 'plots' | 'file'>('move');
 
 function options() {
+  const fixed = look.fixedRange.value;
   return {
     field: look.field.value,
     scale: look.fieldNames.find((f) => f.name === look.field.value)!.scale,
@@ -49,6 +56,10 @@ function options() {
     exploded: look.exploded.value,
     sectionAxis: look.sectionAxis.value,
     sectionAt: look.sectionAt.value,
+    sectionFlipped: look.sectionFlipped.value,
+    map: look.map.value,
+    bands: look.bands.value,
+    range: fixed && fixed.field === look.field.value ? ([fixed.low, fixed.high] as [number, number]) : null,
     pinned: look.pinned.value?.positions ?? null,
     beside: look.beside.value,
   };
@@ -60,7 +71,7 @@ function Canvas() {
   useEffect(() => {
     let made: RobotView;
     try {
-      made = view = new RobotView(canvas.current!);
+      made = theView.value = new RobotView(canvas.current!);
     } catch {
       say('This browser has no WebGL, so the robot cannot be drawn.');
       return;
@@ -81,7 +92,12 @@ function Canvas() {
       });
     };
     made.onRange = (low, high) => (look.fieldRange.value = [low, high]);
-    made.onDraw = (project) => {
+    made.onPick = (pick, rest, inward) => {
+      if (look.measuring.peek()) return takePick(pick), true;
+      return takePlace(rest, inward);
+    };
+    made.onDraw = (project, camera) => {
+      drawn(project, camera);
       const shown = look.shownFrame.value ?? frame.value;
       const children = labels.current?.children ?? [];
       shown?.head.markers.forEach((p, k) => {
@@ -97,9 +113,11 @@ function Canvas() {
         // Which of the two effects runs first is not said: a frame before its scene would be lost.
         const shown = look.shownFrame.peek() ?? frame.peek();
         if (shown) made.setFrame(shown);
+        void restoreLink();
       }),
       effect(() => made.setOptions(options())),
-      effect(() => made.setPath(panel.value === 'goal' ? path.value : [])),
+      effect(() => made.setPicks(look.picks.value)),
+      effect(() => made.setPath(panel.value === 'goal' ? path.value : panel.value === 'build' ? placed.value : [])),
       effect(() => {
         const shown = look.shownFrame.value ?? frame.value;
         if (shown) made.setFrame(shown);
@@ -112,61 +130,25 @@ function Canvas() {
     return () => {
       for (const stop of stops) stop();
       made.dispose();
-      view = null;
+      theView.value = null;
     };
   }, []);
-  const keys = (e: KeyboardEvent) => orbitKeys(e, (around, up, nearer) => view?.turn(around, up, nearer), () => view?.lookAt('home'));
+  const keys = (e: KeyboardEvent) => {
+    if (presetKey(e.key)) return e.preventDefault();
+    orbitKeys(e, (around, up, nearer) => theView.value?.turn(around, up, nearer), () => theView.value?.lookAt());
+  };
   return (
     <div class="canvas">
       <canvas
         ref={canvas}
         tabIndex={0}
-        aria-label={`The robot in 3D. ${orbitHelp}`}
+        role="application"
+        aria-label={`The robot in 3D. ${orbitHelp} 0 to 6 turn to a side.`}
         onKeyDown={keys}
         data-testid="view"
       />
       <div class="labels" ref={labels} aria-hidden="true">
         {scene.value?.head.markers.map((m) => <span key={m.name}>{m.name}</span>)}
-      </div>
-    </div>
-  );
-}
-
-function Legend() {
-  const f = look.fieldNames.find((n) => n.name === look.field.value)!;
-  if (f.name === 'material')
-    return (
-      <ul class="legend materials-legend">
-        {scene.value?.head.materials.map((m) => (
-          <li key={m.name}>
-            <span class="swatch" style={{ background: m.colour }} />
-            {m.name}
-          </li>
-        ))}
-        {scene.value?.head.graded.map((g) => {
-          const [a, b] = [g.material, g.other].map((m) => scene.value!.head.materials[m]);
-          return (
-            <li key={`graded ${g.body}`} data-testid={`graded-${g.body}`}>
-              <span class="swatch wide" style={{ background: `linear-gradient(to right, ${a.colour}, ${b.colour})` }} />
-              {g.body}: {a.name} to {b.name}
-            </li>
-          );
-        })}
-      </ul>
-    );
-  const [low, high] = look.fieldRange.value;
-  const number = (x: number) => (Math.abs(x) >= 1e4 ? x.toExponential(2) : `${+x.toPrecision(3)}`);
-  return (
-    <div class="legend field-legend" data-testid="legend">
-      <div class="bar" style={{ background: gradientCss() }} />
-      <div class="ticks">
-        {[1, 0.75, 0.5, 0.25, 0].map((t) => (
-          <span>{number(low + t * (high - low))}</span>
-        ))}
-      </div>
-      <div class="what">
-        {f.label}
-        {f.unit && <span class="quiet"> {f.unit}</span>}
       </div>
     </div>
   );
@@ -197,8 +179,17 @@ function LookBar() {
       <button class="chip" aria-pressed={more || look.sectionAxis.value !== ''} aria-expanded={more} onClick={() => setMore(!more)}>
         Section
       </button>
-      <button class="chip icon-only" aria-label="Fit view" title="Fit view" onClick={() => view?.lookAt('home')}>
-        <Icon name="frame" />
+      <ViewMenu />
+      <button
+        class="chip"
+        aria-pressed={look.measuring.value}
+        data-testid="measure-toggle"
+        onClick={() => {
+          look.measuring.value = !look.measuring.value;
+          look.picks.value = [];
+        }}
+      >
+        Measure
       </button>
       {more && (
         <div class="popover">
@@ -209,6 +200,9 @@ function LookBar() {
               </button>
             ))}
           </div>
+          <button class="small" aria-pressed={look.sectionFlipped.value} disabled={!look.sectionAxis.value} onClick={() => (look.sectionFlipped.value = !look.sectionFlipped.value)}>
+            Flip
+          </button>
           <label>
             Cut at
             <input type="range" min={0} max={1} step={0.002} value={look.sectionAt.value} disabled={!look.sectionAxis.value} style={{ '--at': `${100 * look.sectionAt.value}%` }} onInput={(e) => (look.sectionAt.value = Number(e.currentTarget.value))} />
@@ -307,8 +301,11 @@ function Export() {
   const head = scene.value?.head;
   if (!head) return null;
   const items: [string, string, () => void][] = [
-    ['Image', 'PNG', () => void view?.png().then((b) => b && save(b, 'robot.png'))],
-    ['Plot data', 'CSV', () => save(new Blob([tracksCsv(head)], { type: 'text/csv' }), 'plots.csv')],
+    ['Image', 'PNG', () => void theView.value?.png().then((b) => b && save(b, 'robot.png'))],
+    ['Picture for print, 3840 pixels wide', 'PNG', () => void theView.value?.png(3840).then((b) => b && save(b, 'robot_print.png'))],
+    ['Film of the states since rest', 'WebM', () => void film().then((b) => (b ? save(b, 'robot.webm') : say('There is nothing to film yet: move the robot first.')))],
+    ['Link to this state', 'copy', () => void navigator.clipboard.writeText(linkText()).then(() => say('The link is in the clipboard.'), () => say(linkText()))],
+    ['Plot data', 'CSV', () => save(new Blob([tracksCsv()], { type: 'text/csv' }), 'plots.csv')],
     ['Force history', 'CSV', () => (location.href = '/api/export/steps.csv')],
     ['Marker history', 'CSV', () => (location.href = '/api/export/markers.csv')],
     ['Animation', 'GLB', () => (location.href = '/api/export/robot.glb')],
@@ -316,8 +313,8 @@ function Export() {
   ];
   return (
     <div class="menu" ref={box}>
-      <button class="chip" aria-expanded={open} onClick={() => setOpen(!open)}>
-        <Icon name="download" /> Export
+      <button class="chip" aria-expanded={open} disabled={filming.value !== null} onClick={() => setOpen(!open)}>
+        <Icon name="download" /> {filming.value === null ? 'Export' : `Filming… ${Math.round(100 * filming.value)} %`}
       </button>
       {open && (
         <div class="popover right" onClick={() => setOpen(false)}>
@@ -333,20 +330,22 @@ function Export() {
   );
 }
 
-const refine = (accuracy: 'preview' | 'fine') => void post('/api/accuracy', { accuracy });
+const setAccuracy = (accuracy: Accuracy) => void post('/api/accuracy', { accuracy });
 
-/// How accurate linear elements are: too stiff in bending, the more so the fewer there are through a wall.
+/// How accurate linear elements are: too stiff in bending, the more so the fewer there are through a wall. Of a robot
+/// that is refined by itself as soon as the hand rests, the sign at its numbers is enough.
 function Rough() {
-  const own = scene.value?.head.accuracy === 'fine'; // the file itself asks for them
+  const accuracy = scene.value?.head.accuracy;
+  if (accuracy === 'automatic' && scene.value?.head.order === 2) return null;
   return (
     <span class="rough" data-testid="rough">
       Linear elements are too stiff: forces can be 1.3 to 3 times too large, displacements too small.{' '}
-      {own ? (
+      {accuracy !== 'preview' ? (
         <>
           The file asks for them: <code>mesh.order = 1</code>.
         </>
       ) : (
-        <button class="small" disabled={!mayDrive.value} onClick={() => refine('fine')} data-testid="refine">
+        <button class="small" disabled={!mayDrive.value} onClick={() => setAccuracy('automatic')} data-testid="refine">
           Refine
         </button>
       )}
@@ -364,18 +363,22 @@ function Status() {
       </div>
     );
   if (!head || !s) return <div class="status" data-testid="status" data-state="none" />;
-  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : 'solving';
+  const led = head.lead?.settled ?? false;
+  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : head.refining ? 'refining' : led ? 'led' : 'solving';
   const warning = head.warnings.join('. ');
   const words = {
     replay: 'replay',
     stuck: 'did not converge',
     arrived: rough.value ? '≈ linear preview' : 'at equilibrium',
-    solving: 'Solving…',
+    led: rough.value ? '≈ linear preview' : 'at equilibrium',
+    refining: '≈ linear preview, computing the quadratic answer…',
+    solving: rough.value ? '≈ Solving…' : 'Solving…',
   }[state];
-  const lamp = state === 'arrived' && (warning || rough.value) ? 'warn' : { replay: 'busy', stuck: 'bad', arrived: 'good', solving: 'busy' }[state];
+  const settled = state === 'arrived' || state === 'led';
+  const lamp = settled ? (warning || rough.value ? 'warn' : 'good') : state === 'stuck' ? 'bad' : 'busy';
   return (
     <div class="status" role="status" data-testid="status" data-state={state} data-lamp={lamp} title={head.stuck || warning}>
-      <span class={`lamp ${lamp}`} /> {words}
+      <span class={state === 'refining' ? 'pulse' : `lamp ${lamp}`} /> {words}
       {state === 'stuck' && <span data-testid="stuck-why">: {head.stuck}</span>}
       {warning && <span data-testid="state-warning">: {warning}</span>}
       <span class="quiet">
@@ -392,9 +395,11 @@ function Status() {
 }
 
 function Readings() {
-  const shown = (look.shownFrame.value ?? frame.value)?.head;
+  const at = look.shownFrame.value ?? frame.value;
+  const shown = at?.head;
   const head = scene.value?.head;
   if (!shown || !head) return null;
+  const mark = isRough(at) && '≈ ';
   const pull = shown.pull;
   return (
     <table class="readings">
@@ -402,7 +407,7 @@ function Readings() {
         {head.markers.map((m, k) => (
           <tr key={m.name} data-testid={`marker-${m.name}`}>
             <th>
-              {rough.value && '≈ '}
+              {mark}
               {m.name}
             </th>
             {(shown.markers[k] ?? []).map((v) => (
@@ -422,7 +427,7 @@ function Readings() {
         ))}
         {shown.lead && (
           <tr data-testid="lead">
-            <th>{rough.value && '≈ '}distance to the target</th>
+            <th>{mark}distance to the target</th>
             <td colSpan={3}>{shown.lead.error_mm.toFixed(2)}</td>
             <td class="unit">mm</td>
           </tr>
@@ -437,7 +442,7 @@ function Readings() {
         )}
         {pull && (
           <tr>
-            <th>{rough.value && '≈ '}applied force</th>
+            <th>{mark}applied force</th>
             {pull.force_N.map((v) => (
               <td>{v.toFixed(2)}</td>
             ))}
@@ -471,7 +476,7 @@ function Pin() {
 }
 
 const hints = [
-  'Drag a slider to pull a cable or to inflate a chamber. Every frame shown is at equilibrium.',
+  'Drag a slider to pull a cable or to inflate a chamber. While you drag, numbers marked ≈ come from linear elements; let go, and the exact ones follow.',
   'Drag a marker: the actuators bring it there. Drag the body to apply a force. Drag the background to rotate the view, scroll to zoom.',
   'Change a material under File: the previous state stays visible as a ghost for comparison. Then continue under Prepare.',
 ];
@@ -502,16 +507,20 @@ function Hints() {
   );
 }
 
-function Accuracy() {
-  const fine = documentState.value.accuracy === 'fine';
+const accuracies: [Accuracy, string, string][] = [
+  ['automatic', 'auto', 'Linear elements while you move something, marked ≈, and quadratic ones as soon as it rests'],
+  ['preview', '≈ fast', 'Linear elements only: quick, but forces can be 1.3 to 3 times too large'],
+  ['fine', 'accurate', 'Quadratic elements only, those of pliant simulate'],
+];
+
+function Accuracies() {
   return (
-    <div class="segments" role="group" aria-label="Elements" title="Linear elements are fast, but their forces can be 1.3 to 3 times too large; quadratic elements are those of pliant simulate">
-      <button aria-pressed={!fine} disabled={!mayDrive.value} onClick={() => refine('preview')}>
-        ≈ fast
-      </button>
-      <button aria-pressed={fine} disabled={!mayDrive.value} onClick={() => refine('fine')} data-testid="fine">
-        accurate
-      </button>
+    <div class="segments" role="group" aria-label="Elements">
+      {accuracies.map(([name, label, title]) => (
+        <button key={name} title={title} aria-pressed={documentState.value.accuracy === name} disabled={!mayDrive.value} onClick={() => setAccuracy(name)} data-testid={name}>
+          {label}
+        </button>
+      ))}
     </div>
   );
 }
@@ -519,6 +528,7 @@ function Accuracy() {
 export function Simulate() {
   const tabs: [typeof panel.value, string][] = [
     ['move', 'Move'],
+    ['build', 'Build'],
     ['goal', 'Goal'],
     ['identify', 'Identify'],
     ['plots', 'Plots'],
@@ -529,12 +539,16 @@ export function Simulate() {
       <h2 class="unseen">Simulate</h2>
       <section class="stage">
         <Canvas />
+        <SectionHandle />
         <LookBar />
         <div class="stage-right">
           <Pin />
           <Export />
         </div>
         <Legend />
+        <ViewCube />
+        <ScaleBar />
+        <Measure />
         <Hints />
         <Status />
       </section>
@@ -549,7 +563,7 @@ export function Simulate() {
             ))}
           </div>
           <span class="grow" />
-          <Accuracy />
+          <Accuracies />
         </div>
         <div class="panel" key={panel.value}>
           {panel.value === 'move' && (
@@ -559,9 +573,10 @@ export function Simulate() {
               <Plots />
             </>
           )}
+          {panel.value === 'build' && <Build />}
           {panel.value === 'goal' && <Goal />}
           {panel.value === 'identify' && <Identify />}
-          {panel.value === 'plots' && <Plots />}
+          {panel.value === 'plots' && <Plots all />}
           {panel.value === 'file' && (
             <>
               <Materials />

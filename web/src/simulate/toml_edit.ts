@@ -61,3 +61,23 @@ function setInEntry(text: string, list: string, name: string, key: string, value
   }
   return null;
 }
+
+/// The table that a text ends in: "material" of [material.soft], "cable" of [[cable]], '' at the top.
+export function tableAt(before: string): string {
+  const headers = [...before.matchAll(/^[ \t]*\[{1,2}\s*([A-Za-z_\x22'][^\],\n]*?)\s*\]{1,2}/gm)];
+  const name = headers.at(-1)?.[1] ?? '';
+  return name === 'program.key' ? name : name.split('.')[0];
+}
+
+/// Numbers under [parameters]: what formulas of the file are made of.
+export function parametersOf(text: string): { name: string; value: number }[] {
+  const list: { name: string; value: number }[] = [];
+  let inside = false;
+  for (const line of text.split('\n')) {
+    const header = /^\s*\[/.test(line);
+    if (header) inside = /^\s*\[\s*parameters\s*\]/.test(line);
+    const found = !header && inside ? /^\s*([A-Za-z0-9_-]+)\s*=\s*([-+]?[0-9][0-9._]*(?:[eE][-+]?[0-9]+)?)\s*(?:#.*)?$/.exec(line) : null;
+    if (found) list.push({ name: found[1], value: Number(found[2].replace(/_/g, '')) });
+  }
+  return list;
+}

@@ -1,18 +1,64 @@
 // What has been seen since the robot was built: numbers for the plots, frames for the replay.
 import { effect, signal } from '@preact/signals';
-import { frame, scene } from '../store';
-import type { Frame, SceneHead } from '../types';
+import { frame, isRough, scene } from '../store';
+import type { Frame, FrameHead, SceneHead } from '../types';
 
 const mostPoints = 4000;
 const mostFrames = 900;
 
+/// A number of every state that can be plotted.
+export interface Channel {
+  key: string; // also the column of a table
+  label: string;
+  unit: string;
+  group: 'cable' | 'chamber' | 'marker' | 'support' | 'robot';
+  kind: string;
+  read: (head: FrameHead) => number;
+}
+
+const length = (p: readonly number[]) => Math.hypot(...p);
+
+/// All that a robot has.
+export function channelsOf(head: SceneHead): Channel[] {
+  const cables = head.actuators.filter((a) => a.type === 'cable');
+  const chambers = head.actuators.filter((a) => a.type === 'chamber');
+  const list: Channel[] = [];
+  cables.forEach((c, k) => {
+    const add = (kind: string, label: string, unit: string, read: (h: FrameHead) => number) =>
+      list.push({ key: `${c.name}_${kind}`, label: `${c.name}: ${label}`, unit, group: 'cable', kind, read });
+    add('tension_N', 'tension', 'N', (h) => h.cables[k]?.tension_N);
+    add('shortening_mm', 'shortening', 'mm', (h) => c.rest - h.cables[k]?.length_mm);
+    add('length_ratio', 'length ratio', '', (h) => h.cables[k]?.ratio);
+  });
+  chambers.forEach((c, k) => {
+    const add = (kind: string, label: string, unit: string, read: (h: FrameHead) => number) =>
+      list.push({ key: `${c.name}_${kind}`, label: `${c.name}: ${label}`, unit, group: 'chamber', kind, read });
+    add('pressure_kPa', 'pressure', 'kPa', (h) => h.chambers[k]?.pressure_kPa);
+    add('volume_change_mm3', 'volume change', 'mm³', (h) => h.chambers[k]?.volume_mm3 - c.rest);
+    add('volume_ratio', 'volume ratio', '', (h) => h.chambers[k]?.ratio);
+  });
+  head.markers.forEach((m, k) => {
+    const add = (kind: string, label: string, read: (h: FrameHead) => number) =>
+      list.push({ key: `${m.name}_${kind}`, label: `${m.name}: ${label}`, unit: 'mm', group: 'marker', kind, read });
+    add('displacement_mm', 'displacement', (h) => length((h.markers[k] ?? []).map((v, i) => v - m.rest[i])));
+    ['x', 'y', 'z'].forEach((axis, i) => add(`${axis}_mm`, axis, (h) => h.markers[k]?.[i]));
+  });
+  head.supports.forEach((name, k) =>
+    list.push({ key: `${name}_force_N`, label: `${name}: reaction`, unit: 'N', group: 'support', kind: 'force_N', read: (h) => length(h.supports?.[k] ?? []) }),
+  );
+  list.push(
+    { key: 'energy_mJ', label: 'energy', unit: 'mJ', group: 'robot', kind: 'energy_mJ', read: (h) => h.energy_mJ },
+    { key: 'time', label: 'time of the program', unit: 's', group: 'robot', kind: 'time', read: (h) => h.time },
+    { key: 'residual', label: 'residual', unit: '', group: 'robot', kind: 'residual', read: (h) => Math.max(h.residual, 1e-16) },
+  );
+  return list;
+}
+
 export interface Tracks {
-  seconds: number[];
-  cables: number[][]; // tension, N
-  chambers: number[][]; // pressure, kPa
-  markers: number[][]; // way from rest, mm
-  places: [number, number, number][][];
-  residual: number[];
+  seconds: number[]; // of motion: what passes while nothing moves is left out
+  rough: boolean[]; // found with linear elements
+  channels: Channel[];
+  values: number[][]; // (channels)(states)
 }
 
 export let tracks: Tracks = empty(null);
@@ -21,17 +67,8 @@ export let frames: Frame[] = [];
 export const tracksVersion = signal(0);
 
 function empty(head: SceneHead | null): Tracks {
-  const lists = (n: number) => Array.from({ length: n }, () => [] as never[]);
-  const cables = head?.actuators.filter((a) => a.type === 'cable').length ?? 0;
-  const chambers = (head?.actuators.length ?? 0) - cables;
-  return {
-    seconds: [],
-    cables: lists(cables),
-    chambers: lists(chambers),
-    markers: lists(head?.markers.length ?? 0),
-    places: lists(head?.markers.length ?? 0),
-    residual: [],
-  };
+  const channels = head ? channelsOf(head) : [];
+  return { seconds: [], rough: [], channels, values: channels.map(() => []) };
 }
 
 export function clearTracks() {
@@ -40,39 +77,25 @@ export function clearTracks() {
   tracksVersion.value = tracksVersion.peek() + 1;
 }
 
-let started = 0;
-let seenRevision = -1;
-
-/// After a pause the last values are written down once more, so that the line does not lean into the next change.
-function holdLast(seconds: number) {
-  const n = tracks.seconds.length;
-  if (n === 0 || seconds - tracks.seconds[n - 1] < 0.3) return;
-  tracks.seconds.push(seconds - 0.02);
-  for (const list of [tracks.residual, ...tracks.cables, ...tracks.chambers, ...tracks.markers]) list.push(list[n - 1]);
-  for (const list of tracks.places) list.push(list[n - 1]);
+/// The values of one channel; of none that there is, nothing.
+export function valuesOf(key: string): number[] {
+  return tracks.values[tracks.channels.findIndex((c) => c.key === key)] ?? [];
 }
 
+const longestStep = 0.1; // s between two states: who thinks longer than that does not move the robot
+let last = 0;
+let seenRevision = -1;
+
 function add(next: Frame) {
-  const head = next.head;
-  const rest = scene.peek()!.head.markers;
-  if (tracks.seconds.length === 0) started = performance.now();
-  const seconds = (performance.now() - started) / 1000;
-  holdLast(seconds);
-  tracks.seconds.push(seconds);
-  head.cables.forEach((c, k) => tracks.cables[k]?.push(c.tension_N));
-  head.chambers.forEach((c, k) => tracks.chambers[k]?.push(c.pressure_kPa));
-  head.markers.forEach((p, k) => {
-    const r = rest[k].rest;
-    tracks.markers[k]?.push(Math.hypot(p[0] - r[0], p[1] - r[1], p[2] - r[2]));
-    tracks.places[k]?.push(p);
-  });
-  tracks.residual.push(Math.max(head.residual, 1e-16));
+  const now = performance.now() / 1000;
+  const n = tracks.seconds.length;
+  tracks.seconds.push(n === 0 ? 0 : tracks.seconds[n - 1] + Math.min(now - last, longestStep));
+  last = now;
+  tracks.rough.push(isRough(next));
+  tracks.channels.forEach((c, k) => tracks.values[k].push(c.read(next.head) ?? NaN));
   frames.push(next);
   if (frames.length > mostFrames) frames.shift();
-  if (tracks.seconds.length > mostPoints) {
-    for (const list of [tracks.seconds, tracks.residual, ...tracks.cables, ...tracks.chambers, ...tracks.markers, ...tracks.places])
-      list.shift();
-  }
+  if (tracks.seconds.length > mostPoints) for (const list of [tracks.seconds, tracks.rough, ...tracks.values]) list.shift();
   tracksVersion.value = tracksVersion.peek() + 1;
 }
 
@@ -87,26 +110,45 @@ effect(() => {
   add(next);
 });
 
-/// Everything the plots show, as a table.
-export function tracksCsv(head: SceneHead): string {
-  const cables = head.actuators.filter((a) => a.type === 'cable');
-  const chambers = head.actuators.filter((a) => a.type === 'chamber');
-  const quoted = (s: string) => `"${s.replace(/"/g, '""')}"`;
-  const columns = [
-    'seconds',
-    ...cables.map((c) => quoted(`${c.name}_tension_N`)),
-    ...chambers.map((c) => quoted(`${c.name}_pressure_kPa`)),
-    ...head.markers.flatMap((m) => ['x', 'y', 'z'].map((a) => quoted(`${m.name}_${a}_mm`))),
-    'residual',
-  ];
-  const rows = tracks.seconds.map((t, i) =>
-    [
-      t.toFixed(4),
-      ...tracks.cables.map((c) => c[i]),
-      ...tracks.chambers.map((c) => c[i]),
-      ...tracks.places.flatMap((p) => p[i]),
-      tracks.residual[i],
-    ].join(','),
-  );
+/// Everything that can be plotted, as a table; `elements` are 1 (linear, only a preview) or 2.
+export function tracksCsv(): string {
+  const quoted = (s: string) => (/^[A-Za-z0-9_]+$/.test(s) ? s : `"${s.replace(/"/g, '""')}"`);
+  const columns = ['seconds', 'elements', ...tracks.channels.map((c) => quoted(c.key))];
+  const rows = tracks.seconds.map((t, i) => [t.toFixed(4), tracks.rough[i] ? 1 : 2, ...tracks.values.map((v) => v[i])].join(','));
   return [columns.join(','), ...rows].join('\r\n') + '\r\n';
+}
+
+/// A run that is kept to compare with, or a table of measurements.
+export interface Run {
+  name: string;
+  columns: Record<string, number[]>; // by key of the channel
+}
+export const runs = signal<Run[]>([]);
+
+export function keepRun(name: string) {
+  const fine = tracks.rough.map((r, i) => (r ? -1 : i)).filter((i) => i >= 0);
+  const pick = (list: number[]) => fine.map((i) => list[i]);
+  const columns = Object.fromEntries(tracks.channels.map((c, k) => [c.key, pick(tracks.values[k])]));
+  runs.value = [...runs.value, { name, columns: { ...columns, seconds: pick(tracks.seconds) } }];
+}
+
+/// A table of measurements: a head line of names, then numbers. What is wrong is said with its line.
+export function readTable(name: string, text: string): Run | string {
+  const lines = text.split(/\r?\n/);
+  const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);
+  const head = cells(lines[0] ?? '');
+  if (head.length < 2 || head.some((h) => h === '')) return `${name}:1: a head line with the names of two columns or more is needed`;
+  if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:1: the first line must name the columns, as in shortening_mm,tension_N`;
+  const columns: Record<string, number[]> = Object.fromEntries(head.map((h) => [h, []]));
+  for (const [i, line] of lines.slice(1).entries()) {
+    if (line.trim() === '') continue;
+    const row = cells(line);
+    if (row.length !== head.length) return `${name}:${i + 2}: ${row.length} columns, and the head line names ${head.length}`;
+    for (const [k, text] of row.entries()) {
+      const value = text === '' ? NaN : Number(text);
+      if (text !== '' && !Number.isFinite(value)) return `${name}:${i + 2}: "${text}" is not a number`;
+      columns[head[k]].push(value);
+    }
+  }
+  return columns[head[0]].length ? { name, columns } : `${name}: there are no rows`;
 }

@@ -7,17 +7,24 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { turnAround } from '../orbit_keys';
 import type { Frame, Scene } from '../types';
 import { fieldColour } from './colormap';
-import type { FieldName } from './view_state';
+import { fitPoints } from './fit';
+import { Ground, shadowLayer } from './ground';
+import { Tube } from './tube';
+import type { FieldName, Pick } from './view_state';
 
 export interface ViewOptions {
   field: FieldName;
   scale: number;
+  map?: string;
+  bands?: number;
+  range?: [number, number] | null; // of the colours, in the unit of the legend; null: of the state
   wireframe: boolean;
   ghost: boolean;
   inside: boolean;
   exploded: number;
   sectionAxis: '' | 'x' | 'y' | 'z';
   sectionAt: number;
+  sectionFlipped?: boolean;
   pinned: Float32Array | null;
   beside: boolean;
 }
@@ -32,6 +39,31 @@ export interface Grab {
 const markerReach = 10; // pixels from its dot
 
 const cableColour = 0xcc1a24;
+
+/// Seen through, but each part by its own front alone: first its depth is drawn, then what is nearest. It loses against
+/// what lies in the same place, so that nothing flickers.
+function veil(geometry: THREE.BufferGeometry, colour: number, opacity: number, order: number) {
+  const offset = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8 };
+  const veil = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color: colour, transparent: true, opacity, depthWrite: false, ...offset }));
+  const depth = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true, ...offset }));
+  veil.renderOrder = order + 1;
+  depth.renderOrder = order;
+  depth.frustumCulled = veil.frustumCulled = false;
+  veil.add(depth);
+  veil.visible = false;
+  return veil;
+}
+
+export type Side = 'home' | 'front' | 'back' | 'left' | 'right' | 'top' | 'bottom';
+const sides: Record<Side, [number, number, number]> = {
+  home: [0.55, -1.25, 0.62],
+  front: [0, -1, 0.0001],
+  back: [0, 1, 0.0001],
+  left: [-1, 0, 0.0001],
+  right: [1, 0, 0.0001],
+  top: [0, -0.0001, 1],
+  bottom: [0, -0.0001, -1],
+};
 
 /// Looks solid where it is cut: the inner side of a surface is drawn flat, in the colour of the material.
 function insideMaterial(colour: THREE.ColorRepresentation) {
@@ -58,7 +90,13 @@ export class RobotView {
   private chamberMesh: THREE.Mesh | null = null;
   private supportPoints: THREE.Points | null = null;
   private supportVertices: number[] = [];
-  private cables: Line2[] = [];
+  private cables: Tube[] = [];
+  private bodyDepth: THREE.Mesh | null = null;
+  private readonly ground = new Ground();
+  private moved = true; // since the shadow was drawn
+  private readonly sectionSheet = new THREE.Group();
+  private readonly measure = new THREE.Group();
+  private picks: Pick[] = [];
   private markers: THREE.Mesh[] = [];
   private path: [number, number, number][] = [];
   private wanted: THREE.Mesh[] = [];
@@ -74,8 +112,11 @@ export class RobotView {
   private grabbing: { vertex: number; marker: number; plane: THREE.Plane } | null = null;
   onGrab: (grab: Grab | null) => void = () => {};
   mayGrab = () => true;
+  /// Of a press while something is measured or placed: what is under the pointer. True: it was taken.
+  /// `rest` is its place in the robot at rest, `inward` the unit normal there into the body.
+  onPick: (pick: Pick, rest: [number, number, number], inward: [number, number, number]) => boolean = () => false;
   onRange: (low: number, high: number) => void = () => {};
-  onDraw: (project: (p: [number, number, number]) => [number, number]) => void = () => {};
+  onDraw: (project: (p: [number, number, number]) => [number, number], camera: THREE.PerspectiveCamera) => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -86,7 +127,8 @@ export class RobotView {
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.invalidate());
     this.key.position.set(0.6, -1, 1.6);
-    this.world.add(this.sky, this.key, this.root);
+    this.world.add(this.sky, this.key, this.root, this.ground.plane, this.measure, this.sectionSheet);
+    this.buildSheet();
     this.arrow = new Line2(new LineGeometry(), new LineMaterial({ color: 0xf2b705, linewidth: 3, depthTest: false }));
     this.arrow.visible = false;
     this.handle = new THREE.Mesh(
@@ -113,6 +155,7 @@ export class RobotView {
   dispose() {
     this.stopped = true;
     this.controls.dispose();
+    this.ground.dispose();
     this.renderer.dispose();
   }
 
@@ -127,7 +170,7 @@ export class RobotView {
     this.root.clear();
     this.build(scene);
     this.setPath(this.path);
-    if (first) this.lookAt('home');
+    if (first) this.lookAt('home', 0.62); // room to bend
     if (this.options) this.setOptions(this.options);
     this.invalidate();
   }
@@ -159,18 +202,15 @@ export class RobotView {
     });
     this.meshes = [new THREE.Mesh(body, scene.head.materials.map((m) => this.bodyMaterial(m.colour)))];
     this.insides = [new THREE.Mesh(body, scene.head.materials.map((m) => insideMaterial(m.colour)))];
-    this.root.add(this.meshes[0], this.insides[0]);
+    this.meshes[0].layers.enable(shadowLayer);
+    this.bodyDepth = new THREE.Mesh(body, new THREE.MeshBasicMaterial({ colorWrite: false }));
+    this.bodyDepth.visible = false;
+    this.bodyDepth.renderOrder = 1;
+    this.bodyDepth.frustumCulled = this.meshes[0].frustumCulled = this.insides[0].frustumCulled = false;
+    this.root.add(this.meshes[0], this.insides[0], this.bodyDepth);
     this.wires = null;
-    this.ghostMesh = new THREE.Mesh(
-      this.copyOf(rest),
-      new THREE.MeshLambertMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.22, depthWrite: false }),
-    );
-    this.ghostMesh.visible = false;
-    this.pinnedMesh = new THREE.Mesh(
-      this.copyOf(rest),
-      new THREE.MeshLambertMaterial({ color: 0xf2a93b, transparent: true, opacity: 0.42, depthWrite: false }),
-    );
-    this.pinnedMesh.visible = false;
+    this.ghostMesh = veil(this.copyOf(rest), 0x8a93a0, 0.3, 6);
+    this.pinnedMesh = veil(this.copyOf(rest), 0xf2a93b, 0.45, 8);
     this.root.add(this.ghostMesh, this.pinnedMesh);
     this.buildOffsets(scene, rest, material);
     this.buildParts(scene);
@@ -201,15 +241,12 @@ export class RobotView {
 
   private buildParts(scene: Scene) {
     this.cables = scene.head.cable_points.map(() => {
-      const line = new Line2(new LineGeometry(), new LineMaterial({ color: cableColour, linewidth: 3.2 }));
-      const through = new Line2(
-        line.geometry,
-        new LineMaterial({ color: cableColour, linewidth: 2.2, transparent: true, opacity: 0.42, depthTest: false }),
-      );
-      through.renderOrder = 4;
-      line.add(through);
-      this.root.add(line);
-      return line;
+      const tube = new Tube(0.0055 * this.size);
+      const mesh = new THREE.Mesh(tube.geometry, new THREE.MeshStandardMaterial({ color: cableColour, roughness: 0.45 }));
+      mesh.frustumCulled = false;
+      mesh.layers.enable(shadowLayer);
+      this.root.add(mesh);
+      return tube;
     });
     const radius = 0.009 * this.size;
     this.markers = scene.head.markers.map(() => {
@@ -253,6 +290,7 @@ export class RobotView {
         geometry,
         new THREE.MeshStandardMaterial({ color: 0xb3b8bf, roughness: 0.8, side: THREE.DoubleSide }),
       );
+      if (!scene.head.obstacles[o].open) mesh.layers.enable(shadowLayer);
       this.root.add(mesh);
       return mesh;
     });
@@ -268,6 +306,9 @@ export class RobotView {
     this.updateNormals();
     this.updateColours();
     this.updateParts(frame);
+    this.updateMeasure();
+    if (this.options?.sectionAxis) this.placeSection(this.options);
+    this.moved = true;
     this.invalidate();
   }
 
@@ -345,19 +386,20 @@ export class RobotView {
     if (this.options?.field === 'material' && this.body && this.scene) this.mixColours();
     const values = this.fieldValues();
     if (!values || !this.body) return;
-    const scale = this.options?.scale ?? 1;
+    const { scale = 1, range = null, map, bands } = this.options ?? {};
     let low = Infinity, high = -Infinity;
     for (const v of values) {
       if (v < low) low = v;
       if (v > high) high = v;
     }
     if (!(high > low)) high = low + Math.max(1e-9, Math.abs(low) * 1e-6);
+    if (range) [low, high] = [range[0] / scale, range[1] / scale];
     this.onRange(low * scale, high * scale);
     const colours = this.body.getAttribute('color') as THREE.BufferAttribute;
     const c = colours.array as Float32Array;
     const linear = new THREE.Color();
     for (let v = 0; v < values.length; ++v) {
-      linear.setRGB(...fieldColour((values[v] - low) / (high - low)), THREE.SRGBColorSpace);
+      linear.setRGB(...fieldColour((values[v] - low) / (high - low), map, bands), THREE.SRGBColorSpace);
       c[3 * v] = linear.r;
       c[3 * v + 1] = linear.g;
       c[3 * v + 2] = linear.b;
@@ -368,13 +410,9 @@ export class RobotView {
   private updateParts(frame: Frame) {
     const cables = frame.f32('cables');
     let at = 0;
-    this.cables.forEach((line, c) => {
+    this.cables.forEach((tube, c) => {
       const count = 3 * this.scene!.head.cable_points[c];
-      line.geometry.dispose();
-      const geometry = new LineGeometry();
-      geometry.setPositions(Array.from(cables.subarray(at, at + count)));
-      line.geometry = geometry;
-      (line.children[0] as Line2).geometry = geometry;
+      tube.update(cables.subarray(at, at + count));
       at += count;
     });
     frame.head.markers.forEach((p, m) => this.markers[m]?.position.set(...p));
@@ -386,7 +424,10 @@ export class RobotView {
     const held = this.supportPoints!.geometry.getAttribute('position') as THREE.BufferAttribute;
     this.supportVertices.forEach((v, k) => held.setXYZ(k, positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]));
     held.needsUpdate = true;
-    frame.head.obstacles.forEach((p, o) => this.obstacles[o]?.position.set(...p));
+    frame.head.obstacles.forEach(([x, y, z, ...turn], o) => {
+      this.obstacles[o]?.position.set(x, y, z);
+      if (turn.length === 4) this.obstacles[o]?.quaternion.fromArray(turn);
+    });
     this.updateArrow();
   }
 
@@ -445,7 +486,7 @@ export class RobotView {
       inside.needsUpdate = true;
     });
     this.insides[0].visible = options.sectionAxis !== '';
-    for (const line of this.cables) line.children[0].visible = options.inside;
+    this.setTransparent(options);
     if (this.chamberMesh) {
       this.chamberMesh.visible = options.inside;
       (this.chamberMesh.material as THREE.Material).clippingPlanes = options.sectionAxis ? [this.plane] : [];
@@ -458,13 +499,86 @@ export class RobotView {
     this.invalidate();
   }
 
+  /// What is inside is drawn first, then the front of the body over it.
+  private setTransparent(options: ViewOptions) {
+    const body = this.meshes[0];
+    this.bodyDepth!.visible = options.inside;
+    (this.bodyDepth!.material as THREE.Material).clippingPlanes = options.sectionAxis ? [this.plane] : [];
+    body.renderOrder = options.inside ? 2 : 0;
+    for (const m of body.material as THREE.MeshStandardMaterial[]) {
+      m.transparent = options.inside;
+      m.opacity = options.inside ? 0.36 : 1;
+    }
+    const depth = this.bodyDepth!.material as THREE.MeshBasicMaterial;
+    depth.transparent = options.inside; // so that it is drawn after everything that is solid
+  }
+
   private placeSection(options: ViewOptions) {
+    this.sectionSheet.visible = options.sectionAxis !== '';
     if (!options.sectionAxis) return;
     const axis = { x: 0, y: 1, z: 2 }[options.sectionAxis];
     const box = new THREE.Box3().setFromArray(this.body!.getAttribute('position').array as unknown as number[]);
     const at = box.min.getComponent(axis) + options.sectionAt * (box.max.getComponent(axis) - box.min.getComponent(axis));
-    this.plane.normal.set(0, 0, 0).setComponent(axis, options.sectionAxis === 'y' ? 1 : -1);
-    this.plane.constant = options.sectionAxis === 'y' ? -at : at;
+    const keep = (options.sectionAxis === 'y') !== (options.sectionFlipped ?? false) ? 1 : -1;
+    this.plane.normal.set(0, 0, 0).setComponent(axis, keep);
+    this.plane.constant = -keep * at;
+    // The sheet that is drawn where it cuts, a little larger than the robot.
+    const size = box.getSize(new THREE.Vector3()).addScalar(0.08 * this.size);
+    const centre = box.getCenter(new THREE.Vector3()).setComponent(axis, at);
+    this.sectionSheet.position.copy(centre);
+    this.sectionSheet.rotation.set(0, 0, 0);
+    if (options.sectionAxis === 'x') this.sectionSheet.rotation.set(Math.PI / 2, Math.PI / 2, 0);
+    if (options.sectionAxis === 'y') this.sectionSheet.rotation.set(Math.PI / 2, 0, 0);
+    const [w, h] = options.sectionAxis === 'x' ? [size.y, size.z] : options.sectionAxis === 'y' ? [size.x, size.z] : [size.x, size.y];
+    this.sectionSheet.scale.set(w, h, 1);
+    this.sectionPlace = { centre, axis, low: box.min.getComponent(axis), high: box.max.getComponent(axis) };
+  }
+
+  /// Where the sheet of the section is, and what its slider reaches, mm.
+  sectionPlace: { centre: THREE.Vector3; axis: number; low: number; high: number } | null = null;
+
+  private buildSheet() {
+    const corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(([x, y]) => new THREE.Vector3(x, y, 0));
+    const edge = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(corners), new THREE.LineBasicMaterial({ color: 0x2e86ab, transparent: true, opacity: 0.8 }));
+    const fill = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.MeshBasicMaterial({ color: 0x2e86ab, transparent: true, opacity: 0.07, side: THREE.DoubleSide, depthWrite: false }));
+    edge.renderOrder = fill.renderOrder = 12;
+    this.sectionSheet.add(edge, fill);
+    this.sectionSheet.visible = false;
+  }
+
+  /// A point of what is drawn, mm.
+  placeOfPick(pick: Pick): THREE.Vector3 | null {
+    if ('marker' in pick) return this.markers[pick.marker]?.position.clone() ?? null;
+    const p = this.body?.getAttribute('position');
+    return p && pick.vertex < p.count ? new THREE.Vector3().fromBufferAttribute(p as THREE.BufferAttribute, pick.vertex) : null;
+  }
+
+  setPicks(picks: Pick[]) {
+    this.picks = picks;
+    this.updateMeasure();
+    this.invalidate();
+  }
+
+  private updateMeasure() {
+    for (const c of this.measure.children as THREE.Mesh[]) {
+      c.geometry.dispose();
+      (c.material as THREE.Material).dispose();
+    }
+    this.measure.clear();
+    const points = this.picks.map((p) => this.placeOfPick(p)).filter((p) => p !== null);
+    const over = { depthTest: false, transparent: true };
+    for (const p of points) {
+      const dot = new THREE.Mesh(new THREE.SphereGeometry(0.008 * this.size, 16, 12), new THREE.MeshBasicMaterial({ color: 0xa64d86, ...over }));
+      dot.position.copy(p);
+      dot.renderOrder = 14;
+      this.measure.add(dot);
+    }
+    if (points.length > 1) {
+      const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: 0xa64d86, ...over }));
+      line.renderOrder = 13;
+      line.frustumCulled = false;
+      this.measure.add(line);
+    }
   }
 
   private setWires(on: boolean) {
@@ -502,17 +616,40 @@ export class RobotView {
     mesh.position.set(0, options.beside ? 1.6 * (box.max.y - box.min.y) + 0.1 * this.size : 0, 0);
   }
 
-  lookAt(side: 'home' | 'x' | 'y' | 'z') {
-    const from = { home: [0.55, -1.25, 0.62], x: [1, 0, 0.0001], y: [0, -1, 0.0001], z: [0, -0.001, 1] }[side];
-    const distance = (0.54 * this.size) / Math.sin((this.camera.fov * Math.PI) / 360) / Math.min(1, Math.max(this.camera.aspect, 0.55));
-    const target = this.centre.clone().add(new THREE.Vector3(0, 0, 0.08 * this.size));
-    this.controls.target.copy(target);
-    this.camera.position.copy(target).add(new THREE.Vector3(...from).normalize().multiplyScalar(distance));
+  /// All of it, from this side; without one, from where it is looked at. The margin is room for what stands over it.
+  lookAt(side?: Side, margin = 0.74) {
+    const back = side ? new THREE.Vector3(...sides[side]).normalize() : this.camera.getWorldDirection(new THREE.Vector3()).negate();
+    const forward = back.clone().negate();
+    const right = new THREE.Vector3().crossVectors(forward, new THREE.Vector3(0, 0, 1)).normalize();
+    const up = new THREE.Vector3().crossVectors(right, forward);
+    const tan = Math.tan((this.camera.fov * Math.PI) / 360);
+    const points = this.body ? (this.body.getAttribute('position').array as Float32Array) : new Float32Array();
+    const fit = fitPoints(points, right.toArray(), up.toArray(), forward.toArray(), margin * tan * this.camera.aspect, margin * tan);
+    this.controls.target.set(...fit.target);
+    this.camera.position.set(...fit.camera);
+    const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = distance / 200;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.invalidate();
+  }
+
+  /// Where it is looked from and at, mm; to be restored.
+  get pose(): number[] {
+    return [...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => +v.toFixed(2));
+  }
+  set pose(six: number[]) {
+    this.camera.position.set(six[0], six[1], six[2]);
+    this.controls.target.set(six[3], six[4], six[5]);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /// How many pixels a millimetre has where it is looked at.
+  get pixelsPerMm(): number {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return this.canvas.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
   }
 
   turn(around: number, up: number, nearer: number) {
@@ -529,15 +666,59 @@ export class RobotView {
   }
 
   private pointerDown(e: PointerEvent) {
-    if (e.button !== 0 || e.shiftKey || !this.mayGrab() || !this.frame || this.options?.exploded) return;
+    if (e.button !== 0 || e.shiftKey) return;
+    if (this.pick(e)) return;
+    if (!this.mayGrab() || !this.frame || this.options?.exploded) return;
     const marker = this.markerAt(e);
     if (marker >= 0) return this.hold(e, { vertex: -1, marker });
-    const hit = this.ray(e).intersectObject(this.meshes[0], false)[0];
-    if (!hit?.face || (this.options?.sectionAxis && this.plane.distanceToPoint(hit.point) < 0)) return;
+    const vertex = this.vertexAt(e);
+    if (vertex < 0) return;
+    this.hold(e, { vertex, marker: -1 });
+  }
+
+  /// The vertex of the surface that is nearest to what is under the pointer, or -1.
+  private vertexAt(e: PointerEvent) {
+    const hit = this.hitAt(e);
+    if (!hit?.face) return -1;
     const p = this.body!.getAttribute('position');
     const distance = (v: number) => hit.point.distanceTo(new THREE.Vector3(p.getX(v), p.getY(v), p.getZ(v)));
-    const vertex = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
-    this.hold(e, { vertex, marker: -1 });
+    return [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
+  }
+
+  /// What the section has cut away is not hit.
+  private hitAt(e: PointerEvent) {
+    const hits = this.ray(e).intersectObject(this.meshes[0], false);
+    return hits.find((hit) => !this.options?.sectionAxis || this.plane.distanceToPoint(hit.point) >= 0);
+  }
+
+  private pick(e: PointerEvent) {
+    if (!this.body || !this.scene) return false;
+    const marker = this.markerAt(e);
+    if (marker >= 0) {
+      return this.onPick({ marker }, [...this.scene.head.markers[marker].rest], [0, 0, 0]) && this.keep(e);
+    }
+    const hit = this.hitAt(e);
+    if (!hit?.face) return false;
+    return this.onPick({ vertex: this.vertexAt(e) }, ...this.restOf(hit)) && this.keep(e);
+  }
+
+  /// The press is not one of the camera's.
+  private keep(e: PointerEvent) {
+    e.stopImmediatePropagation();
+    return true;
+  }
+
+  /// Where a point of the surface is at rest, mm, and the way into the body there.
+  private restOf(hit: THREE.Intersection): [[number, number, number], [number, number, number]] {
+    const [p, rest] = [this.body!.getAttribute('position') as THREE.BufferAttribute, this.scene!.f32('rest')];
+    const corners = [hit.face!.a, hit.face!.b, hit.face!.c];
+    const now = corners.map((v) => new THREE.Vector3().fromBufferAttribute(p, v));
+    const shares = THREE.Triangle.getBarycoord(hit.point, now[0], now[1], now[2], new THREE.Vector3())!.toArray();
+    const at = corners.map((v) => new THREE.Vector3(rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]));
+    const place = new THREE.Vector3();
+    at.forEach((p, i) => place.addScaledVector(p, shares[i]));
+    const inward = new THREE.Triangle(at[0], at[1], at[2]).getNormal(new THREE.Vector3()).negate();
+    return [place.toArray(), inward.toArray()];
   }
 
   /// The marker whose dot is under the pointer, or -1: dots are drawn over everything.
@@ -597,16 +778,30 @@ export class RobotView {
   private draw() {
     this.dirty = false;
     this.key.position.copy(this.camera.position).add(new THREE.Vector3(-0.4, -0.3, 0.9).multiplyScalar(this.size));
+    this.drawShadow();
     this.renderer.render(this.world, this.camera);
     const box = this.canvas.getBoundingClientRect();
     this.onDraw((p) => {
       const v = new THREE.Vector3(...p).project(this.camera);
       return [((v.x + 1) / 2) * box.width, ((1 - v.y) / 2) * box.height];
-    });
+    }, this.camera);
   }
 
-  png(): Promise<Blob | null> {
+  private drawShadow() {
+    if (!this.moved || !this.body) return;
+    this.moved = false;
+    const box = new THREE.Box3().setFromArray(this.body.getAttribute('position').array as unknown as number[]);
+    this.ground.update(this.renderer, this.world, box);
+  }
+
+  /// As it is seen; with a width, so many pixels wide.
+  async png(width?: number): Promise<Blob | null> {
+    const ratio = this.renderer.getPixelRatio();
+    if (width) this.renderer.setPixelRatio(width / this.canvas.clientWidth);
     this.draw();
-    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    const blob = await new Promise<Blob | null>((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    if (width) this.renderer.setPixelRatio(ratio);
+    this.invalidate();
+    return blob;
   }
 }

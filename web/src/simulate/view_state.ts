@@ -16,10 +16,20 @@ export const field = signal<FieldName>('material');
 export const wireframe = signal(false);
 export const ghost = signal(false);
 export const exploded = signal(0);
-export const showInside = signal(true);
+export const showInside = signal(false);
 export const sectionAxis = signal<'' | 'x' | 'y' | 'z'>('');
 export const sectionAt = signal(0.5);
+export const sectionFlipped = signal(false);
+/// Lowest and highest value shown, in the legend's unit.
 export const fieldRange = signal<[number, number]>([0, 1]);
+/// What the colours reach from and to; null: the lowest and the highest value of the state.
+export const fixedRange = signal<{ field: FieldName; low: number; high: number } | null>(null);
+export const map = signal('pliant');
+export const bands = signal(0);
+/// What is measured between, in order: a point of the surface, or a marker.
+export type Pick = { vertex: number } | { marker: number };
+export const measuring = signal(false);
+export const picks = signal<Pick[]>([]);
 /// A frame of the recording that is shown instead of the live one.
 export const shownFrame = signal<Frame | null>(null);
 /// The state that was pinned to compare with.

@@ -1,0 +1,96 @@
+// Changes of the robot file that are not typed: numbers, entries; and what is wrong with a text that is.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/core/toml_edit.hpp"
+#include "presentation/studio/studio.hpp"
+#include "robot/file/material_library.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t most_changes = 256;
+
+/// A value of JSON as TOML has it, on one line; "" for null, which TOML has not.
+std::string toml_text(const Json& value) {
+    if (value.is_string() || value.is_boolean() || value.is_number_integer())
+        return value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (value.is_number()) return fmt::format("{:.10g}", value.get<double>());
+    std::string inner;
+    if (value.is_array()) {
+        for (const Json& item : value) inner += (inner.empty() ? "" : ", ") + toml_text(item);
+        return "[" + inner + "]";
+    }
+    if (!value.is_object()) return "";
+    for (const auto& [key, item] : value.items())
+        inner += fmt::format("{}{} = {}", inner.empty() ? "" : ", ", config::key_text(key), toml_text(item));
+    return "{ " + inner + " }";
+}
+
+Response done(const Status& status) {
+    return status ? json_response("{}") : error_response(status.error());
+}
+
+Response set_values(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
+        json["changes"].size() > most_changes)
+        return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
+    std::string text = studio.document().text;
+    for (const Json& change : json["changes"]) {
+        if (!change.is_object() || !change.contains("key") || !change["key"].is_string() || !change.contains("value"))
+            return error_response(422, "changes: key and value of each are needed");
+        auto next = config::with_value(text, change["key"].get<std::string>(), toml_text(change["value"]));
+        if (!next) return error_response(next.error());
+        text = std::move(*next);
+    }
+    return done(studio.edit(text));
+}
+
+Response add_entry(Studio& studio, const Request& request) {
+    const auto json = nlohmann::ordered_json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains("list") || !json["list"].is_string() || !json.contains("entry") ||
+        !json["entry"].is_object() || json["entry"].empty())
+        return error_response(422, "list and entry are needed: its keys and their values");
+    config::EntryText entry;
+    for (const auto& [key, value] : json["entry"].items()) entry.emplace_back(key, toml_text(Json(value)));
+    const auto text = config::with_entry(studio.document().text, json["list"].get<std::string>(), entry);
+    return text ? done(studio.edit(*text)) : error_response(text.error());
+}
+
+Response check(Studio& studio, const Request& request) {
+    const Status status = studio.check(request.body);
+    return json_response(fmt::format(R"({{"lines":{}}})", status ? "[]" : problem_lines(status.error())));
+}
+
+Response materials(Studio&, const Request&) {
+    Json list = Json::array();
+    for (const robot::LibraryFile& file : robot::library_files()) {
+        const auto material = robot::library_material(file.name);
+        if (material)
+            list.push_back({{"name", file.name}, {"title", material->title}, {"hardness", material->hardness}});
+    }
+    return json_response(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+void add_edit_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back({"POST", "/api/robot/set",
+                      "{\"changes\": [{\"key\", \"value\"}, ...]}: values of the robot file, all else as it was", json,
+                      true, set_values, json});
+    routes.push_back({"POST", "/api/robot/add", "{\"list\", \"entry\"}: one more entry, as of [[marker]]", json, true,
+                      add_entry, json});
+    routes.push_back({"POST", "/api/robot/new", "a robot that is in no file yet, by its text", json, true,
+                      [](Studio& s, const Request& r) { return done(s.open_new(r.body)); }, "text/plain"});
+    routes.push_back({"POST", "/api/robot/check", "what is wrong with a robot file, by line; nothing is built", json,
+                      true, check, "text/plain"});
+    routes.push_back({"GET", "/api/materials", "the library of materials", json, false, materials});
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,24 @@
+// Labels of things in a 3D view: elements of the page that go where their points are seen.
+import * as THREE from 'three';
+
+export interface Label {
+  element: HTMLElement;
+  at: THREE.Vector3; // in the world
+}
+
+/// Those behind the eye, or out of the picture, are not seen; of two that would cover each other the later one makes way.
+export function placeLabels(labels: Label[], camera: THREE.Camera, width: number, height: number) {
+  const taken: [number, number, number, number][] = [];
+  for (const { element, at } of labels) {
+    const p = at.clone().project(camera);
+    const [x, y] = [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
+    const [w, h] = [element.offsetWidth || 60, element.offsetHeight || 20];
+    const box: [number, number, number, number] = [x - w / 2, y - h / 2, x + w / 2, y + h / 2];
+    const covers = taken.some((t) => box[0] < t[2] && t[0] < box[2] && box[1] < t[3] && t[1] < box[3]);
+    const seen = p.z < 1 && x > 0 && y > 0 && x < width && y < height && !covers;
+    element.style.visibility = seen ? 'visible' : 'hidden';
+    if (!seen) continue;
+    taken.push(box);
+    element.style.transform = `translate(${Math.round(box[0])}px, ${Math.round(box[1])}px)`;
+  }
+}

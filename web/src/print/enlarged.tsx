@@ -1,0 +1,37 @@
+// A picture as large as the window: the light of the moment, the cured block. It covers all but the emergency stop.
+import { signal } from '@preact/signals';
+import { useLayoutEffect, useRef } from 'preact/hooks';
+import { Icon } from '../icons';
+
+export const enlarged = signal<{ address: string; title: string; pixels?: boolean } | null>(null);
+
+export function Enlarged() {
+  const closer = useRef<HTMLButtonElement>(null);
+  const picture = enlarged.value;
+  useLayoutEffect(() => {
+    if (!picture) return;
+    const before = document.activeElement as HTMLElement | null;
+    closer.current?.focus();
+    const escape = (e: KeyboardEvent) => e.key === 'Escape' && (enlarged.value = null);
+    window.addEventListener('keydown', escape);
+    return () => {
+      window.removeEventListener('keydown', escape);
+      before?.focus();
+    };
+  }, [picture !== null]);
+  if (!picture) return null;
+  const close = () => (enlarged.value = null);
+  return (
+    <div class="enlarged-back" onClick={(e) => e.target === e.currentTarget && close()}>
+      <div class="enlarged card" role="dialog" aria-label={picture.title} data-testid="enlarged">
+        <div class="row">
+          <h2>{picture.title}</h2>
+          <button class="bare" aria-label="Close" ref={closer} onClick={close}>
+            <Icon name="close" />
+          </button>
+        </div>
+        <img class={picture.pixels ? 'pixels' : ''} src={picture.address} alt={picture.title} />
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,218 @@
+// The robot file without typing: parameters, materials, and what is placed by pointing at the robot. Each change is made in
+// the text by the studio, with comments and order kept.
+import { effect, signal } from '@preact/signals';
+import { Icon } from '../icons';
+import { NumberField } from '../number_field';
+import { api, documentState, mayDrive, post, scene } from '../store';
+import { text, theirs } from './editor';
+import { parametersOf } from './toml_edit';
+
+type Point = [number, number, number];
+type Kind = 'marker' | 'support' | 'cable' | 'chamber';
+
+const placing = signal<Kind | null>(null);
+/// Points of a cable that is not finished, mm.
+export const placed = signal<Point[]>([]);
+const depth = signal(2); // mm below the surface
+const radius = signal(3); // mm
+
+interface LibraryEntry {
+  name: string;
+  title: string;
+  hardness: string;
+}
+const library = signal<LibraryEntry[]>([]);
+
+const lists: Record<Kind, string> = { marker: 'marker', support: 'fixed', cable: 'cable', chamber: 'chamber' };
+const words: Record<Kind, string> = {
+  marker: 'Click the robot where the marker is to be.',
+  support: 'Click the robot where it is held: everything within the radius is.',
+  cable: 'Click the guide points in order, then finish the cable.',
+  chamber: 'Click the robot: a round chamber is made under that place.',
+};
+
+/// A name that no actuator, marker or support has.
+export function freeName(kind: string, taken: string[]): string {
+  for (let k = 1; ; ++k) if (!taken.includes(`${kind} ${k}`)) return `${kind} ${k}`;
+}
+
+function taken(): string[] {
+  const head = scene.peek()?.head;
+  return head ? [...head.actuators.map((a) => a.name), ...head.markers.map((m) => m.name), ...head.supports] : [];
+}
+
+/// In the unit of the file, with as many digits as matter.
+const inFile = (p: readonly number[]) => p.map((v) => +(v / (scene.peek()?.head.unit_mm ?? 1)).toPrecision(6));
+const add = (kind: Kind, entry: Record<string, unknown>) => post('/api/robot/add', { list: lists[kind], entry: { name: freeName(kind, taken()), ...entry } });
+
+/// A place that was clicked. False if none is wanted.
+export function takePlace(rest: Point, inward: Point): boolean {
+  const kind = placing.peek();
+  if (!kind || !mayDrive.peek()) return false;
+  const below = rest.map((v, k) => v + depth.peek() * inward[k]) as Point;
+  const unit = scene.peek()?.head.unit_mm ?? 1;
+  if (kind === 'cable') placed.value = [...placed.value, below];
+  if (kind === 'marker') void add(kind, { point: inFile(rest) });
+  if (kind === 'support') void add(kind, { sphere: { center: inFile(rest), radius: +(radius.peek() / unit).toPrecision(6) } });
+  if (kind === 'chamber') {
+    const middle = rest.map((v, k) => v + (depth.peek() + radius.peek()) * inward[k]);
+    void add(kind, { geometry: { sphere: { center: inFile(middle), radius: +(radius.peek() / unit).toPrecision(6) } }, target: { pressure: '10 kPa' } });
+  }
+  if (kind !== 'cable') placing.value = null;
+  return true;
+}
+
+function finishCable() {
+  void add('cable', { points: placed.peek().map(inFile), anchor: 'first', target: { length_ratio: 0.9 } });
+  placed.value = [];
+  placing.value = null;
+}
+
+function Placing() {
+  const kind = placing.value;
+  const start = (k: Kind) => {
+    placed.value = [];
+    placing.value = placing.value === k ? null : k;
+  };
+  const field = (label: string, s: typeof depth, id: string) => (
+    <label class="row">
+      {label}
+      <NumberField value={s.value} range={{ from: 0, to: 1000 }} unit="mm" testId={id} onValue={(v) => void (s.value = v)} />
+    </label>
+  );
+  return (
+    <>
+      <h3>Place by pointing</h3>
+      <div class="row left wrap">
+        {(Object.keys(lists) as Kind[]).map((k) => (
+          <button key={k} class="small" aria-pressed={kind === k} disabled={!mayDrive.value} onClick={() => start(k)} data-testid={`place-${k}`}>
+            {k[0].toUpperCase() + k.slice(1)}
+          </button>
+        ))}
+      </div>
+      {kind && (
+        <div class="placing" role="status">
+          <p>{words[kind]}</p>
+          {(kind === 'cable' || kind === 'chamber') && field('Depth below the surface', depth, 'place-depth')}
+          {(kind === 'support' || kind === 'chamber') && field('Radius', radius, 'place-radius')}
+          {kind === 'cable' && (
+            <div class="row left">
+              <button class="primary small" disabled={placed.value.length < 2} onClick={finishCable} data-testid="finish-cable">
+                Finish the cable
+              </button>
+              <span class="quiet">{placed.value.length} points</span>
+            </div>
+          )}
+        </div>
+      )}
+    </>
+  );
+}
+
+let waiting = 0;
+/// The latest of several moves of a slider is sent.
+function setParameter(name: string, value: number) {
+  clearTimeout(waiting);
+  waiting = window.setTimeout(() => void post('/api/robot/set', { changes: [{ key: `parameters.${name}`, value }] }), 150);
+}
+
+/// Whole numbers stay whole; the slider goes from none to twice as much as the number was when it was first seen.
+const seen = new Map<string, number>();
+function Parameters() {
+  const list = parametersOf(theirs.value);
+  if (list.length === 0) return null;
+  return (
+    <>
+      <h3>Parameters</h3>
+      {list.map(({ name, value }) => {
+        const key = `${documentState.value.name} ${name}`;
+        if (!seen.has(key)) seen.set(key, value || 1);
+        const most = 2 * Math.abs(seen.get(key)!);
+        const whole = Number.isInteger(seen.get(key)!);
+        const [low, high] = [value < 0 ? -most : whole ? Math.min(1, value) : 0, Math.max(most, value)];
+        return (
+          <div class="parameter" key={name}>
+            <label for={`parameter-${name}`}>{name}</label>
+            <NumberField value={value} range={{ from: -Infinity, to: Infinity }} unit="" label={name} testId={`parameter-number-${name}`} disabled={!mayDrive.value} onValue={(v) => setParameter(name, v)} />
+            <input
+              id={`parameter-${name}`}
+              data-testid={`parameter-${name}`}
+              type="range"
+              min={low}
+              max={high}
+              step={whole ? 1 : (high - low) / 200}
+              value={value}
+              disabled={!mayDrive.value}
+              style={{ '--at': `${(100 * (value - low)) / (high - low || 1)}%` }}
+              onChange={(e) => setParameter(name, +Number(e.currentTarget.value).toPrecision(6))}
+            />
+          </div>
+        );
+      })}
+    </>
+  );
+}
+
+function BodyMaterials() {
+  const head = scene.value?.head;
+  if (!head?.bodies?.length) return null;
+  return (
+    <>
+      <h3>Materials of the bodies</h3>
+      {head.bodies.map((b) => {
+        const now = head.materials[b.material]?.name ?? '';
+        return (
+          <label class="row" key={b.name}>
+            {b.name}
+            <select value={now} disabled={!mayDrive.value} data-testid={`material-of-${b.name}`} onChange={(e) => void post('/api/robot/set', { changes: [{ key: `body.${b.name}.material`, value: e.currentTarget.value }] })}>
+              <optgroup label="In the file">
+                {head.materials.map((m) => (
+                  <option value={m.name} key={m.name}>
+                    {m.name}
+                  </option>
+                ))}
+              </optgroup>
+              <optgroup label="Library">
+                {library.value
+                  .filter((m) => !head.materials.some((own) => own.name === m.name))
+                  .map((m) => (
+                    <option value={m.name} key={m.name} title={m.title}>
+                      {m.name} {m.hardness && `(${m.hardness})`}
+                    </option>
+                  ))}
+              </optgroup>
+            </select>
+          </label>
+        );
+      })}
+    </>
+  );
+}
+
+effect(() => {
+  if (scene.value && library.peek().length === 0)
+    api('/api/materials')
+      .then(async (r) => (library.value = (await r.json()) as LibraryEntry[]))
+      .catch(() => {});
+});
+
+export function Build() {
+  const changed = text.value !== theirs.value;
+  if (changed)
+    return <p class="quiet">The text under File has changes that are not applied: apply or revert them first.</p>;
+  return (
+    <div class="build">
+      <div class="row left">
+        <button class="small" disabled={!documentState.value.undo || !mayDrive.value} onClick={() => post('/api/robot/undo')} data-testid="build-undo">
+          <Icon name="undo" /> Undo
+        </button>
+        <button class="small" disabled={!documentState.value.redo || !mayDrive.value} onClick={() => post('/api/robot/redo')} data-testid="build-redo">
+          <Icon name="redo" /> Redo
+        </button>
+      </div>
+      <Placing />
+      <Parameters />
+      <BodyMaterials />
+    </div>
+  );
+}

@@ -1,0 +1,119 @@
+// The text of the robot file: colours, errors at their lines, keys that can be completed.
+import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete';
+import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands';
+import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
+import { toml } from '@codemirror/legacy-modes/mode/toml';
+import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
+import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
+import { EditorState, Transaction } from '@codemirror/state';
+import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
+import { tags } from '@lezer/highlight';
+import { effect, type Signal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import type { Problem } from '../types';
+import { tableAt } from './toml_edit';
+import { robotKeys } from './robot_keys';
+
+const colours = HighlightStyle.define([
+  { tag: tags.comment, color: 'var(--code-comment)', fontStyle: 'italic' },
+  { tag: tags.string, color: 'var(--code-string)' },
+  { tag: [tags.number, tags.bool, tags.atom], color: 'var(--code-number)' },
+  { tag: [tags.propertyName, tags.attributeName], color: 'var(--code-key)' },
+  { tag: [tags.heading, tags.standard(tags.propertyName), tags.labelName], color: 'var(--code-table)', fontWeight: '700' },
+]);
+
+const look = EditorView.theme({
+  '&': { height: '100%', backgroundColor: 'var(--card)', color: 'var(--ink)' },
+  '.cm-scroller': { font: '12px/18px var(--mono)' },
+  '.cm-gutters': { backgroundColor: 'var(--sunk)', color: 'var(--faint)', border: '0' },
+  '.cm-activeLine': { backgroundColor: 'color-mix(in srgb, var(--accent) 7%, transparent)' },
+  '.cm-activeLineGutter': { backgroundColor: 'transparent' },
+  '.cm-cursor': { borderLeftColor: 'var(--ink)' },
+  '.cm-selectionBackground, &.cm-focused .cm-selectionBackground': { backgroundColor: 'var(--accent-soft) !important' },
+  '.cm-tooltip': { backgroundColor: 'var(--card)', color: 'var(--ink)', border: '1px solid var(--line)', borderRadius: '8px' },
+  '.cm-tooltip-autocomplete ul li[aria-selected]': { backgroundColor: 'var(--accent-soft)', color: 'var(--ink)' },
+  '.cm-completionDetail': { color: 'var(--faint)' },
+  '.cm-panels': { backgroundColor: 'var(--sunk)', color: 'var(--ink)' },
+});
+
+/// Keys of the table that the cursor is in; after a bracket the tables themselves.
+function complete(context: CompletionContext): CompletionResult | null {
+  const header = context.matchBefore(/^\s*\[+[\w.]*/);
+  if (header) {
+    const names = Object.keys(robotKeys).filter((n) => n !== '' && n !== 'place');
+    const start = header.from + (/^\s*\[+/.exec(header.text)?.[0].length ?? 0);
+    return { from: start, options: names.map((label) => ({ label, type: 'class' })) };
+  }
+  const word = context.matchBefore(/[\w.]*/);
+  const before = context.state.doc.lineAt(context.pos).text.slice(0, context.pos - context.state.doc.lineAt(context.pos).from);
+  if (!/^\s*[\w.]*$/.test(before) || !word || (word.text === '' && !context.explicit)) return null;
+  const keys = robotKeys[tableAt(context.state.doc.sliceString(0, context.pos))] ?? {};
+  return { from: word.from, options: Object.entries(keys).map(([label, detail]) => ({ label, detail, type: 'property', apply: `${label} = ` })) };
+}
+
+function diagnostics(state: EditorState, problems: Problem[]): Diagnostic[] {
+  return problems
+    .filter((p) => p.line > 0 && p.line <= state.doc.lines)
+    .map((p) => {
+      const line = state.doc.line(p.line);
+      return { from: line.from + (/^\s*/.exec(line.text)?.[0].length ?? 0), to: line.to, severity: 'error', message: p.text };
+    });
+}
+
+interface Props {
+  text: Signal<string>;
+  problems: Signal<Problem[]>;
+  readOnly: boolean;
+  onApply: () => void;
+}
+
+export function CodeArea({ text, problems, readOnly, onApply }: Props) {
+  const box = useRef<HTMLDivElement>(null);
+  const view = useRef<EditorView | null>(null);
+  useEffect(() => {
+    const made = (view.current = new EditorView({
+      parent: box.current!,
+      state: EditorState.create({
+        doc: text.peek(),
+        extensions: [
+          lineNumbers(),
+          history(),
+          drawSelection(),
+          highlightActiveLine(),
+          highlightSelectionMatches(),
+          StreamLanguage.define(toml),
+          syntaxHighlighting(colours),
+          autocompletion({ override: [complete] }),
+          lintGutter(),
+          keymap.of([{ key: 'Mod-Enter', run: () => (onApply(), true) }, ...defaultKeymap, ...historyKeymap, ...searchKeymap, indentWithTab]),
+          look,
+          EditorState.readOnly.of(readOnly),
+          EditorView.contentAttributes.of({ 'aria-label': 'Robot file', 'data-testid': 'robot-file', tabindex: '0' }),
+          EditorView.updateListener.of((u) => u.docChanged && (text.value = u.state.doc.toString())),
+        ],
+      }),
+    }));
+    const stops = [
+      // What comes from elsewhere is no step of the typist's.
+      effect(() => {
+        const next = text.value;
+        const now = made.state.doc.toString();
+        if (next === now) return;
+        let [begin, end] = [0, 0];
+        while (begin < Math.min(next.length, now.length) && next[begin] === now[begin]) ++begin;
+        while (end < Math.min(next.length, now.length) - begin && next[next.length - 1 - end] === now[now.length - 1 - end]) ++end;
+        made.dispatch({ changes: { from: begin, to: now.length - end, insert: next.slice(begin, next.length - end) }, annotations: Transaction.addToHistory.of(false) });
+      }),
+      effect(() => {
+        const first = problems.value.find((p) => p.line > 0 && p.line <= made.state.doc.lines);
+        made.dispatch(setDiagnostics(made.state, diagnostics(made.state, problems.value)));
+        if (first && !made.hasFocus) made.dispatch({ effects: EditorView.scrollIntoView(made.state.doc.line(first.line).from, { y: 'center' }) });
+      }),
+    ];
+    return () => {
+      for (const stop of stops) stop();
+      made.destroy();
+    };
+  }, [readOnly]);
+  return <div class="code" ref={box} />;
+}

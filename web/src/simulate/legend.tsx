@@ -1,0 +1,103 @@
+// What the colours mean, and how they are chosen.
+import { useRef, useState } from 'preact/hooks';
+import { useDismiss } from '../dismiss';
+import { NumberField } from '../number_field';
+import { scene } from '../store';
+import { gradientCss, maps } from './colormap';
+import * as look from './view_state';
+
+function Materials() {
+  return (
+    <ul class="legend materials-legend">
+      {scene.value?.head.materials.map((m) => (
+        <li key={m.name}>
+          <span class="swatch" style={{ background: m.colour }} />
+          {m.name}
+        </li>
+      ))}
+      {scene.value?.head.graded.map((g) => {
+        const [a, b] = [g.material, g.other].map((m) => scene.value!.head.materials[m]);
+        return (
+          <li key={`graded ${g.body}`} data-testid={`graded-${g.body}`}>
+            <span class="swatch wide" style={{ background: `linear-gradient(to right, ${a.colour}, ${b.colour})` }} />
+            {g.body}: {a.name} to {b.name}
+          </li>
+        );
+      })}
+    </ul>
+  );
+}
+
+const number = (x: number) => (Math.abs(x) >= 1e4 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(2) : `${+x.toPrecision(3)}`);
+
+function Settings({ f }: { f: (typeof look.fieldNames)[number] }) {
+  const [low, high] = look.fieldRange.value;
+  const fixed = look.fixedRange.value;
+  const set = (l: number, h: number) => {
+    if (!(h > l)) return false;
+    look.fixedRange.value = { field: f.name, low: l, high: h };
+    return true;
+  };
+  const field = (label: string, id: string, value: number, take: (v: number) => boolean) => (
+    <label class="row">
+      {label}
+      <NumberField value={+value.toPrecision(5)} range={{ from: -Infinity, to: Infinity }} unit={f.unit} testId={id} onValue={take} />
+    </label>
+  );
+  return (
+    <div class="popover legend-settings" data-testid="legend-settings">
+      <label>
+        Colours
+        <select value={look.map.value} data-testid="colour-map" onChange={(e) => (look.map.value = e.currentTarget.value)}>
+          {Object.entries(maps).map(([name, m]) => (
+            <option value={name} key={name}>
+              {m.label}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label>
+        Bands
+        <select value={look.bands.value} data-testid="colour-bands" onChange={(e) => (look.bands.value = Number(e.currentTarget.value))}>
+          <option value={0}>continuous</option>
+          {[5, 8, 10, 16].map((n) => (
+            <option value={n} key={n}>
+              {n}
+            </option>
+          ))}
+        </select>
+      </label>
+      {field('Highest', 'range-high', high, (v) => set(low, v))}
+      {field('Lowest', 'range-low', low, (v) => set(v, high))}
+      <button class="small" disabled={!fixed} onClick={() => (look.fixedRange.value = null)} data-testid="range-auto">
+        Range of the state
+      </button>
+    </div>
+  );
+}
+
+export function Legend() {
+  const [open, setOpen] = useState(false);
+  const box = useRef<HTMLDivElement>(null);
+  useDismiss(open, () => setOpen(false), box);
+  const f = look.fieldNames.find((n) => n.name === look.field.value)!;
+  if (f.name === 'material') return <Materials />;
+  const [low, high] = look.fieldRange.value;
+  return (
+    <div class="legend" ref={box} data-testid="legend">
+      <button class="field-legend" aria-expanded={open} aria-label={`Legend of ${f.label}: colours and range`} onClick={() => setOpen(!open)} data-testid="legend-button">
+        <span class="bar" style={{ background: gradientCss(look.map.value, look.bands.value) }} />
+        <span class="ticks">
+          {[1, 0.75, 0.5, 0.25, 0].map((t) => (
+            <span key={t}>{number(low + t * (high - low))}</span>
+          ))}
+        </span>
+        <span class="what">
+          {f.label}
+          {f.unit && <span class="quiet"> {f.unit}</span>}
+        </span>
+      </button>
+      {open && <Settings f={f} />}
+    </div>
+  );
+}
