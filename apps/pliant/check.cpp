@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -140,6 +141,11 @@ Result<std::string> check(const std::string& file, const Options& options, Progr
     return mesh::describe_mesh_file(file);
 }
 
+nlohmann::json result_json(const std::string& file, const Result<std::string>& text) {
+    return {
+        {"file", file}, {"valid", text.has_value()}, {text ? "text" : "error", text ? *text : text.error().message}};
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, int& status) {
@@ -153,21 +159,24 @@ void add_check(CLI::App& app, int& status) {
                         "printer that G-code files are checked against, and jobs in place of their own");
     command->add_option("--cancel-after", options->cancel_after,
                         "line of a G-code program to stop after: print the commands that do so safely");
-    add_output_options(*command, options->output, false);
+    add_output_options(*command, options->output, true);
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {
         if (!options->port.empty() && options->firmware) options->files.push_back(options->port);
         if (options->files.empty()) status = report({Cause::input, "give files to check, or --firmware with --port"});
+        nlohmann::json results = nlohmann::json::array();
         for (const std::string& file : options->files) {
             auto progress = terminal_progress(options->output);
             on_signal(OnSignal::leave);  // it writes nothing
             const Result<std::string> text = check(file, *options, *progress);
             progress.reset();
-            if (!text)
-                status = report(text.error());
-            else if (!options->output.quiet)
+            if (!text) status = report(text.error());
+            if (options->output.json)
+                results.push_back(result_json(file, text));
+            else if (text && !options->output.quiet)
                 fmt::print("{}: {}\n", file, *text);
         }
+        if (options->output.json) fmt::print("{}\n", nlohmann::json{{"files", results}}.dump(1));
     });
 }
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "interrupt.hpp"
@@ -47,6 +48,13 @@ private:
     Clock::time_point start_, stage_start_, last_;
 };
 
+void tell_error(const std::string& message, bool json) {
+    fmt::print(stderr, "{}\n", message);
+    if (json)
+        fmt::print("{}\n",
+                   nlohmann::json{{"error", message}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 }  // namespace
 
 void add_output_options(CLI::App& command, Output& output, bool with_json) {
@@ -54,14 +62,19 @@ void add_output_options(CLI::App& command, Output& output, bool with_json) {
     if (with_json) command.add_flag("--json", output.json, "print the result as JSON");
 }
 
-int report(const Error& error) {
-    fmt::print(stderr, "{}\n", error.message);
+int report(const Error& error, bool json) {
+    tell_error(error.message, json);
     return error.cause == Cause::input ? exit_bad_input : exit_failed;
 }
 
-int report(const Failure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
+int report(const Failure& failure, bool json) {
+    tell_error(failure.what(), json);
     return failure.kind() == Failure::Kind::input ? exit_bad_input : exit_failed;
+}
+
+bool asks_for_json(const CLI::App& command) {
+    const CLI::Option* option = command.get_option_no_throw("--json");
+    return option != nullptr && option->count() > 0;
 }
 
 std::unique_ptr<Progress> terminal_progress(const Output& output) {

@@ -23,6 +23,7 @@ struct Output {
 
 /// A command adds itself to the parser; `status` receives its exit status when it has run.
 using AddCommand = void (*)(CLI::App& app, int& status);
+void add_new(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_inverse(CLI::App& app, int& status);
 void add_workspace(CLI::App& app, int& status);
@@ -40,28 +41,34 @@ void add_materials(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
 void add_identify(CLI::App& app, int& status);
 void add_studio(CLI::App& app, int& status);
+void add_help(CLI::App& app, int& status);
+void add_version(CLI::App& app, int& status);
 void add_completion(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
 
-/// Prints the error to stderr and gives the exit status that belongs to it.
-int report(const Error& error);
-int report(const Failure& failure);
+/// Prints the error to stderr and gives the exit status that belongs to it; with --json also `{"error": "..."}` to
+/// stdout, so that a program that reads it always finds JSON.
+int report(const Error& error, bool json = false);
+int report(const Failure& failure, bool json = false);
+
+/// --json was given to this command.
+[[nodiscard]] bool asks_for_json(const CLI::App& command);
 
 /// What `command` does when it is given: `work` gives a Status, or a Result with the exit status.
 template <class Work>
 void on_call(CLI::App& command, int& status, Work work) {
-    command.callback([work, &status] {
+    command.callback([work, &status, &command] {
         try {
             const auto result = work();
             if (!result)
-                status = report(result.error());
+                status = report(result.error(), asks_for_json(command));
             else if constexpr (std::is_same_v<decltype(result), const Result<int>>)
                 status = *result;
             else
                 status = exit_done;
         } catch (const Failure& failure) {
-            status = report(failure);
+            status = report(failure, asks_for_json(command));
         }
     });
 }

@@ -93,7 +93,15 @@ Json json_of(const CommandEntry& entry) {
 }  // namespace
 
 CommandEntry command_table(const CLI::App& program) {
-    return entry_of(program, "");
+    CommandEntry table = entry_of(program, "");
+    std::vector<std::string> names;
+    for (const CommandEntry& entry : table.below) names.push_back(entry.name);
+    for (CommandEntry& entry : table.below) {
+        if (entry.name != "help") continue;
+        entry.arguments.front().choices = names;
+        entry.arguments.front().open = false;
+    }
+    return table;
 }
 
 std::string table_json(const CommandEntry& table) {

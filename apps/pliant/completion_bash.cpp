@@ -17,7 +17,6 @@ _pliant() {
     fi
     for ((i = 1; i < COMP_CWORD; i++)); do
         case "$command/${COMP_WORDS[i]}" in
-        /help) command=help ;;
 )";
 
 constexpr const char* tail = R"(    esac
@@ -75,9 +74,8 @@ std::string bash_completion(const CommandEntry& program) {
         text += fmt::format("        {}) command={} ;;\n", in_quotes(above + "/" + last), in_quotes(command->name));
     }
     text += "        esac\n    done\n    local words files options\n    case $command in\n";
-    text += fmt::format("    '') words={} options={} ;;\n", in_quotes(names_below(program) + " help version"),
+    text += fmt::format("    '') words={} options={} ;;\n", in_quotes(names_below(program)),
                         in_quotes(option_names(program)));
-    text += fmt::format("    help) words={} ;;\n", in_quotes(names_below(program)));
     for (const CommandEntry* command : all_commands(program))
         text += fmt::format("    {}) {} options={} ;;\n", in_quotes(command->name), arguments_of(*command),
                             in_quotes(option_names(*command)));

@@ -57,14 +57,10 @@ std::string command_lines(const CommandEntry& command) {
 }  // namespace
 
 std::string fish_completion(const CommandEntry& program) {
-    std::string text = "set -g __pliant_commands help";
+    std::string text = "set -g __pliant_commands";
     for (const CommandEntry* command : all_commands(program)) text += " " + in_quotes(command->name);
     text += "\n";
     text += head + command_lines(program);
-    text += "complete -c pliant -n \"__pliant_at ''\" -a help -d 'the commands, or the options of one'\n";
-    text += "complete -c pliant -n \"__pliant_at ''\" -a version -d 'the version'\n";
-    for (const CommandEntry& command : program.below)
-        text += fmt::format("complete -c pliant -n '__pliant_at help' -a {}\n", command.name);
     for (const CommandEntry* command : all_commands(program)) text += command_lines(*command);
     return text;
 }

@@ -70,17 +70,16 @@ std::string leaf(const CommandEntry& command) {
 }
 
 /// A command that has commands below it.
-std::string branch(const CommandEntry& command, const std::string& more) {
+std::string branch(const CommandEntry& command) {
     std::string text = fmt::format("{}() {{\n    local -a below\n    below=(\n", function_name(command));
     for (const CommandEntry& below : command.below)
         text += "        " + in_quotes(escaped(last_word(below.name)) + ":" + escaped(below.help)) + "\n";
-    text += more + "    )\n    _arguments -C";
+    text += "    )\n    _arguments -C";
     for (const OptionEntry& option : command.options) text += option_lines(option);
     text += " \\\n        '1:command:->command' \\\n        '*::argument:->argument'\n";
     text += "    case $state in\n    command) _describe command below ;;\n    argument)\n        case $line[1] in\n";
     for (const CommandEntry& below : command.below)
         text += fmt::format("        {}) {} ;;\n", last_word(below.name), function_name(below));
-    if (command.name.empty()) text += "        help) _arguments '1:command:{_describe command below}' ;;\n";
     return text + "        esac ;;\n    esac\n}\n";
 }
 
@@ -89,8 +88,8 @@ std::string branch(const CommandEntry& command, const std::string& more) {
 std::string zsh_completion(const CommandEntry& program) {
     std::string text = "#compdef pliant\n# zsh completion for pliant, written by \"pliant completion zsh\"\n";
     for (const CommandEntry* command : all_commands(program))
-        text += command->below.empty() ? leaf(*command) : branch(*command, "");
-    text += branch(program, "        'help:the commands, or the options of one'\n        'version:the version'\n");
+        text += command->below.empty() ? leaf(*command) : branch(*command);
+    text += branch(program);
     // Loaded by the first Tab as the function itself, or by a profile that only defines it.
     return text +
            "if [ \"$funcstack[1]\" = _pliant ]; then\n    _pliant \"$@\"\nelse\n    compdef _pliant pliant\nfi\n";

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "command.hpp"
 #include "inputs.hpp"
 
@@ -21,7 +23,11 @@ Status run(const Options& options) {
     if (!archive) return tl::unexpected(archive.error());
     const auto written = job::export_job(*archive, *format, options.folder);
     if (!written) return tl::unexpected(written.error());
-    if (!options.output.quiet) {
+    if (options.output.json) {
+        nlohmann::json files = nlohmann::json::array();
+        for (const auto& path : *written) files.push_back(path.string());
+        fmt::print("{}\n", nlohmann::json{{"files", files}}.dump(1));
+    } else if (!options.output.quiet) {
         for (const auto& path : *written) fmt::print("{}\n", path.string());
     }
     return {};
@@ -36,7 +42,7 @@ void add_export(CLI::App& app, int& status) {
     command->add_option("--as", options->format, "sl1, nanodlp, zip or vats")->required();
     command->add_option("-o,--output", options->folder, "folder for a file per material, or for the vats' folders")
         ->required();
-    add_output_options(*command, options->output, false);
+    add_output_options(*command, options->output, true);
     command->footer("Example: pliant export gripper.zip --as sl1 -o stacks");
     on_call(*command, status, [options] { return run(*options); });
 }

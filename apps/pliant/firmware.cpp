@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
 #include "board.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 struct Options {
     std::string printer, release, save, marlin, write;
+    Output output;
 };
 
 /// A configuration file of Marlin in the folder of its source, or in that folder's Marlin.
@@ -65,6 +67,16 @@ Status write_marlin(const Options& options, const machine::Printer& printer) {
         return write_file(folder / record_name, files->record);
     });
     if (!status) return status;
+    if (options.output.json) {
+        fmt::print("{}\n", nlohmann::json{{"folder", options.write},
+                                          {"release", machine::name_of(printer.controller.firmware)},
+                                          {"settings", settings->size()},
+                                          {"changed", files->changed},
+                                          {"pins_added", files->added}}
+                               .dump(1));
+        return {};
+    }
+    if (options.output.quiet) return {};
     fmt::print(
         "{}: Configuration.h and Configuration_adv.h of Marlin {} for {}: {} of {} settings changed, {} pins added\n",
         options.write, machine::name_of(printer.controller.firmware), printer.name, files->changed, settings->size(),
@@ -72,6 +84,17 @@ Status write_marlin(const Options& options, const machine::Printer& printer) {
     if (!files->author.empty())
         fmt::print("note: {} is the work of {}; what the list does not name stays as it is there\n",
                    configuration->path, files->author);
+    return {};
+}
+
+Status print_json(const machine::Printer& printer, const std::vector<machine::FirmwareSetting>& settings) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const machine::FirmwareSetting& s : settings)
+        list.push_back({{"name", s.name}, {"value", s.value}, {"reason", s.reason}});
+    fmt::print("{}\n", nlohmann::json{{"printer", printer.name},
+                                      {"release", machine::name_of(printer.controller.firmware)},
+                                      {"settings", list}}
+                           .dump(1));
     return {};
 }
 
@@ -90,7 +113,14 @@ Status run_firmware(const Options& options) {
     if (!options.write.empty()) return write_marlin(options, *printer);
     const Result<std::string> ini = machine::firmware_ini(*printer);
     if (!ini) return input_error("{}: {}", options.printer, ini.error().message);
-    if (!options.save.empty()) return write_file(options.save, *ini);
+    if (!options.save.empty()) {
+        if (Status written = write_file(options.save, *ini); !written || !options.output.json) return written;
+    }
+    if (options.output.json) {
+        const auto settings = machine::firmware_settings(*printer);
+        if (!settings) return input_error("{}: {}", options.printer, settings.error().message);
+        return print_json(*printer, *settings);
+    }
     fmt::print("{}", *ini);
     return {};
 }
@@ -140,6 +170,7 @@ void add_firmware(CLI::App& app, int& status) {
     command->add_option("-o,--output", options->save, "file for the list (config.ini of Marlin)");
     command->add_option("--marlin", options->marlin, "folder of that release's source, as downloaded");
     command->add_option("--write", options->write, "folder for complete configuration files, ready to be compiled");
+    add_output_options(*command, options->output, true);
     command->footer(
         "Examples: pliant firmware examples/printers/tower8.toml -o config.ini\n"
         "          pliant firmware examples/printers/tower8.toml --marlin Marlin-2.1.2.4 --write configured");

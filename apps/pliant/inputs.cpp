@@ -19,6 +19,13 @@ bool one_of(std::string_view word, const std::array<std::string_view, N>& words)
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+std::string lower_extension(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    return extension;
+}
+
 /// `parameters`, `name` and `material` tell nothing: both kinds may have the first two, a slip the last.
 FileKind kind_of_toml(const fs::path& file) {
     constexpr std::array<std::string_view, 10> of_printers{"axis",  "projector", "vat",      "tower",    "vat_shape",
@@ -36,20 +43,44 @@ FileKind kind_of_toml(const fs::path& file) {
     return printers > robots ? FileKind::printer : FileKind::robot;
 }
 
+/// "an STL", by the ending of its name.
+std::string_view geometry_name(const std::string& file) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> names{{{".stl", "an STL"},
+                                                                                   {".obj", "an OBJ"},
+                                                                                   {".ply", "a PLY"},
+                                                                                   {".off", "an OFF"},
+                                                                                   {".3mf", "a 3MF"},
+                                                                                   {".step", "a STEP file"},
+                                                                                   {".stp", "a STEP file"},
+                                                                                   {".vtk", "a VTK mesh"},
+                                                                                   {".vtu", "a VTU mesh"},
+                                                                                   {".msh", "a Gmsh mesh"},
+                                                                                   {".mesh", "a Medit mesh"},
+                                                                                   {".inp", "a CalculiX mesh"}}};
+    const std::string extension = lower_extension(file);
+    for (const auto& [ending, name] : names) {
+        if (ending == extension) return name;
+    }
+    return "geometry";
+}
+
 /// What it is, and how it becomes what is needed.
 std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
     const std::string stem = fs::path(file).stem().string();
     if (needed == FileKind::printer) {
-        const char* what = kind == FileKind::robot ? "a robot file" : kind == FileKind::job ? "a job" : "geometry";
-        return fmt::format("{}: is {}; a printer file is needed here, such as examples/printers/tower.toml", file,
-                           what);
+        const std::string_view what = kind == FileKind::robot ? "a robot file"
+                                      : kind == FileKind::job ? "a job"
+                                                              : geometry_name(file);
+        return fmt::format("{}: is {}; a printer file is needed here, or the name of a built-in one, such as tower",
+                           file, what);
     }
     if (needed == FileKind::robot) {
         if (kind == FileKind::printer) return fmt::format("{}: is a printer file; a robot file is needed here", file);
         if (kind == FileKind::job)
             return fmt::format("{}: is a job; a robot file is needed here, such as the one that it was sliced from",
                                file);
-        return fmt::format("{}: is geometry; a robot file is needed here, in which a body names it", file);
+        return fmt::format("{}: is {}; a robot file is needed here, in which a body names it (pliant new writes one)",
+                           file, geometry_name(file));
     }
     if (kind == FileKind::printer)
         return fmt::format("{}: is a printer file; a job is needed here, which pliant slice makes with --printer {}",
@@ -58,9 +89,8 @@ std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
         return fmt::format(
             "{}: is a robot file; a job is needed here: pliant slice {} --printer PRINTER.toml -o {}.zip", file, file,
             stem);
-    return fmt::format(
-        "{}: is geometry; a job is needed here: pliant slice MATERIAL={} --printer PRINTER.toml -o {}.zip", file, file,
-        stem);
+    return fmt::format("{}: is {}; a job is needed here: pliant slice MATERIAL={} --printer PRINTER.toml -o {}.zip",
+                       file, geometry_name(file), file, stem);
 }
 
 std::vector<std::string> built_in_names() {
@@ -89,9 +119,7 @@ FileKind kind_of(const fs::path& file) {
                                                         ".vtk", ".vtu", ".msh", ".mesh", ".off",  ".inp"};
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) return FileKind::unknown;
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    const std::string extension = lower_extension(file);
     if (extension == ".toml") return kind_of_toml(file);
     if (one_of(extension, geometry)) return FileKind::geometry;
     return job::Archive::open(file) ? FileKind::job : FileKind::unknown;

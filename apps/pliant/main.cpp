@@ -50,18 +50,6 @@ std::string unknown_option(const CLI::App& command) {
                                        : "did you mean \"" + nearest + "\"?");
 }
 
-/// `pliant help` and `pliant version` are what people type; `pliant help slice` is `pliant slice --help`.
-std::vector<std::string> arguments(int argc, char** argv) {
-    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-    if (!words.empty() && words[0] == "version") words[0] = "--version";
-    if (!words.empty() && words[0] == "help") {
-        words.erase(words.begin());
-        words.emplace_back("--help");
-    }
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    return words;
-}
-
 }  // namespace
 
 // Only running out of memory can escape, and that ends the program in any case.
@@ -77,12 +65,14 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     app.footer(
         "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
     int status = exit_done;
-    for (const AddCommand add : {add_simulate, add_inverse, add_workspace, add_mesh, add_slice, add_plan, add_export,
-                                 add_print, add_twin, add_firmware, add_project, add_compare_printers, add_check,
-                                 add_materials, add_calibrate, add_identify, add_studio, add_completion})
+    for (const AddCommand add : {add_new,       add_simulate, add_inverse,          add_workspace, add_mesh,
+                                 add_slice,     add_plan,     add_export,           add_print,     add_twin,
+                                 add_firmware,  add_project,  add_compare_printers, add_check,     add_materials,
+                                 add_calibrate, add_identify, add_studio,           add_help,      add_version,
+                                 add_completion})
         add(app, status);
     try {
-        app.parse(arguments(argc, argv));
+        app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         const CLI::App& command = *given_command(app);
         if (const std::string text = &command == &app ? "" : unknown_option(command);

@@ -2,6 +2,7 @@
 // sees the same images.
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/core/files.hpp"
@@ -33,13 +34,20 @@ Result<int> report_on_journal(const LiveOptions& live) {
     return exit_done;
 }
 
-int list_ports() {
+int list_ports(const Output& output) {
+    if (output.json) {
+        nlohmann::json ports = nlohmann::json::array();
+        for (const host::SerialPort& port : host::serial_ports())
+            ports.push_back({{"device", port.device}, {"name", port.name}});
+        fmt::print("{}\n", nlohmann::json{{"ports", ports}}.dump(1));
+        return exit_done;
+    }
     for (const host::SerialPort& port : host::serial_ports()) fmt::print("{}  {}\n", port.device, port.name);
     return exit_done;
 }
 
 Result<int> print(Options& options) {
-    if (options.list_ports) return list_ports();
+    if (options.list_ports) return list_ports(options.live.output);
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
     if (!options.twin && options.live.port.empty() && !options.live.report.empty())
         return report_on_journal(options.live);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -56,9 +57,20 @@ Result<Setting> read_setting(const Options& options) {
     return setting;
 }
 
-Status list_displays() {
+Status list_displays(const Output& output) {
     const auto displays = host::list_displays();
     if (!displays) return tl::unexpected(displays.error());
+    if (output.json) {
+        nlohmann::json list = nlohmann::json::array();
+        for (const host::PanelInfo& d : *displays)
+            list.push_back({{"number", d.number},
+                            {"name", d.name},
+                            {"width_px", d.width_px},
+                            {"height_px", d.height_px},
+                            {"refresh_hz", d.refresh_hz}});
+        fmt::print("{}\n", nlohmann::json{{"displays", list}}.dump(1));
+        return {};
+    }
     for (const host::PanelInfo& d : *displays) {
         const std::string rate = d.refresh_hz > 0 ? fmt::format("{:g} Hz", d.refresh_hz) : "rate not known";
         fmt::print("display {}: {} x {} px, {}, {}\n", d.number, d.width_px, d.height_px, rate, d.name);
@@ -71,7 +83,10 @@ Status release(const Options& options) {
     if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
     const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
-    if (!options.output.quiet) fmt::print("{}\n", *released ? "released" : "it was not in use");
+    if (options.output.json && options.pattern.empty() && options.image.empty())
+        fmt::print("{}\n", nlohmann::json{{"released", *released}}.dump(1));
+    else if (!options.output.quiet && !options.output.json)
+        fmt::print("{}\n", *released ? "released" : "it was not in use");
     return {};
 }
 
@@ -81,6 +96,14 @@ Status calibrate_size(const Options& options, const Setting& setting) {
     if (p.width_px == 0) return input_error("--measured: give --printer, or --size");
     const auto size = host::pixel_size(p.width_px, p.height_px, options.measured_mm[0], options.measured_mm[1]);
     if (!size) return tl::unexpected(size.error());
+    if (options.output.json) {
+        fmt::print("{}\n", nlohmann::json{{"x_um", size->x_um},
+                                          {"y_um", size->y_um},
+                                          {"pixel_um", size->pixel_um},
+                                          {"off_percent", size->off_percent}}
+                               .dump(1));
+        return {};
+    }
     fmt::print("x {:.3f} um, y {:.3f} um per pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
                size->off_percent);
     if (p.pixel_um > 0)
@@ -104,6 +127,10 @@ Status make_mask(const Options& options, const Setting& setting) {
     if (!table) return tl::unexpected(table.error());
     const host::LightMask mask = host::light_mask(*table, p.width_px, p.height_px, options.gamma);
     if (Status status = write_file(options.save, job::encode_png(mask.mask)); !status) return status;
+    if (options.output.json) {
+        fmt::print("{}\n", nlohmann::json{{"mask", options.save}, {"least_share", mask.least}}.dump(1));
+        return {};
+    }
     fmt::print("{}: {} x {} px; every pixel gets {:.1f} % of the brightest place's light\n", options.save, p.width_px,
                p.height_px, 100 * mask.least);
     fmt::print("put it beside the printer file, and into its [projector]:\nmask = \"{}\"\n",
@@ -141,7 +168,7 @@ Status light(const Options& options, Setting setting) {
     const auto progress = terminal_progress(options.output);
     const Status lit = options.seconds > 0 ? projector->show_for(*image, options.seconds) : projector->show(*image);
     if (!lit) return lit;
-    if (!options.output.quiet)
+    if (!options.output.quiet && !options.output.json)
         fmt::print("{} x {} px at {:g} Hz ({}), {}; Ctrl-C is black\n", panel.width_px, panel.height_px,
                    panel.refresh_hz, panel.name,
                    options.seconds > 0 ? fmt::format("{:g} s", std::min(options.seconds, screen.longest_light_s))
@@ -158,7 +185,12 @@ Status light(const Options& options, Setting setting) {
         return tl::unexpected(finished.error());
     }
     const auto& measured = projector->last_light();
-    if (!options.output.quiet && measured)
+    if (options.output.json && measured)
+        fmt::print("{}\n", nlohmann::json{{"on_s", measured->on_s},
+                                          {"frames", measured->frames},
+                                          {"longest_frame_s", measured->longest_frame_s}}
+                               .dump(1));
+    else if (!options.output.quiet && measured)
         fmt::print("on for {:.4f} s, {} frames, the longest {:.1f} ms\n", measured->on_s, measured->frames,
                    1000 * measured->longest_frame_s);
     return {};
@@ -172,7 +204,7 @@ Status save_pattern(const Options& options, const Setting& setting) {
 }
 
 Status run_project(const Options& options) {
-    if (options.list) return list_displays();
+    if (options.list) return list_displays(options.output);
     if (options.release && options.pattern.empty() && options.image.empty()) return release(options);
     if (!(options.seconds >= 0 && options.seconds <= 86400))
         return input_error("--seconds {:g}: must be above 0, at most a day", options.seconds);
@@ -210,7 +242,7 @@ void add_project(CLI::App& app, int& status) {
     command->add_option("--mask-from", options->readings, "table of light readings: make a mask from them");
     command->add_option("--gamma", options->gamma, "gamma of the projector, for the mask; 1 if not given");
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
-    add_output_options(*command, options->output, false);
+    add_output_options(*command, options->output, true);
     command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");
     on_call(*command, status, [options] { return run_project(*options); });
 }

@@ -1,6 +1,7 @@
 // pliant slice: layer images, plan and G-code of a robot for one printer, in one job file.
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,28 @@ void print_summary(const SliceOptions& options, const job::Manifest& manifest, c
                plan::clock_text(plan.seconds.total));
 }
 
+/// The plan is that of `pliant plan --json`.
+void print_json(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
+                const std::vector<std::string>& notes) {
+    nlohmann::json materials = nlohmann::json::array();
+    for (const job::Material& m : manifest.materials)
+        materials.push_back({{"name", m.name},
+                             {"resin", m.resin},
+                             {"model_volume_mm3", m.model_volume_mm3},
+                             {"exposure_s", m.exposure_s}});
+    const nlohmann::json json = {{"job", options.job},
+                                 {"name", manifest.name},
+                                 {"layers", manifest.layers.size()},
+                                 {"width_px", manifest.width_px},
+                                 {"height_px", manifest.height_px},
+                                 {"pixel_um", manifest.pixel_um},
+                                 {"materials", materials},
+                                 {"notes", notes},
+                                 {"warnings", manifest.warnings},
+                                 {"plan", nlohmann::json::parse(plan::plan_json(plan))}};
+    fmt::print("{}\n", json.dump(1));
+}
+
 Status draw_picture(const SliceOptions& options) {
     const Result<job::Archive> archive = job::Archive::open(options.job);
     if (!archive) return tl::unexpected(archive.error());
@@ -105,11 +128,15 @@ Status slice(const SliceOptions& options) {
     auto made = prepare::slice_job(order, *printer, std::move(*drawing), options.job, *progress);
     if (!made) return tl::unexpected(made.error());
     Status status;
-    if (!options.output.quiet) status = add_overcure(options.job, printer->printer, made->plan);
+    if (!options.output.quiet || options.output.json) status = add_overcure(options.job, printer->printer, made->plan);
     if (!status) return status;
     if (!options.picture.empty()) status = draw_picture(options);
     progress.reset();
-    if (status) print_summary(options, made->manifest, made->plan, made->notes);
+    if (!status) return status;
+    if (options.output.json)
+        print_json(options, made->manifest, made->plan, made->notes);
+    else
+        print_summary(options, made->manifest, made->plan, made->notes);
     return status;
 }
 
@@ -158,7 +185,7 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--hollow", order.hollow, "hollow the part, leaving walls of this thickness, as in \"2 mm\"");
     command.add_option("--drain", order.drain, "diameter of the drain holes of a hollow part");
     each("--set", order.assignments, "KEY=VALUE", "change any key of the robot file");
-    add_output_options(command, options.output, false);
+    add_output_options(command, options.output, true);
 }
 
 }  // namespace

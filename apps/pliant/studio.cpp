@@ -25,6 +25,7 @@ struct Options {
     int port = -1;  ///< -1: the usual one, or any if that is taken
     std::string address = "127.0.0.1";
     std::string token_file;
+    std::string notify, webcam;
     bool open = false;
     Output output;
 };
@@ -76,13 +77,16 @@ Result<std::string> choose_token(const Options& options) {
 }
 
 Result<int> run_studio(const Options& options) {
+    if (!options.webcam.empty() && studio::origin_of(options.webcam).empty())
+        return input_error("--webcam {}: an address is needed, as in http://camera:8080/stream", options.webcam);
     // Blocked before any thread is made, so that every thread leaves them to sigwait.
     sigset_t signals;
     sigemptyset(&signals);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-    Result<std::unique_ptr<studio::Studio>> studio = studio::Studio::open({options.file, PLIANT_VERSION});
+    Result<std::unique_ptr<studio::Studio>> studio =
+        studio::Studio::open({options.file, PLIANT_VERSION, options.notify, options.webcam});
     if (!studio) return tl::unexpected(studio.error());
     const Result<std::string> token = choose_token(options);
     if (!token) return tl::unexpected(token.error());
@@ -110,6 +114,12 @@ void add_studio(CLI::App& app, int& status) {
                         "address to listen on; any but loopback needs the token that is printed");
     command->add_option("--token-file", options->token_file,
                         "file with the token that pages need; made with a random one where there is none");
+    command->add_option(
+        "--notify", options->notify,
+        "command for the shell when a print has ended or waits for you: PLIANT_EVENT (finished, failed, "
+        "stopped, waiting), PLIANT_TEXT, PLIANT_JOB");
+    command->add_option("--webcam", options->webcam,
+                        "address of a picture or MJPEG stream of the machine, as in http://camera:8080/stream");
     command->add_flag("--open", options->open, "open the page in the browser of the desktop");
     add_output_options(*command, options->output, false);
     command->footer("Example: pliant studio examples/cable_gripper/gripper.toml");

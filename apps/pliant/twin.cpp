@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -103,6 +104,15 @@ void print_end(twin::Twin& twin) {
     for (const std::string& fault : twin.cured().faults()) fmt::print("  light: {}\n", fault);
 }
 
+void print_end_json(twin::Twin& twin) {
+    const twin::Log& log = twin.log();
+    const nlohmann::json json = {
+        {"seconds", twin.now()},        {"swaps", log.swaps},    {"exposures", log.exposures},
+        {"bad_lines", log.bad_lines},   {"resets", log.resets},  {"layers", twin.cured().layers().size()},
+        {"interlocks", log.violations}, {"faults", log.mishaps}, {"light", twin.cured().faults()}};
+    fmt::print("{}\n", json.dump(1));
+}
+
 Status run_twin(const Options& options) {
     if (!(options.speed > 0 && options.speed <= 1e6))
         return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
@@ -116,7 +126,7 @@ Status run_twin(const Options& options) {
     Result<twin::Pty> pty = twin::Pty::open(options.link);
     if (!pty) return tl::unexpected(pty.error());
     twin::Twin twin(*printer, *wanted);
-    if (!options.output.quiet) {
+    if (!options.output.quiet && !options.output.json) {
         fmt::print("{} on {}, {} baud; Ctrl-C ends it\n", printer->name,
                    options.link.empty() ? pty->device() : options.link, printer->controller.baud_rate);
         std::fflush(stdout);
@@ -141,7 +151,10 @@ Status run_twin(const Options& options) {
         };
     }
     if (Status status = twin::serve(twin, *pty, serve); !status) return status;
-    if (!options.output.quiet) print_end(twin);
+    if (options.output.json)
+        print_end_json(twin);
+    else if (!options.output.quiet)
+        print_end(twin);
     return {};
 }
 
@@ -170,7 +183,7 @@ void add_twin(CLI::App& app, int& status) {
     command->add_flag("--no-emergency-parser", options->no_emergency_parser,
                       "M112, M108 and M410 are queued like any other command");
     command->add_flag("--trace", options->trace, "log all serial traffic to standard error");
-    add_output_options(*command, options->output, false);
+    add_output_options(*command, options->output, true);
     command->footer("Example: pliant twin --printer examples/printers/tower.toml --pty /tmp/printer --speed 100");
     on_call(*command, status, [options] { return run_twin(*options); });
 }

@@ -1,0 +1,51 @@
+// pliant help: what --help of a command prints, asked for in the words that other programs have for it.
+#include <fmt/core.h>
+
+#include <CLI/Formatter.hpp>
+#include <string>
+#include <vector>
+
+#include "base/core/text.hpp"
+#include "command.hpp"
+
+namespace pliant::app {
+namespace {
+
+/// The command of that name directly below `app`; else an error that says which was meant.
+Result<const CLI::App*> command_below(const CLI::App& app, const std::string& path, const std::string& name) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        if (command->get_name() == name) return command;
+        names.push_back(command->get_name());
+    }
+    const std::string nearest = nearest_name(name, names);
+    return input_error("pliant help: there is no command \"{}{}\"; {}", path, name,
+                       nearest.empty() ? "pliant --help lists them" : "did you mean \"" + path + nearest + "\"?");
+}
+
+Status help(const CLI::App& app, const std::vector<std::string>& words) {
+    const CLI::App* command = &app;
+    std::string path, full = app.get_name();
+    for (const std::string& word : words) {
+        const Result<const CLI::App*> below = command_below(*command, path, word);
+        if (!below) return tl::unexpected(below.error());
+        command = *below;
+        path += word + " ";
+        full += " " + word;
+    }
+    // Not command->help(), which prints that of the command at work: this one.
+    fmt::print("{}", command->get_formatter()->make_help(command, full, CLI::AppFormatMode::Normal));
+    return {};
+}
+
+}  // namespace
+
+void add_help(CLI::App& app, int& status) {
+    auto words = std::make_shared<std::vector<std::string>>();
+    CLI::App* command = app.add_subcommand("help", "print the help of a command");
+    command->add_option("command", *words, "the command, as in: pliant help calibrate tensile");
+    command->footer("Example: pliant help slice");
+    on_call(*command, status, [words, &app] { return help(app, *words); });
+}
+
+}  // namespace pliant::app

@@ -1,0 +1,119 @@
+// pliant new: a robot file, or a printer file, to begin with: one of those that are built into the program.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/files.hpp"
+#include "base/core/text.hpp"
+#include "command.hpp"
+#include "inputs.hpp"
+#include "presentation/studio/examples.hpp"
+
+namespace pliant::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string robot, printer, file, name;
+    Output output;
+};
+
+/// The value of the line `name = "..."` that a file begins with, as far as it has one.
+std::string_view title_of(std::string_view text) {
+    constexpr std::string_view key = "name = \"";
+    const std::size_t at = text.starts_with(key) ? 0 : text.find("\n" + std::string(key));
+    if (at == std::string_view::npos) return "";
+    const std::size_t begin = at + key.size() + (at == 0 ? 0 : 1);
+    return text.substr(begin, text.find('"', begin) - begin);
+}
+
+/// The same text with another name. Precondition: it has one.
+std::string renamed(std::string_view text, std::string_view name) {
+    const std::string_view title = title_of(text);
+    const auto at = static_cast<std::size_t>(title.data() - text.data());
+    return std::string(text.substr(0, at)) + std::string(name) + std::string(text.substr(at + title.size()));
+}
+
+nlohmann::json json_of(std::span<const studio::BuiltInFile> files) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const studio::BuiltInFile& file : files)
+        list.push_back({{"template", file.name}, {"name", title_of(file.text)}});
+    return list;
+}
+
+void print_list(const char* heading, std::span<const studio::BuiltInFile> files) {
+    fmt::print("{}\n", heading);
+    for (const studio::BuiltInFile& file : files) fmt::print("  {:<18} {}\n", file.name, title_of(file.text));
+}
+
+Status list(const Options& options) {
+    if (options.output.json) {
+        fmt::print("{}\n", nlohmann::json{{"robots", json_of(studio::example_robots())},
+                                          {"printers", json_of(studio::example_printers())}}
+                               .dump(1));
+        return {};
+    }
+    print_list("robots: pliant new TEMPLATE -o FILE.toml", studio::example_robots());
+    print_list("printers: pliant new --printer TEMPLATE -o FILE.toml", studio::example_printers());
+    return {};
+}
+
+tl::unexpected<Error> no_such_template(const std::string& name, std::span<const studio::BuiltInFile> files) {
+    std::vector<std::string> names;
+    for (const studio::BuiltInFile& file : files) names.emplace_back(file.name);
+    const std::string nearest = nearest_name(name, names);
+    if (nearest.empty()) return input_error("{}: there is no such template; there are {}", name, join_names(names));
+    return input_error("{}: there is no such template; did you mean \"{}\"?", name, nearest);
+}
+
+Status check_name(const std::string& name) {
+    if (name.find_first_of("\"\\\n\r") == std::string::npos) return {};
+    return input_error("--name {}: must have no quotes, backslashes or line breaks", name);
+}
+
+Status make(const Options& options) {
+    if (!options.robot.empty() && !options.printer.empty())
+        return input_error("give a template of a robot, or --printer with one of a printer");
+    const bool of_robots = options.printer.empty();
+    const std::string& name = of_robots ? options.robot : options.printer;
+    const auto files = of_robots ? studio::example_robots() : studio::example_printers();
+    const studio::BuiltInFile* found = studio::find_file(files, name);
+    if (found == nullptr) return no_such_template(name, files);
+    const std::string file = options.file.empty() ? name + ".toml" : options.file;
+    Status fits = check_ending("-o", file, of_robots ? "a robot file" : "a printer file", ".toml");
+    if (fits) fits = check_name(options.name);
+    if (!fits) return fits;
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) return input_error("{}: exists and is not overwritten; choose another name", file);
+    const std::string text = options.name.empty() ? std::string(found->text) : renamed(found->text, options.name);
+    if (Status written = write_file(file, text); !written) return written;
+    const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", file)
+                                       : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", file);
+    if (options.output.json)
+        fmt::print("{}\n", nlohmann::json{{"file", file}, {"template", name}, {"name", title_of(text)}}.dump(1));
+    else if (!options.output.quiet)
+        fmt::print("{}: {}\nnext: {}\n", file, title_of(text), next);
+    return {};
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, int& status) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("new", "write a robot file, or a printer file, to begin with");
+    command->add_option("template", options->robot, "robot to begin with; without it all templates are listed");
+    command->add_option("--printer", options->printer, "write a printer file instead: the one to begin with");
+    command->add_option("-o,--output", options->file, "file to write (.toml); TEMPLATE.toml if not given");
+    command->add_option("--name", options->name, "name of the robot, or of the printer, in the file");
+    add_output_options(*command, options->output, true);
+    command->footer("Example: pliant new cable_gripper --name \"my gripper\" -o my_gripper.toml");
+    on_call(*command, status,
+            [options] { return options->robot.empty() && options->printer.empty() ? list(*options) : make(*options); });
+}
+
+}  // namespace pliant::app
