@@ -168,7 +168,7 @@ Tally outside(const Model& model, InverseTask task, int count) {
         const Eigen::VectorXd shares = (1.5 * (spread_point(n + 1, space.size()).array() - 0.5) + 0.5).max(0).min(1);
         if (const auto tip = tip_under(stepper, space, shares)) samples.push_back(*tip);
     }
-    for (int n = 0; n < count; ++n) {
+    for (int n = 0; tally.asked < count && n < 10 * count; ++n) {
         const Eigen::VectorXd way = spread_point(7 * n + 3, 3);
         const Vec3& base = samples[static_cast<std::size_t>(37 * n + 11) % samples.size()];
         const Vec3 wanted = base + 0.05 * Vec3{way[0] - 0.2, way[1] - 0.5, way[2] - 0.5};

@@ -5,6 +5,7 @@ set(PLIANT_LONG_TESTS
   studio/page
   studio/print_page
   studio/true_page
+  studio/visual_page
   print/kill
   examples/cable_gripper/make
   examples/printed_as_drawn

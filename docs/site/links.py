@@ -18,6 +18,8 @@ def target_of(link, folder, root):
         file, path = os.path.join(file, "README.md"), path.rstrip("/") + "/README.md"
     if file == os.path.join("docs", "README.md"):
         return "/index.md"
+    if file.endswith(".ipynb"):  # stands in the site as the document that it was made into
+        file, path = file[:-6] + ".md", path[:-6] + ".md"
     if file.startswith("..") or not os.path.isfile(os.path.join(root, file)):
         return None
     return path + ("#" + anchor if anchor else "")
