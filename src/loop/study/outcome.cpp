@@ -99,8 +99,9 @@ nlohmann::json account_json(const Collected& rows, const RunAccount* account) {
     nlohmann::json places = nlohmann::json::object();
     for (const TaskRecord& task : rows.tasks) {
         nlohmann::json& place = places[task.place];
-        place["wall_s"] = place.value("wall_s", 0.0) + task.wall_s;
-        place["cpu_s"] = place.value("cpu_s", 0.0) + task.cpu_s;
+        if (place.is_null()) place = {{"wall_s", 0.0}, {"cpu_s", 0.0}};
+        place["wall_s"] = place["wall_s"].get<double>() + task.wall_s;
+        place["cpu_s"] = place["cpu_s"].get<double>() + task.cpu_s;
     }
     json["places"] = places;
     if (account != nullptr)
