@@ -1,0 +1,52 @@
+// What must hold of the robots that nothing holds, whatever their numbers are: a crawler gets nowhere without friction,
+// nor with a gait that is the same forwards and backwards; with friction every cycle takes it further. The examples' own
+// numbers are in their expected.json.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+
+namespace {
+
+using robot::testing::run_file;
+
+/// Where the middle of the robot is at a time, along x: the mean of two markers.
+double along(const sim::Trajectory& t, double time_s, std::size_t first, std::size_t second) {
+    for (const sim::Step& step : t.steps) {
+        if (std::abs(step.time - time_s) < 1e-6)
+            return 0.5 * (step.markers.at(first).position_m.x + step.markers.at(second).position_m.x);
+    }
+    FAIL("no step at ", time_s, " s");
+    return 0;
+}
+
+}  // namespace
+
+TEST_CASE("an inchworm gets on by as much in every cycle, by friction alone") {
+    const sim::Trajectory rough = run_file("examples/inchworm/robot.toml", {});
+    const auto at = [&](double time_s) { return along(rough, time_s, 0, 2); };
+    const std::array<double, 3> cycles = {at(0.6) - at(0), at(1.2) - at(0.6), at(1.8) - at(1.2)};
+    MESSAGE("by cycle: ", 1e3 * cycles[0], ", ", 1e3 * cycles[1], ", ", 1e3 * cycles[2], " mm");
+    CHECK(cycles[1] > 1e-3);
+    CHECK(cycles[2] == near(cycles[1], {.relative = 0.1}));
+    const sim::Trajectory smooth =
+        run_file("examples/inchworm/robot.toml", {"parameters.friction=0"});
+    CHECK(std::abs(along(smooth, 1.8, 0, 2) - along(smooth, 0, 0, 2)) < 0.02 * (at(1.8) - at(0)));
+}
+
+TEST_CASE("a crawler goes forward by an arch that runs along it, and nowhere by a gait that is symmetric") {
+    const auto gone = [](const std::string& gait, double seconds) {
+        const sim::Trajectory t = run_file("examples/crawler/" + gait + ".toml", {});
+        return along(t, seconds, 0, 1) - along(t, 0, 0, 1);
+    };
+    const double forward = gone("robot", 1.2), nod = gone("nod", 1.2);
+    MESSAGE("forward ", 1e3 * forward, ", nodding ", 1e3 * nod, " mm");
+    CHECK(forward > 2e-3);
+    CHECK(std::abs(nod) < 0.1 * forward);
+}
