@@ -1,6 +1,6 @@
 // What must hold of the robots that nothing holds, whatever their numbers are: a crawler gets nowhere without friction,
-// nor with a gait that is the same forwards and backwards; with friction every cycle takes it further. The examples' own
-// numbers are in their expected.json.
+// nor with a gait that is the same forwards and backwards; with friction every cycle takes it further. The examples'
+// own numbers are in their expected.json.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -35,8 +35,7 @@ TEST_CASE("an inchworm gets on by as much in every cycle, by friction alone") {
     MESSAGE("by cycle: ", 1e3 * cycles[0], ", ", 1e3 * cycles[1], ", ", 1e3 * cycles[2], " mm");
     CHECK(cycles[1] > 1e-3);
     CHECK(cycles[2] == near(cycles[1], {.relative = 0.1}));
-    const sim::Trajectory smooth =
-        run_file("examples/inchworm/robot.toml", {"parameters.friction=0"});
+    const sim::Trajectory smooth = run_file("examples/inchworm/robot.toml", {"parameters.friction=0"});
     CHECK(std::abs(along(smooth, 1.8, 0, 2) - along(smooth, 0, 0, 2)) < 0.02 * (at(1.8) - at(0)));
 }
 

@@ -72,8 +72,9 @@ py::dict dict_of(const Observation& seen) {
         "cables"_a = named<O::Cable>(seen.cables, cable), "chambers"_a = named<O::Chamber>(seen.chambers, chamber),
         "springs"_a = named<O::Spring>(seen.springs, spring), "markers"_a = named<O::Marker>(seen.markers, marker),
         "supports"_a = named<O::Force>(seen.supports, force), "contacts"_a = named<O::Force>(seen.contacts, force),
-        "objects"_a = named<O::Object>(seen.objects, object), "self_contact_N"_a = seen.self_contact_N, "smallest_distance_m"_a = seen.smallest_distance_m,
-        "energy_J"_a = seen.energy_J, "kinetic_energy_J"_a = seen.kinetic_energy_J, "min_J"_a = seen.min_J);
+        "objects"_a = named<O::Object>(seen.objects, object), "self_contact_N"_a = seen.self_contact_N,
+        "smallest_distance_m"_a = seen.smallest_distance_m, "energy_J"_a = seen.energy_J,
+        "kinetic_energy_J"_a = seen.kinetic_energy_J, "min_J"_a = seen.min_J);
 }
 
 }  // namespace pliant::python

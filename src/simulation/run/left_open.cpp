@@ -138,8 +138,8 @@ private:
         }
     }
 
-    /// A body that turns goes round, not straight on: its points are drawn inwards, along which forces do work. Those of
-    /// everything else balance its own elastic ones.
+    /// A body that turns goes round, not straight on: its points are drawn inwards, along which forces do work. Those
+    /// of everything else balance its own elastic ones.
     void add_turning_forces(Eigen::MatrixXd& stiffness) const {
         Eigen::VectorXd own = Eigen::VectorXd::Zero(state_.x.size());
         system_.model().elements().evaluate(view(state_.x), view(own));

@@ -1,8 +1,8 @@
 // Random robots on small meshes, driven to where some of them cannot go: whatever is asked, nothing crashes, no number
 // is lost, and every run either converges or says why not and keeps the last good state.
 //
-// PLIANT_RANDOM_PROGRAMS sets how many (30 unless told), PLIANT_RANDOM_FIRST the first seed; `fuzz/random_programs` runs
-// a thousand.
+// PLIANT_RANDOM_PROGRAMS sets how many (30 unless told), PLIANT_RANDOM_FIRST the first seed; `fuzz/random_programs`
+// runs a thousand.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -117,18 +117,21 @@ TEST_CASE("what contact, friction and gravity leave open is said in one line, an
     };
     CHECK(open(0.5) == "");
     const std::string smooth = open(0);
-    CHECK_MESSAGE(smooth.ends_with("the piece of \"cube\" can slide in 2 directions and turn or roll in 1 way"), smooth);
+    CHECK_MESSAGE(smooth.ends_with("the piece of \"cube\" can slide in 2 directions and turn or roll in 1 way"),
+                  smooth);
     CHECK(smooth.find('\n') == std::string::npos);
-    // An object on the same smooth ground is as free, and one that has nothing under it falls as far as the tether lets.
+    // An object on the same smooth ground is as free, and one that has nothing under it falls as far as the tether
+    // lets.
     const std::string both = open(0, R"(
 [[object]]
 name = "block"
 geometry = { box = [[40, 0, 0], [60, 20, 8]] }
 mass = "5 g"
 )");
-    CHECK_MESSAGE(both.find("\"cube\" can slide in 2 directions and turn or roll in 1 way, object \"block\" can slide in "
-                            "2 directions and turn or roll in 1 way") != std::string::npos,
-                  both);
+    CHECK_MESSAGE(
+        both.find("\"cube\" can slide in 2 directions and turn or roll in 1 way, object \"block\" can slide in "
+                  "2 directions and turn or roll in 1 way") != std::string::npos,
+        both);
     // A spring to a fixed point takes one direction.
     const std::string tied = open(0, R"(
 [[spring]]
