@@ -64,9 +64,7 @@ TEST_CASE("a cube of 100 g that three fingers hold creeps by less than 0.1 mm in
     const sim::Trajectory t = run(R"(
 name = "grip"
 length_unit = "mm"
-[material.rubber]
-youngs_modulus = "1 MPa"
-poisson_ratio = 0.45
+material.rubber = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 }
 body = [{ name = "one", material = "rubber", geometry = { box = [[-24, -9, -4], [-10.3, -1, 4]] } },
         { name = "two", material = "rubber", geometry = { box = [[-24, 1, -4], [-10.3, 9, 4]] } },
         { name = "thumb", material = "rubber", geometry = { box = [[10.3, -4, -4], [24, 4, 4]] } }]
@@ -108,7 +106,7 @@ TEST_CASE("several robots in one scene: each stands for itself, and one that sta
     CHECK(last.contacts[0].force_N.z == near(16e-3 * g, {.relative = 0.01}));
     CHECK(last.self_contact_N == near(8e-3 * g, {.relative = 0.02}));  // what the lower one carries
     CHECK(last.markers[1].position_m.z == near(30e-3, {.absolute = 0.5e-3}));
-    CHECK(last.smallest_distance_m > 0);
+    CHECK(last.smallest_distance_m > -0.1e-3);  // the ground is drawn in by less than the distance of contact
 }
 
 TEST_CASE("what contact, friction and gravity leave open is said in one line, and nothing where they hold") {
