@@ -122,7 +122,8 @@ TEST_CASE("a simulation that is interrupted keeps the steps that converged, whol
         const test::Folder folder("interrupt");
         const fs::path out = folder / "out";
         Program program({"simulate", finger, "-o", out, "--steps", "20000", "--set", linear});
-        REQUIRE(wait_for([&] { return program.says("simulate ["); }));
+        // From a percent on steps have converged, however slow the computer is.
+        REQUIRE(wait_for([&] { return program.says("  1 %") || program.says("  2 %") || program.says("  3 %"); }));
         for (int i = 0; i < times; ++i) program.send(signal);
         CHECK(program.exit_status() == 1);
         REQUIRE(fs::exists(out / "summary.json"));

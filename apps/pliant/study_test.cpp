@@ -226,7 +226,7 @@ TEST_CASE("every command with --json can be a row") {
     REQUIRE_MESSAGE(ended.status == 0, ended.errors);
     const auto tets = column(place / "o/results.csv", "tets");
     REQUIRE(tets.size() == 2);
-    CHECK(tets[1] > 4 * tets[0]);
+    CHECK(tets[1] > 2 * tets[0]);  // of a bar that is as thin as the coarser tets are long
     CHECK(fs::exists(place / "o/rows/000001/bar.vtk"));
 }
 
