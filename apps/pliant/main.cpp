@@ -6,11 +6,15 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/core/text.hpp"
 #include "command.hpp"
+#include "program.hpp"
+#include "study_rows.hpp"
 
 namespace {
 
@@ -50,29 +54,47 @@ std::string unknown_option(const CLI::App& command) {
                                        : "did you mean \"" + nearest + "\"?");
 }
 
-}  // namespace
-
-// Only running out of memory can escape, and that ends the program in any case.
-int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+void add_commands(CLI::App& app, int& status) {
     using namespace pliant::app;
-    // The solver takes and gives back the same large blocks again and again: keep them instead of mapping them anew.
-    mallopt(M_MMAP_THRESHOLD, 1 << 30);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-
-    CLI::App app("Pliant simulates multi-material soft robots and prints them on multi-vat DLP printers.", "pliant");
     app.set_version_flag("--version", std::string(PLIANT_VERSION));
     app.require_subcommand(1);
     app.footer(
         "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
-    int status = exit_done;
-    for (const AddCommand add : {add_new,       add_simulate, add_inverse,          add_workspace, add_mesh,
-                                 add_slice,     add_plan,     add_export,           add_print,     add_twin,
-                                 add_firmware,  add_project,  add_compare_printers, add_check,     add_materials,
-                                 add_calibrate, add_identify, add_studio,           add_help,      add_version,
+    for (const AddCommand add : {add_new,
+                                 add_simulate,
+                                 add_inverse,
+                                 add_workspace,
+                                 add_mesh,
+                                 add_slice,
+                                 add_plan,
+                                 add_export,
+                                 add_print,
+                                 add_twin,
+                                 add_firmware,
+                                 add_project,
+                                 add_compare_printers,
+                                 add_check,
+                                 add_materials,
+                                 add_calibrate,
+                                 add_identify,
+                                 add_study,
+                                 add_studio,
+                                 add_help,
+                                 add_version,
                                  add_completion})
         add(app, status);
+}
+
+constexpr const char* about = "Pliant simulates multi-material soft robots and prints them on multi-vat DLP printers.";
+
+}  // namespace
+
+int pliant::app::run_program(const std::vector<std::string>& words) {
+    CLI::App app(about, "pliant");
+    int status = exit_done;
+    add_commands(app, status);
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
         const CLI::App& command = *given_command(app);
         if (const std::string text = &command == &app ? "" : unknown_option(command);
@@ -84,4 +106,29 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         return app.exit(error) == 0 ? exit_done : exit_bad_input;
     }
     return status;
+}
+
+std::vector<std::string> pliant::app::commands_of_studies() {
+    constexpr std::array<std::string_view, 5> others{"study", "studio", "print", "twin", "project"};
+    CLI::App app(about, "pliant");
+    int status = exit_done;
+    add_commands(app, status);
+    std::vector<std::string> names;
+    const auto all = [](const CLI::App*) { return true; };
+    for (const CLI::App* command : app.get_subcommands(all)) {
+        const bool json = command->get_option_no_throw("--json") != nullptr || !command->get_subcommands(all).empty();
+        if (json && std::find(others.begin(), others.end(), command->get_name()) == others.end())
+            names.push_back(command->get_name());
+    }
+    return names;
+}
+
+// Only running out of memory can escape, and that ends the program in any case.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    // The solver takes and gives back the same large blocks again and again: keep them instead of mapping them anew.
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words.front() == pliant::app::study_rows_word) return pliant::app::serve_study_rows(words);
+    return pliant::app::run_program(words);
 }

@@ -17,7 +17,7 @@ public:
         posix_spawn_file_actions_init(&actions_);
         put(files.input, STDIN_FILENO, O_RDONLY);
         put(files.output, STDOUT_FILENO, O_WRONLY);
-        put(-1, STDERR_FILENO, O_WRONLY);
+        put(files.error, STDERR_FILENO, O_WRONLY);
     }
     FileActions(const FileActions&) = delete;
     FileActions& operator=(const FileActions&) = delete;

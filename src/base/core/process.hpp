@@ -11,10 +11,11 @@
 
 namespace pliant {
 
-/// What becomes standard input and output of a new process; below zero: /dev/null. Standard error is /dev/null.
+/// What becomes standard input, output and error of a new process; below zero: /dev/null.
 struct ProcessFiles {
     int input = -1;
     int output = -1;
+    int error = -1;
 };
 
 /// Starts a program, without a search in PATH; `words` are its arguments without the program's name. It runs in a

@@ -12,8 +12,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -121,6 +123,53 @@ private:
 IdleWorkers& idle_workers() {
     static IdleWorkers workers;
     return workers;
+}
+
+/// Answers to requests that may come again. The oldest go first where there is no room.
+class RememberedAnswers {
+public:
+    void set_room(std::size_t bytes) {
+        const std::lock_guard lock(mutex_);
+        room_ = bytes;
+        make_room(0);
+    }
+    std::optional<std::string> find(MessageKind kind, const std::string& request) {
+        const std::lock_guard lock(mutex_);
+        for (const Answer& answer : answers_) {
+            if (answer.kind == kind && answer.request == request) return answer.bytes;
+        }
+        return std::nullopt;
+    }
+    void keep(MessageKind kind, const std::string& request, const std::string& bytes) {
+        const std::lock_guard lock(mutex_);
+        // What is read from a file may be another the next time.
+        if (kind == MessageKind::read_step || request.size() + bytes.size() > room_) return;
+        make_room(request.size() + bytes.size());
+        answers_.push_back({kind, request, bytes});
+    }
+
+private:
+    struct Answer {
+        MessageKind kind;
+        std::string request, bytes;
+    };
+    void make_room(std::size_t wanted) {
+        std::size_t used = wanted;
+        for (const Answer& answer : answers_) used += answer.request.size() + answer.bytes.size();
+        while (used > room_ && !answers_.empty()) {
+            used -= answers_.front().request.size() + answers_.front().bytes.size();
+            answers_.pop_front();
+        }
+    }
+    std::mutex mutex_;
+    std::size_t room_ = 0;
+    std::deque<Answer> answers_;
+};
+
+/// Of the whole program, as the processes are.
+RememberedAnswers& remembered_answers() {
+    static RememberedAnswers answers;
+    return answers;
 }
 
 /// Waits for the next message, and looks after cancellation and the limit meanwhile.
@@ -238,6 +287,7 @@ Result<std::filesystem::path> mesher_program() {
 
 Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
                                Progress& progress) {
+    if (auto known = remembered_answers().find(kind, request)) return std::move(*known);
     const MesherLimits limits = mesher_limits();
     std::unique_ptr<Worker> worker = idle_workers().take();
     if (worker == nullptr || !worker->pipe().send(kind, request)) {  // an idle one may have been killed
@@ -260,8 +310,13 @@ Result<std::string> ask_mesher(MessageKind kind, const std::string& request, con
             return failure("pliant-mesh answered with something that cannot be read");
         idle_workers().give_back(std::move(worker));
         if (message->kind == MessageKind::error) return tl::unexpected(unpack_error(message->bytes));
+        remembered_answers().keep(kind, request, message->bytes);
         return std::move(message->bytes);
     }
+}
+
+void remember_answers(std::size_t bytes) {
+    remembered_answers().set_room(bytes);
 }
 
 }  // namespace pliant::mesh

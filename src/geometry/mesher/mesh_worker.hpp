@@ -3,6 +3,7 @@
 // pliant-mesh alone.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -31,5 +32,10 @@ struct MesherLimits {
 /// longer than the limit; cancellation, which ends the process.
 [[nodiscard]] Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
                                              Progress& progress);
+
+/// From now on the last answers are kept, of up to so many bytes with their requests, and a request that comes again
+/// gets its answer without the mesher: for a process that builds the same bodies again and again. 0: none, as in the
+/// beginning. A STEP file is read anew each time, but a mesh made from it is not.
+void remember_answers(std::size_t bytes);
 
 }  // namespace pliant::mesh

@@ -163,3 +163,28 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(std::filesystem::equivalent(found, folder / "usr/libexec/pliant/pliant-mesh"));
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
+
+TEST_CASE("answers that are remembered need no mesher, are the same, and go when there is no room") {
+    Progress silent;
+    const Result<TetMesh> first = mesh_cube(5, silent);
+    REQUIRE(first);
+    remember_answers(std::size_t{1} << 20);
+    REQUIRE(mesh_cube(5, silent));
+    {
+        const Variable nowhere("PLIANT_MESH", "/nowhere");
+        kill_all();
+        const Result<TetMesh> known = mesh_cube(5, silent);
+        REQUIRE_MESSAGE(known, (known ? "" : known.error().message));
+        CHECK(known->points == first->points);
+        CHECK(known->nodes == first->nodes);
+        CHECK_FALSE(mesh_cube(4, silent));  // another request
+        remember_answers(0);
+        CHECK_FALSE(mesh_cube(5, silent));
+    }
+    remember_answers(1000);  // too little for any mesh
+    REQUIRE(mesh_cube(5, silent));
+    const Variable nowhere("PLIANT_MESH", "/nowhere");
+    kill_all();
+    CHECK_FALSE(mesh_cube(5, silent));
+    remember_answers(0);
+}

@@ -1,0 +1,16 @@
+// Arrays as numpy reads them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pliant::study {
+
+/// A .npy file, version 1.0 of its format (NumPy Enhancement Proposal 1): one dimension of numbers, truths or texts.
+/// Texts are UTF-8; what is not is replaced.
+[[nodiscard]] std::string npy_numbers(std::span<const double> numbers);
+[[nodiscard]] std::string npy_truths(const std::vector<bool>& truths);
+[[nodiscard]] std::string npy_texts(std::span<const std::string> texts);
+
+}  // namespace pliant::study

@@ -1,0 +1,223 @@
+#include "loop/study/run.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <set>
+
+#include "base/core/stopwatch.hpp"
+#include "loop/study/folder.hpp"
+#include "loop/study/record.hpp"
+
+namespace pliant::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// A chunk that this process holds.
+struct OpenChunk {
+    RecordFile file;
+    std::deque<std::size_t> waiting;
+    std::size_t running = 0;
+    TaskRecord account;
+    Clock::time_point begun = Clock::now();
+    Clock::time_point synced = Clock::now();
+};
+
+/// Hands out the rows of one chunk after the other, and writes down what becomes of them.
+class Rows {
+public:
+    Rows(const Plan& plan, const fs::path& folder, const RunSettings& settings, Progress& progress)
+        : plan_(plan), folder_(folder), settings_(settings), progress_(progress) {}
+
+    Result<RunAccount> run() {
+        Stopwatch watch;
+        Follower follower(plan_, folder_);
+        if (Status status = look(follower); !status) return tl::unexpected(status.error());
+        to_visit_.assign(settings_.chunks.begin(), settings_.chunks.end());
+        for (;;) {
+            const auto cpu = run_pool(pool_options(), calls(), progress_);
+            if (!cpu) return tl::unexpected(cpu.error());
+            account_.workers_cpu_s += *cpu;
+            if (held_by_others_.empty() || !settings_.wait_for_others) break;
+            if (Status status = wait(follower); !status) return tl::unexpected(status.error());
+        }
+        account_.wall_s = watch.read_s();
+        return account_;
+    }
+
+private:
+    [[nodiscard]] PoolOptions pool_options() const {
+        PoolOptions options{settings_.worker, {}, plan_.folder, settings_.jobs, plan_.row_limit_s};
+        for (const Wanted& wanted : plan_.results) options.paths.push_back(wanted.path);
+        return options;
+    }
+
+    PoolCalls calls() {
+        return {[this] { return next(); }, [this](std::size_t row) { return begun(row); },
+                [this](const RowRecord& record) { return ended(record); },
+                [this](std::size_t row) { return open_.at(plan_.chunk_of(row)).file.append(given_up_line(row)); },
+                [this] { show(); }};
+    }
+
+    void show() {
+        const auto rows = static_cast<double>(plan_.rows.size());
+        progress_.advance("study", std::min(1.0, static_cast<double>(recorded_) / rows));
+    }
+
+    Status look(Follower& follower) {
+        const auto count = follower.look();
+        if (!count) return tl::unexpected(count.error());
+        recorded_ = count->recorded;
+        any_done_ = any_done_ || count->done > 0;
+        const auto open = follower.open_chunks();
+        with_open_rows_ = std::set(open.begin(), open.end());
+        return {};
+    }
+
+    /// Others are at work on what is left: until one of them has died or all is there.
+    Status wait(Follower& follower) {
+        constexpr auto pause_us = 200'000;
+        for (;;) {
+            if (progress_.cancelled()) return cancelled();
+            ::usleep(pause_us);
+            if (Status status = look(follower); !status) return status;
+            show();
+            to_visit_.clear();
+            for (const std::size_t chunk : std::exchange(held_by_others_, {})) {
+                if (with_open_rows_.contains(chunk)) to_visit_.push_back(chunk);
+            }
+            return {};
+        }
+    }
+
+    Result<std::optional<RowOrder>> next() {
+        for (;;) {
+            for (auto& [chunk, open] : open_) {
+                if (open.waiting.empty()) continue;
+                const std::size_t row = open.waiting.front();
+                open.waiting.pop_front();
+                ++open.running;
+                const fs::path row_folder = fs::absolute(folder_) / "rows" / fmt::format("{:06}", row);
+                return std::optional(RowOrder{row, row_words(plan_, row, row_folder),
+                                              wants_row_folder(plan_) ? row_folder.string() : ""});
+            }
+            if (to_visit_.empty()) return std::optional<RowOrder>{};
+            const std::size_t chunk = to_visit_.front();
+            to_visit_.pop_front();
+            if (!with_open_rows_.contains(chunk)) continue;
+            if (Status status = visit(chunk); !status) return tl::unexpected(status.error());
+        }
+    }
+
+    Status visit(std::size_t chunk) {
+        auto claimed = RecordFile::claim(plan_, folder_, chunk);
+        if (!claimed) return tl::unexpected(claimed.error());
+        if (!*claimed) {
+            held_by_others_.push_back(chunk);
+            return {};
+        }
+        OpenChunk open{std::move(**claimed), {}, 0, {settings_.place}};
+        std::set<std::size_t> known;
+        for (const RowRecord& row : open.file.records().rows) known.insert(row.row);
+        for (std::size_t row = plan_.chunk_begin(chunk); row < plan_.chunk_end(chunk); ++row) {
+            if (known.contains(row)) continue;
+            if (ends_tasks(open.file.records().begun, row)) {
+                if (Status status = give_up_for_good(open, row); !status) return status;
+            } else {
+                open.waiting.push_back(row);
+            }
+        }
+        if (!open.waiting.empty()) open_.emplace(chunk, std::move(open));
+        return {};
+    }
+
+    [[nodiscard]] bool ends_tasks(const std::vector<std::size_t>& begun, std::size_t row) const {
+        return settings_.most_begun > 0 && std::count(begun.begin(), begun.end(), row) >= settings_.most_begun;
+    }
+
+    Status give_up_for_good(OpenChunk& open, std::size_t row) {
+        RowRecord record{
+            row,
+            false,
+            false,
+            fmt::format("{} tasks ended while it ran; was there too little memory or time?", settings_.most_begun),
+            {}};
+        record.values.assign(plan_.results.size(), std::nan(""));
+        ++recorded_;
+        return open.file.append(record_line(record));
+    }
+
+    Status begun(std::size_t row) { return open_.at(plan_.chunk_of(row)).file.append(begun_line(row)); }
+
+    Status ended(const RowRecord& record) {
+        if (record.missing_path && !any_done_ && settings_.stop_at_missing_path) return no_such_result(record);
+        any_done_ = any_done_ || record.done;
+        const std::size_t chunk = plan_.chunk_of(record.row);
+        OpenChunk& open = open_.at(chunk);
+        if (Status status = open.file.append(record_line(record)); !status) return status;
+        ++recorded_;
+        ++account_.rows;
+        account_.rows_cpu_s += record.cpu_s;
+        open.account.rows_cpu_s += record.cpu_s;
+        --open.running;
+        if (open.waiting.empty() && open.running == 0) return close(chunk);
+        constexpr auto sync_every = std::chrono::seconds(2);
+        if (Clock::now() - open.synced < sync_every) return {};
+        open.synced = Clock::now();
+        return open.file.sync();
+    }
+
+    Status close(std::size_t chunk) {
+        OpenChunk& open = open_.at(chunk);
+        open.account.wall_s = std::chrono::duration<double>(Clock::now() - open.begun).count();
+        open.account.cpu_s = open.account.rows_cpu_s;
+        Status status = open.file.append(record_line(open.account));
+        if (status) status = open.file.sync();
+        open_.erase(chunk);
+        with_open_rows_.erase(chunk);
+        return status;
+    }
+
+    /// The reason ends with what there is; the study file says where it was asked for.
+    [[nodiscard]] Status no_such_result(const RowRecord& record) const {
+        for (const Wanted& wanted : plan_.results) {
+            const std::string key = "result." + wanted.name;
+            if (!std::isnan(record.values[static_cast<std::size_t>(&wanted - plan_.results.data())])) continue;
+            return tl::unexpected(error_of(Cause::input, {{plan_.study_file, wanted.line, key, record.reason}}));
+        }
+        return input_error("{}: {}", plan_.study_file, record.reason);
+    }
+
+    const Plan& plan_;
+    const fs::path& folder_;
+    const RunSettings& settings_;
+    Progress& progress_;
+    std::deque<std::size_t> to_visit_;
+    std::vector<std::size_t> held_by_others_;
+    std::set<std::size_t> with_open_rows_;
+    std::map<std::size_t, OpenChunk> open_;
+    std::size_t recorded_ = 0;
+    bool any_done_ = false;
+    RunAccount account_;
+};
+
+}  // namespace
+
+Result<RunAccount> run_rows(const Plan& plan, const fs::path& folder, const RunSettings& settings, Progress& progress) {
+    return Rows(plan, folder, settings, progress).run();
+}
+
+std::vector<std::size_t> all_chunks(const Plan& plan, std::size_t share, std::size_t shares) {
+    const std::size_t count = plan.chunk_count();
+    std::vector<std::size_t> chunks(count);
+    for (std::size_t k = 0; k < count; ++k) chunks[k] = (k + share * count / std::max<std::size_t>(shares, 1)) % count;
+    return chunks;
+}
+
+}  // namespace pliant::study

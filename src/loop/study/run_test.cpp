@@ -1,0 +1,250 @@
+#include "loop/study/run.hpp"
+
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <set>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+#include "base/core/test_processes.hpp"
+#include "loop/study/folder.hpp"
+
+using namespace pliant;
+using namespace pliant::study;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// x = 0, 1, ...; the program of test_rows.cpp squares it, or does what `kind` says where x is 3.
+Plan squares(const std::string& kind, int rows = 8) {
+    Plan plan;
+    plan.study = "squares";
+    plan.study_file = "squares.toml";
+    plan.version = "1";
+    plan.fingerprint = "0123456789abcdef";
+    plan.command = {"square", kind};
+    plan.keys = {{"x", "x", "", "", true}};
+    plan.results = {{"square", "square", 7}};
+    for (int x = 0; x < rows; ++x) plan.rows.push_back({std::to_string(x)});
+    plan.rows_per_chunk = 3;
+    return plan;
+}
+
+RunSettings settings(const Plan& plan, int jobs = 2) {
+    return {{PLIANT_TEST_ROWS, {}}, jobs, all_chunks(plan)};
+}
+
+Result<RunAccount> run(const Plan& plan, const fs::path& folder, const RunSettings& how) {
+    Progress silent;
+    return run_rows(plan, folder, how, silent);
+}
+
+Collected collected(const Plan& plan, const fs::path& folder) {
+    auto found = collect(plan, folder);
+    REQUIRE_MESSAGE(found, (found ? "" : found.error().message));
+    return *found;
+}
+
+/// All rows but `except` are there with their squares, none twice.
+void check_squares(const Plan& plan, const Collected& found, std::size_t except = 1000000) {
+    CHECK(found.doubled == 0);
+    CHECK(found.damaged == 0);
+    CHECK(found.recorded() == plan.rows.size());
+    for (std::size_t row = 0; row < plan.rows.size(); ++row) {
+        REQUIRE(found.rows[row]);
+        CHECK(found.rows[row]->done == (row != except));
+        if (row != except) CHECK(found.rows[row]->values == std::vector{static_cast<double>(row * row)});
+    }
+}
+
+/// Runs a study in which row 3 goes wrong, and gives the reason that is kept.
+std::string reason_of_row_3(Plan plan) {
+    const test::Folder folder("study");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    const auto account = run(plan, folder / "s", settings(plan));
+    REQUIRE_MESSAGE(account, (account ? "" : account.error().message));
+    const Collected found = collected(plan, folder / "s");
+    check_squares(plan, found, 3);
+    return found.rows[3]->reason;
+}
+
+class StopAfter final : public Progress {
+public:
+    explicit StopAfter(double share) : share_(share) {}
+    void advance(std::string_view, double fraction) override { reached_ = reached_ || fraction >= share_; }
+    [[nodiscard]] bool cancelled() const override { return reached_; }
+
+private:
+    double share_;
+    bool reached_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("rows run in parallel, each once, many in a process") {
+    const test::Folder folder("study");
+    const Plan plan = squares("plain", 40);
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    const auto account = run(plan, folder / "s", settings(plan, 3));
+    REQUIRE(account);
+    CHECK(account->rows == 40);
+    const Collected found = collected(plan, folder / "s");
+    check_squares(plan, found);
+    CHECK(found.tasks.size() == plan.chunk_count());
+    const auto again = run(plan, folder / "s", settings(plan));
+    REQUIRE(again);
+    CHECK(again->rows == 0);
+}
+
+TEST_CASE("what goes wrong in a row is the failure of that row, with its reason") {
+    CHECK(reason_of_row_3(squares("fail")) == "finger.toml: step 4: no equilibrium");
+    CHECK(reason_of_row_3(squares("silent")) == "the command printed no JSON");
+    CHECK(reason_of_row_3(squares("crash")) == "crashed (signal 11: Segmentation fault)");
+    CHECK(reason_of_row_3(squares("end")) == "crashed (exit status 7)");
+    CHECK(reason_of_row_3(squares("killed")) == "was killed 3 times (signal 9: Killed); was there too little memory?");
+}
+
+TEST_CASE("a row that takes too long is ended") {
+    Plan plan = squares("hang");
+    plan.row_limit_s = 0.5;
+    CHECK(reason_of_row_3(plan) == "took longer than 0.5 s");
+}
+
+TEST_CASE("a result that is not there stops a study at its first row, and says what is") {
+    const test::Folder folder("study");
+    Plan plan = squares("plain");
+    plan.results[0].path = "sqare";
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    const auto account = run(plan, folder / "s", settings(plan));
+    REQUIRE_FALSE(account);
+    CHECK(account.error().cause == Cause::input);
+    CHECK(account.error().message ==
+          "squares.toml:7: result.square: the result has no \"sqare\"; did you mean \"square\"?: there is pid and "
+          "square");
+    CHECK(collected(plan, folder / "s").recorded() == 0);
+}
+
+TEST_CASE("a program that does not serve is an error, not a wait") {
+    const test::Folder folder("study");
+    const Plan plan = squares("plain");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    RunSettings how = settings(plan);
+    how.worker.program = "/bin/false";
+    const auto account = run(plan, folder / "s", how);
+    REQUIRE_FALSE(account);
+    CHECK(account.error().message == "/bin/false: ends before it runs a row (exit status 1)");
+}
+
+TEST_CASE("cancelled in the middle, it goes on where it was, and no processes are left") {
+    const test::Folder folder("study");
+    const Plan plan = squares("slow", 60);
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    StopAfter stop(0.3);
+    const auto first = run_rows(plan, folder / "s", settings(plan), stop);
+    REQUIRE_FALSE(first);
+    CHECK(first.error().cause == Cause::cancelled);
+    CHECK(test::children_of(::getpid(), "pliant_test_row").empty());
+    const Collected part = collected(plan, folder / "s");
+    CHECK(part.recorded() >= 18);
+    CHECK(part.recorded() < 60);
+    CHECK_FALSE(open_folder(plan, folder / "s", Begin::fresh));
+    REQUIRE(open_folder(plan, folder / "s", Begin::resume));
+    const auto second = run(plan, folder / "s", settings(plan));
+    REQUIRE(second);
+    CHECK(second->rows == 60 - part.recorded());
+    check_squares(plan, collected(plan, folder / "s"));
+}
+
+TEST_CASE("killed at any moment, again and again, no row is lost or doubled") {
+    const test::Folder folder("study");
+    const Plan plan = squares("slow", 120);
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    int kills = 0;
+    for (int turn = 0; turn < 40; ++turn) {
+        const pid_t leader = ::fork();
+        REQUIRE(leader >= 0);
+        if (leader == 0) {
+            Progress silent;
+            ::_exit(run_rows(plan, folder / "s", settings(plan), silent) ? 0 : 1);
+        }
+        ::usleep(static_cast<useconds_t>(40000 + 7919 * turn % 90000));
+        ::kill(leader, SIGKILL);
+        int status = 0;
+        ::waitpid(leader, &status, 0);
+        if (WIFEXITED(status)) break;
+        ++kills;
+    }
+    CHECK(kills > 3);
+    REQUIRE(run(plan, folder / "s", settings(plan)));
+    check_squares(plan, collected(plan, folder / "s"));
+}
+
+TEST_CASE("several processes share the chunks of one folder") {
+    const test::Folder folder("study");
+    const Plan plan = squares("slow", 60);
+    std::vector<pid_t> ranks;
+    for (std::size_t rank = 0; rank < 3; ++rank) {
+        const pid_t process = ::fork();
+        REQUIRE(process >= 0);
+        if (process == 0) {
+            const auto there = open_folder(plan, folder / "s", Begin::resume);
+            RunSettings how = settings(plan, 1);
+            how.chunks = all_chunks(plan, rank, 3);
+            ::_exit(there && run(*there, folder / "s", how) ? 0 : 1);
+        }
+        ranks.push_back(process);
+    }
+    ::usleep(150000);
+    ::kill(ranks[1], SIGKILL);  // the others take what it leaves
+    for (const pid_t rank : ranks) {
+        int status = 0;
+        ::waitpid(rank, &status, 0);
+        if (rank != ranks[1]) CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    }
+    check_squares(plan, collected(plan, folder / "s"));
+}
+
+TEST_CASE("a row that ends its whole task several times is kept as failed") {
+    const test::Folder folder("study");
+    const Plan plan = squares("plain");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    {
+        auto file = RecordFile::claim(plan, folder / "s", 1);
+        REQUIRE((file && *file));
+        for (int k = 0; k < 4; ++k) REQUIRE((*file)->append(begun_line(3)));
+        for (int k = 0; k < 3; ++k) REQUIRE((*file)->append(begun_line(4)));
+    }
+    RunSettings how = settings(plan);
+    how.most_begun = 4;
+    REQUIRE(run(plan, folder / "s", how));
+    const Collected found = collected(plan, folder / "s");
+    check_squares(plan, found, 3);
+    CHECK(found.rows[3]->reason == "4 tasks ended while it ran; was there too little memory or time?");
+}
+
+TEST_CASE("a folder with another study, or with something else, is left alone") {
+    const test::Folder folder("study");
+    Plan plan = squares("plain");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    plan.fingerprint = "ffffffffffffffff";
+    const auto other = open_folder(plan, folder / "s", Begin::resume);
+    REQUIRE_FALSE(other);
+    CHECK(other.error().message.ends_with(
+        "s: holds another study, or this one before its files were changed; choose another folder with -o"));
+    plan.version = "2";
+    const auto newer = open_folder(plan, folder / "s", Begin::resume);
+    REQUIRE_FALSE(newer);
+    CHECK(newer.error().message.find("was begun with pliant 1, and this is 2") != std::string::npos);
+    REQUIRE(write_file(folder / "notes.txt", "mine"));
+    CHECK_FALSE(open_folder(plan, folder.path(), Begin::fresh));
+    // Nothing has been run: the study that stood there was a slip.
+    CHECK(open_folder(plan, folder / "s", Begin::fresh));
+    CHECK(load_plan(folder / "s")->version == "2");
+    const auto leader = lead(folder / "s");
+    REQUIRE(leader);
+    CHECK_FALSE(lead(folder / "s"));
+}

@@ -1,0 +1,235 @@
+#include "loop/study/slurm.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "base/core/digest.hpp"
+#include "base/core/files.hpp"
+#include "base/core/letters.hpp"
+#include "loop/study/folder.hpp"
+#include "loop/study/tool.hpp"
+
+namespace pliant::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double patience_s = 120;  // of one call; Slurm's own limits are shorter
+
+std::string in_quotes(const std::string& text) {
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
+}
+
+/// The last line that a task of these chunks said.
+std::string last_words(const fs::path& folder, const std::vector<std::size_t>& chunks) {
+    for (const std::size_t chunk : chunks) {
+        const auto text = read_file(folder / "slurm" / fmt::format("{}.out", chunk), std::uintmax_t{16} << 20);
+        if (!text) continue;
+        std::string_view rest = trimmed(*text);
+        if (rest.empty()) continue;
+        const std::size_t line = rest.rfind('\n');
+        return std::string(line == std::string_view::npos ? rest : rest.substr(line + 1));
+    }
+    return "nothing";
+}
+
+enum class Jobs { some, none, unknown };
+
+class Slurm {
+public:
+    Slurm(const Plan& plan, const fs::path& folder, const SlurmSettings& settings, Progress& progress)
+        : plan_(plan),
+          folder_(fs::absolute(folder)),
+          settings_(settings),
+          progress_(progress),
+          follower_(plan, folder_) {}
+
+    Result<SlurmAccount> run() {
+        if (Status status = write_script(); !status) return tl::unexpected(status.error());
+        for (;;) {
+            if (Status status = look(); !status) return tl::unexpected(status.error());
+            if (complete()) return account_;
+            if (progress_.cancelled()) return cancel();
+            const Result<Jobs> jobs = ask();
+            if (progress_.cancelled()) return cancel();
+            if (!jobs) return tl::unexpected(jobs.error());
+            if (*jobs == Jobs::none) {
+                // Rows may have been recorded since: a task that has left the queue has written all that it will.
+                Status status = look();
+                if (status && !complete()) status = submit();
+                if (!status) return give_up(std::move(status));
+            }
+            if (Status status = wait(); !status) return give_up(std::move(status));
+        }
+    }
+
+private:
+    [[nodiscard]] bool complete() const { return count_.recorded == plan_.rows.size(); }
+
+    Status write_script() {
+        std::error_code error;
+        fs::create_directories(folder_ / "slurm", error);
+        return write_file(folder_ / "slurm" / "task.sh", task_script(settings_.program, folder_));
+    }
+
+    Status look() {
+        auto count = follower_.look();
+        if (!count) return tl::unexpected(count.error());
+        count_ = std::move(*count);
+        progress_.advance("study", static_cast<double>(count_.recorded) / static_cast<double>(plan_.rows.size()));
+        if (count_.missing_path > 0 && count_.done == 0)
+            return input_error("{}: {}", plan_.study_file, count_.missing_reason);
+        return {};
+    }
+
+    /// Errors: Slurm is not here, or has not answered since this began.
+    Result<Jobs> ask() {
+        const auto answer = run_tool("squeue", {"--noheader", "--format=%i", "--name=" + job_name(plan_, folder_)},
+                                     patience_s, progress_);
+        if (answer && answer->status == 0) {
+            answered_ = true;
+            return trimmed(answer->output).empty() ? Jobs::none : Jobs::some;
+        }
+        if (answered_) return Jobs::unknown;
+        if (!answer) return tl::unexpected(answer.error());
+        constexpr auto first_patience = std::chrono::minutes(5);
+        if (!passes_later(answer->errors) || Clock::now() - begun_ > first_patience)
+            return failure("Slurm does not answer: {}", trimmed(answer->errors));
+        progress_.advance("waiting for Slurm", 0);
+        return Jobs::unknown;
+    }
+
+    Status submit() {
+        constexpr int most_idle = 6;
+        idle_ = account_.submissions > 0 && count_.recorded == recorded_at_submission_ ? idle_ + 1 : 0;
+        const auto chunks = follower_.open_chunks();
+        if (idle_ >= most_idle)
+            return failure("{} tasks in turn ended without a row; the last words of one: {}", most_idle,
+                           last_words(folder_, chunks));
+        recorded_at_submission_ = count_.recorded;
+        const auto answer =
+            run_tool("sbatch", sbatch_words(plan_, folder_, chunks, settings_.most_tasks), patience_s, progress_);
+        if (!answer) return {};  // it took too long: squeue will tell, as below
+        if (answer->status != 0 && passes_later(answer->errors)) return {};  // whether it was taken, squeue will tell
+        if (answer->status != 0) return failure("sbatch refuses the study: {}", trimmed(answer->errors));
+        ++account_.submissions;
+        account_.tasks += chunks.size();
+        pause_s_ = 1;
+        return {};
+    }
+
+    /// Until Slurm is asked again; all rows may be there before.
+    Status wait() {
+        const auto until =
+            Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause_s_));
+        pause_s_ = std::min(pause_s_ * 1.5, settings_.look_every_s);
+        while (Clock::now() < until && !progress_.cancelled() && !complete()) {
+            constexpr auto breath_us = 100'000;
+            for (int k = 0; k < 10 && Clock::now() < until && !progress_.cancelled(); ++k) ::usleep(breath_us);
+            if (Status status = look(); !status) return status;
+        }
+        return {};
+    }
+
+    void end_jobs() {
+        const Progress patient;  // also after Ctrl-C
+        (void)run_tool("scancel", {"--quiet", "--name=" + job_name(plan_, folder_)}, patience_s, patient);
+    }
+    Result<SlurmAccount> cancel() {
+        end_jobs();
+        return cancelled();
+    }
+    Result<SlurmAccount> give_up(Status status) {
+        end_jobs();
+        return tl::unexpected(status.error());
+    }
+
+    const Plan& plan_;
+    fs::path folder_;
+    const SlurmSettings& settings_;
+    Progress& progress_;
+    Follower follower_;
+    Follower::Count count_;
+    SlurmAccount account_;
+    std::size_t recorded_at_submission_ = 0;
+    int idle_ = 0;
+    bool answered_ = false;  ///< Slurm is there: where it does not answer, it will again
+    Clock::time_point begun_ = Clock::now();
+    double pause_s_ = 1;
+};
+
+}  // namespace
+
+std::string job_name(const Plan& plan, const fs::path& folder) {
+    Digest digest;
+    const std::string path = fs::absolute(folder).lexically_normal().string();
+    digest.add(path.data(), path.size());
+    return fmt::format("pliant-{}-{}", plan.fingerprint.substr(0, 8), digest.text().substr(0, 8));
+}
+
+std::string array_text(std::span<const std::size_t> chunks) {
+    std::string text;
+    for (std::size_t k = 0; k < chunks.size();) {
+        std::size_t last = k;
+        while (last + 1 < chunks.size() && chunks[last + 1] == chunks[last] + 1) ++last;
+        text += text.empty() ? "" : ",";
+        text += last == k ? fmt::format("{}", chunks[k]) : fmt::format("{}-{}", chunks[k], chunks[last]);
+        k = last + 1;
+    }
+    return text;
+}
+
+std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, std::span<const std::size_t> chunks,
+                                      int most_tasks) {
+    const SlurmOptions& slurm = plan.slurm;
+    std::vector<std::string> words{
+        "--job-name=" + job_name(plan, folder),
+        "--array=" + array_text(chunks) + (most_tasks > 0 ? fmt::format("%{}", most_tasks) : ""),
+        "--nodes=1",
+        "--ntasks=1",
+        fmt::format("--cpus-per-task={}", slurm.cpus_per_task),
+        "--no-requeue",  // what is missing is submitted anew
+        "--chdir=" + folder.string(),
+        "--output=" + (folder / "slurm" / "%a.out").string(),
+    };
+    const auto add = [&words](const std::string& option, const std::string& value) {
+        if (!value.empty()) words.push_back(option + value);
+    };
+    add("--partition=", slurm.partition);
+    add("--account=", slurm.account);
+    add("--time=", slurm.time);
+    add("--mem=", slurm.memory);
+    words.insert(words.end(), slurm.options.begin(), slurm.options.end());
+    words.push_back((folder / "slurm" / "task.sh").string());
+    return words;
+}
+
+std::string task_script(const fs::path& program, const fs::path& folder) {
+    return fmt::format(
+        "#!/bin/sh\n"
+        "# One task of the study in this folder: the rows of one chunk that have no record yet.\n"
+        "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet\n",
+        in_quotes(program.string()), in_quotes(folder.string()));
+}
+
+bool passes_later(std::string_view errors) {
+    constexpr std::array<std::string_view, 7> signs{
+        "contact slurm controller", "Socket timed out", "Connection refused",
+        "connect failure",          "Zero Bytes",       "temporarily",
+        "Communication connection"};
+    return std::any_of(signs.begin(), signs.end(),
+                       [errors](std::string_view sign) { return errors.find(sign) != std::string_view::npos; });
+}
+
+Result<SlurmAccount> run_on_slurm(const Plan& plan, const fs::path& folder, const SlurmSettings& settings,
+                                  Progress& progress) {
+    return Slurm(plan, folder, settings, progress).run();
+}
+
+}  // namespace pliant::study

@@ -1,0 +1,54 @@
+#include "loop/study/slurm.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace pliant::study;
+
+TEST_CASE("chunks as an array") {
+    CHECK(array_text(std::vector<std::size_t>{0}) == "0");
+    CHECK(array_text(std::vector<std::size_t>{0, 1, 2, 3}) == "0-3");
+    CHECK(array_text(std::vector<std::size_t>{0, 2, 3, 7, 9, 10, 11}) == "0,2-3,7,9-11");
+}
+
+TEST_CASE("what sbatch is told") {
+    Plan plan;
+    plan.fingerprint = "0123456789abcdef";
+    plan.slurm = {"short", "soft", "00:10:00", "2G", 4, {"--qos=low"}};
+    const auto words = sbatch_words(plan, "/scratch/a study", std::vector<std::size_t>{1, 2}, 8);
+    const std::vector<std::string> expected{"--job-name=" + job_name(plan, "/scratch/a study"),
+                                            "--array=1-2%8",
+                                            "--nodes=1",
+                                            "--ntasks=1",
+                                            "--cpus-per-task=4",
+                                            "--no-requeue",
+                                            "--chdir=/scratch/a study",
+                                            "--output=/scratch/a study/slurm/%a.out",
+                                            "--partition=short",
+                                            "--account=soft",
+                                            "--time=00:10:00",
+                                            "--mem=2G",
+                                            "--qos=low",
+                                            "/scratch/a study/slurm/task.sh"};
+    CHECK(words == expected);
+}
+
+TEST_CASE("a study in another folder, and another study, have jobs of another name") {
+    Plan plan, other;
+    plan.fingerprint = "0123456789abcdef";
+    other.fingerprint = "fedcba9876543210";
+    CHECK(job_name(plan, "/a") == job_name(plan, "/b/../a"));
+    CHECK(job_name(plan, "/a") != job_name(plan, "/b"));
+    CHECK(job_name(plan, "/a") != job_name(other, "/a"));
+}
+
+TEST_CASE("the script of a task takes folders with blanks and quotes") {
+    CHECK(task_script("/opt/pliant", "/scratch/it's here")
+              .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk") != std::string::npos);
+}
+
+TEST_CASE("a controller that is away is waited for, a refusal is not") {
+    CHECK(passes_later(
+        "sbatch: error: Batch job submission failed: Unable to contact slurm controller (connect failure)"));
+    CHECK(passes_later("sbatch: error: Batch job submission failed: Socket timed out on send/recv operation"));
+    CHECK_FALSE(passes_later("sbatch: error: Batch job submission failed: Invalid partition name specified"));
+}

@@ -1,0 +1,167 @@
+#include "loop/study/study_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::study;
+
+namespace {
+
+const std::vector<std::string> commands{"simulate", "inverse", "slice", "plan"};
+
+Result<Plan> parsed(const std::string& text, const std::filesystem::path& file = "s.toml") {
+    return parse_study(text, file, {commands, "1.0"});
+}
+
+Plan plan_of(const std::string& text) {
+    auto plan = parsed(text);
+    REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
+    return *plan;
+}
+
+std::string mistake(const std::string& text) {
+    const auto plan = parsed(text);
+    return plan ? "" : plan.error().message;
+}
+
+const std::string head = "command = [\"simulate\", \"finger.toml\"]\n";
+const std::string modulus =
+    "key.modulus = { set = \"material.soft.youngs_modulus\", range = [\"5 MPa\", \"20 MPa\"], levels = 4 }\n";
+const std::string pull = "key.pull = { set = \"cable.flexor.target.length_ratio\", values = [0.95, 0.9] }\n";
+const std::string tension = "result.tension = \"cables.flexor.tension_N\"\n";
+
+}  // namespace
+
+TEST_CASE("a grid has every combination, the last key fastest, and says so to the command") {
+    const Plan plan = plan_of(head + "plan = \"grid\"\n" + modulus + pull + tension);
+    CHECK(plan.study == "s");
+    CHECK(plan.rows.size() == 8);
+    CHECK(plan.rows[0] == std::vector<std::string>{"5", "0.95"});
+    CHECK(plan.rows[1] == std::vector<std::string>{"5", "0.9"});
+    CHECK(plan.rows[7] == std::vector<std::string>{"20", "0.9"});
+    CHECK(row_words(plan, 2, "/o") == std::vector<std::string>{"simulate", "finger.toml", "--set",
+                                                               "material.soft.youngs_modulus=10 MPa", "--set",
+                                                               "cable.flexor.target.length_ratio=0.95", "--json"});
+}
+
+TEST_CASE("options and words of the command take values too") {
+    const Plan plan = plan_of(
+        "command = [\"slice\", \"{part}\", \"--printer\", \"tower\", \"-o\", \"{row}/job.zip\"]\nplan = \"grid\"\n"
+        "key.layer = { option = \"--layer\", values = [\"50 um\", \"100 um\"] }\n"
+        "key.part = { values = [\"a.stl\", \"b.stl\"] }\nresult.layers = \"layers\"\n");
+    CHECK(wants_row_folder(plan));
+    CHECK(row_words(plan, 1, "/o/1") == std::vector<std::string>{"slice", "b.stl", "--printer", "tower", "-o",
+                                                                 "/o/1/job.zip", "--layer=50 um", "--json"});
+}
+
+TEST_CASE("samples fill the ranges; a sensitivity has n (k + 2) rows") {
+    const std::string keys = modulus + "key.pull = { set = \"p\", range = [0.8, 0.9] }\n" + tension;
+    for (const std::string design : {"sobol", "latin-hypercube", "sensitivity"}) {
+        const Plan plan = plan_of(head + "plan = \"" + design + "\"\nsamples = 16\nseed = 3\n" + keys);
+        CHECK(plan.rows.size() == (design == "sensitivity" ? 64 : 16));
+        std::set<std::string> different;
+        for (const auto& row : plan.rows) {
+            const double number = std::stod(row[0]);
+            CHECK((number >= 5 && number <= 20));
+            different.insert(row[0]);
+        }
+        CHECK(different.size() >= 16);
+    }
+}
+
+TEST_CASE("a plan comes back from its JSON as it was") {
+    const Plan plan =
+        plan_of(head + "plan = \"sensitivity\"\nsamples = 4\nrow_limit = \"10 min\"\n" + modulus + tension +
+                "[slurm]\npartition = \"short\"\ntime = \"00:10:00\"\noptions = [\"--qos=low\"]\nrows_per_task = 2\n");
+    const auto back = parse_plan(plan_json(plan), "plan.json");
+    REQUIRE(back);
+    CHECK(plan_json(*back) == plan_json(plan));
+    CHECK(back->row_limit_s == 600);
+    CHECK(back->rows_per_chunk == 2);
+    CHECK(back->chunk_count() == 6);
+    CHECK(back->slurm.options == std::vector<std::string>{"--qos=low"});
+    CHECK_FALSE(parse_plan("{}", "plan.json"));
+    CHECK_FALSE(parse_plan(plan_json(plan).substr(0, 300), "plan.json"));
+}
+
+TEST_CASE("chunks: hundreds of rows each, and no more than one array of a cluster") {
+    CHECK(usual_rows_per_chunk(1) == 1);
+    CHECK(usual_rows_per_chunk(64) == 1);
+    CHECK(usual_rows_per_chunk(10000) == 157);
+    CHECK(usual_rows_per_chunk(100000) == 200);
+    CHECK(usual_rows_per_chunk(1000000) == 1000);
+}
+
+TEST_CASE("a table of rows: columns are keys of the robot file, or of the study by name") {
+    const test::Folder folder("study");
+    const auto file = folder / "s.toml";
+    const std::string text = head + "plan = \"table\"\ntable = \"designs.csv\"\n" + tension;
+    REQUIRE(write_file(folder / "designs.csv", "material.soft.youngs_modulus (MPa),mesh.order\n5,1\n20,2\n"));
+    const auto plan = parsed(text, file);
+    REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
+    CHECK(row_words(*plan, 1, "") == std::vector<std::string>{"simulate", "finger.toml", "--set",
+                                                              "material.soft.youngs_modulus=20 MPa", "--set",
+                                                              "mesh.order=2", "--json"});
+    const auto named = parsed(text + "key.modulus = { set = \"material.soft.youngs_modulus\" }\n", file);
+    REQUIRE_FALSE(named);
+    CHECK(named.error().message.ends_with("designs.csv:1: has no column \"modulus\", which is a key of the study"));
+    REQUIRE(write_file(folder / "designs.csv", "a,b\n1,2\n3,\n"));
+    const auto hole = parsed(text, file);
+    REQUIRE_FALSE(hole);
+    CHECK(hole.error().message.ends_with("designs.csv:3: has no value of \"b\"; every row needs one for each column"));
+    REQUIRE(write_file(folder / "designs.csv", "a (MPa)\nsoft\n"));
+    const auto word = parsed(text, file);
+    REQUIRE_FALSE(word);
+    CHECK(word.error().message.ends_with("designs.csv:2: \"soft\" is no number, but the column \"a\" has a unit"));
+}
+
+TEST_CASE("mistakes are one line that says where and what would be right") {
+    const std::string rest = "plan = \"grid\"\n" + modulus + tension;
+    CHECK(mistake("comand = [\"simulate\"]\n" + head + rest) ==
+          "s.toml:1: comand: unknown key; did you mean \"command\"?");
+    CHECK(mistake("command = [\"simualte\"]\n" + rest) ==
+          "s.toml:1: command: a study cannot run \"simualte\", did you mean \"simulate\"?; it runs simulate, inverse, "
+          "slice and plan");
+    CHECK(mistake(head + "plan = \"sobel\"\nsamples = 4\n" + modulus + tension).find("did you mean \"sobol\"?") !=
+          std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\n" + tension).find("nothing varies; write [key.NAME]") != std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\n" + modulus).find("result") != std::string::npos);
+    CHECK(mistake(head + "plan = \"sobol\"\n" + modulus + tension).find("samples") != std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\nkey.a = { set = \"a\", range = [0, 1] }\n" + tension)
+              .find("a grid needs its levels") != std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\nkey.a = { range = [0, 1], levels = 2 }\n" + tension)
+              .find("says nothing to the command") != std::string::npos);
+    CHECK(mistake(head + "plan = \"grid\"\n" + modulus + "result.tension = \"cables..tension_N\"\n")
+              .find("a key is expected at letter 8") != std::string::npos);
+}
+
+TEST_CASE("a grid that is too big is refused before it is made") {
+    std::string text = head + "plan = \"grid\"\n" + tension;
+    for (int k = 0; k < 10; ++k)
+        text += "key.k" + std::to_string(k) + " = { set = \"a\", range = [0, 1], levels = 100 }\n";
+    CHECK(mistake(text) ==
+          "s.toml:2: plan: the grid has over 1000000 rows; take fewer levels, or plan = \"sobol\" with samples");
+}
+
+TEST_CASE("another text, table, robot file or version is another study") {
+    const test::Folder folder("study");
+    const auto file = folder / "s.toml";
+    const std::string text = head + "plan = \"grid\"\n" + modulus + tension;
+    REQUIRE(write_file(folder / "finger.toml", "name = \"a\"\n"));
+    const auto fingerprint = [&](const std::string& study, const std::string& version) {
+        const auto plan = parse_study(study, file, {commands, version});
+        REQUIRE(plan);
+        return plan->fingerprint;
+    };
+    const std::string first = fingerprint(text, "1.0");
+    CHECK(fingerprint(text, "1.0") == first);
+    CHECK(fingerprint(text + "\n", "1.0") != first);
+    CHECK(fingerprint(text, "1.1") != first);
+    REQUIRE(write_file(folder / "finger.toml", "name = \"b\"\n"));
+    CHECK(fingerprint(text, "1.0") != first);
+}

@@ -1,0 +1,184 @@
+#include "loop/study/worker.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/core/file_handle.hpp"
+#include "base/core/stopwatch.hpp"
+#include "loop/study/json_path.hpp"
+#include "loop/study/wire.hpp"
+
+namespace pliant::study {
+namespace {
+
+double seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Processor time of this process and of those that it started and that have ended.
+double cpu_s() {
+    double sum = 0;
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        getrusage(who, &usage);
+        sum += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    }
+    return sum;
+}
+
+/// The last line that says something: errors come last.
+std::string last_line(const std::string& text) {
+    const std::size_t end = text.find_last_not_of(" \r\n");
+    if (end == std::string::npos) return "";
+    const std::size_t before = text.find_last_of("\r\n", end);
+    return text.substr(before == std::string::npos ? 0 : before + 1,
+                       end - (before == std::string::npos ? 0 : before + 1) + 1);
+}
+
+/// The wanted numbers of what a command printed; null where they are not there.
+class Reading {
+public:
+    explicit Reading(const std::vector<JsonPath>& paths) : paths_(paths), values(nlohmann::json::array()) {}
+
+    void read(const std::string& output) {
+        const auto json = nlohmann::json::parse(output, nullptr, false);
+        readable = !json.is_discarded();
+        for (const JsonPath& path : paths_) {
+            const Result<double> number = readable ? path.number_in(json) : Result<double>(0.0);
+            values.push_back(readable && number ? nlohmann::json(*number) : nlohmann::json(nullptr));
+            if (readable && !number && missing.empty()) missing = number.error().message;
+        }
+        if (readable && json.is_object() && json.contains("error") && json["error"].is_string())
+            error = last_line(json["error"].get<std::string>());
+    }
+
+private:
+    const std::vector<JsonPath>& paths_;
+
+public:
+    nlohmann::json values;
+    bool readable = false;
+    std::string missing;  ///< what the first missing path has to say
+    std::string error;    ///< as the command told it
+};
+
+nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<JsonPath>& paths,
+                       const RunCommand& run) {
+    Stopwatch watch;
+    const double cpu_before = cpu_s();
+    const CommandOutcome outcome = run(words);
+    Reading reading(paths);
+    reading.read(outcome.output);
+    std::string reason;
+    bool missing_path = false;
+    if (outcome.exit_status != 0) {
+        reason = !reading.error.empty() ? reading.error : last_line(outcome.errors);
+        if (reason.empty()) reason = "exit status " + std::to_string(outcome.exit_status);
+    } else if (!reading.readable) {
+        reason = "the command printed no JSON";
+    } else if (!reading.missing.empty()) {
+        missing_path = true;
+        reason = reading.missing;
+    }
+    return {{"done", reason.empty()},   {"missing_path", missing_path},
+            {"reason", reason},         {"values", std::move(reading.values)},
+            {"wall_s", watch.read_s()}, {"cpu_s", cpu_s() - cpu_before}};
+}
+
+FileHandle memory_file(const char* name) {
+    return FileHandle(::memfd_create(name, MFD_CLOEXEC));
+}
+
+std::string contents(int file) {
+    std::string text;
+    std::array<char, 65536> piece{};
+    off_t at = 0;
+    for (ssize_t got = 0; (got = ::pread(file, piece.data(), piece.size(), at)) > 0; at += got)
+        text.append(piece.data(), static_cast<std::size_t>(got));
+    return text;
+}
+
+/// Standard output or error, led into a file for a while.
+class Redirected {
+public:
+    Redirected(int standard, int into) : standard_(standard), before_(::fcntl(standard, F_DUPFD_CLOEXEC, 3)) {
+        ::dup2(into, standard_);
+    }
+    Redirected(const Redirected&) = delete;
+    Redirected& operator=(const Redirected&) = delete;
+    ~Redirected() {
+        if (before_.is_open()) ::dup2(before_.number(), standard_);
+    }
+
+private:
+    int standard_;
+    FileHandle before_;
+};
+
+/// The first message: what is wanted of each row, and where they are run.
+bool begin(const nlohmann::json& message, std::vector<JsonPath>& paths) {
+    const auto work_in = message.at("work_in").get<std::string>();
+    if (!work_in.empty() && ::chdir(work_in.c_str()) != 0) return false;
+    for (const auto& text : message.at("paths")) {
+        auto path = JsonPath::parse(text.get<std::string>());
+        if (!path) return false;
+        paths.push_back(std::move(*path));
+    }
+    return true;
+}
+
+/// False: this was no message of a study.
+bool answer(int file, const nlohmann::json& message, std::vector<JsonPath>& paths, const RunCommand& run) {
+    if (message.contains("paths")) return begin(message, paths) && send_message(file, {{"ready", true}});
+    const auto folder = message.at("folder").get<std::string>();
+    std::error_code error;
+    if (!folder.empty()) std::filesystem::create_directories(folder, error);
+    return send_message(file, run_row(message.at("words").get<std::vector<std::string>>(), paths, run));
+}
+
+}  // namespace
+
+CommandOutcome captured(const std::function<int()>& work) {
+    const FileHandle output = memory_file("output"), errors = memory_file("errors");
+    CommandOutcome outcome;
+    std::fflush(stdout);
+    std::fflush(stderr);
+    {
+        const Redirected out(STDOUT_FILENO, output.number());
+        const Redirected err(STDERR_FILENO, errors.number());
+        outcome.exit_status = work();
+        std::fflush(stdout);
+        std::fflush(stderr);
+    }
+    outcome.output = contents(output.number());
+    outcome.errors = contents(errors.number());
+    return outcome;
+}
+
+int serve_rows(int file, const RunCommand& run) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // also in the middle of a row: nobody would take its result
+    Inbox inbox;
+    std::vector<JsonPath> paths;
+    try {
+        while (inbox.read_some(file)) {
+            while (const auto message = inbox.take()) {
+                if (!answer(file, *message, paths, run)) return 1;
+            }
+            if (inbox.failed()) return 1;
+        }
+    } catch (const nlohmann::json::exception&) {
+        return 1;
+    }
+    return 0;
+}
+
+}  // namespace pliant::study
