@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints the figures of docs/reference/python.md: import, calls, batches.
+"""Prints the figures of docs/reference/python.md: import, calls, batches, environments.
 
     PYTHONPATH=build/release/python bench/python.py [BUILD]
 
@@ -22,6 +22,7 @@ import numpy as np  # noqa: E402
 from robots import block  # noqa: E402
 
 import pliant  # noqa: E402
+from pliant.envs import Crawl, Grasp, RobotEnv  # noqa: E402
 
 
 def import_time() -> None:
@@ -130,7 +131,38 @@ def batch_times() -> None:
     )
 
 
+#: s, that SOFA has published for a time step of 7,400 tets
+PUBLISHED_STEP_S = 0.05
+
+
+def environment_rate(env: RobotEnv, steps: int) -> tuple[float, float, float]:
+    """Steps of 20 ms a second, by the clock and of processor time, and how far the middle or the cube has come (m)."""
+    env.reset(seed=1)
+    begin, processor = time.perf_counter(), time.process_time()
+    for k in range(steps):
+        if isinstance(env, Crawl):  # an arch that runs from the tail to the head
+            phase = k % 30
+            action = [1 if phase < 10 else -1, -1 if phase < 10 or phase >= 20 else 1]
+        else:
+            action = [1, 1]
+        *_, terminated, _, info = env.step(action)
+        assert not terminated, info
+    return steps / (time.perf_counter() - begin), steps / (time.process_time() - processor), info.get("way_m", info.get("away_m"))
+
+
+def environment_times() -> None:
+    """A crawler and a gripper with a cube, as the environments have them, and a crawler of some 7,400 tets."""
+    fine = Crawl.make_model(size_mm=2.35)
+    for name, env, steps in (("Crawl", Crawl(), 90), ("Grasp", Grasp(), 55), ("Crawl, fine", Crawl(fine), 60)):
+        wall, processor, way = environment_rate(env, steps)
+        print(
+            f"{name}: {env.model.tet_count} tets, {wall:.1f} steps of 20 ms a second, {processor:.1f} a second of processor; "
+            f"50 ms over the latter is {PUBLISHED_STEP_S * processor:.2f}; {1e3 * way:.1f} mm"
+        )
+
+
 if __name__ == "__main__":
     import_time()
     call_time(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "build" / "release")
     batch_times()
+    environment_times()

@@ -207,12 +207,20 @@ struct Observation {
         std::string name;  ///< as in the robot file
         Point force_N;     ///< on the robot
     };
+    /// A rigid object.
+    struct Object {
+        std::string name;                            ///< as in the robot file
+        Point position_m;                            ///< of its centre of mass
+        std::array<double, 4> rotation{1, 0, 0, 0};  ///< from where it started: unit quaternion w, x, y, z, w >= 0
+        Point force_N;                               ///< pressure and friction of all that touches it
+    };
     std::vector<Cable> cables;      ///< in the order of Model::cables()
     std::vector<Chamber> chambers;  ///< in the order of Model::chambers()
     std::vector<Spring> springs;    ///< in the order of the robot file
     std::vector<Marker> markers;    ///< in the order of Model::markers()
     std::vector<Force> supports;    ///< reactions
     std::vector<Force> contacts;    ///< pressure and friction of obstacles
+    std::vector<Object> objects;    ///< in the order of the robot file
     double self_contact_N = 0;      ///< sum of the sizes of the robot's forces on itself
     /// Smallest distance between surfaces that are near enough to act; infinite where none are.
     double smallest_distance_m = std::numeric_limits<double>::infinity();

@@ -65,11 +65,14 @@ py::dict dict_of(const Observation& seen) {
     const auto spring = [](const O::Spring& s) -> py::object { return py::make_tuple(s.length_m, s.force_N); };
     const auto marker = [](const O::Marker& m) -> py::object { return array_of(m.position_m); };
     const auto force = [](const O::Force& f) -> py::object { return array_of(f.force_N); };
+    const auto object = [](const O::Object& o) -> py::object {
+        return py::make_tuple(array_of(o.position_m), py::array_t<double>(4, o.rotation.data()), array_of(o.force_N));
+    };
     return py::dict(
         "cables"_a = named<O::Cable>(seen.cables, cable), "chambers"_a = named<O::Chamber>(seen.chambers, chamber),
         "springs"_a = named<O::Spring>(seen.springs, spring), "markers"_a = named<O::Marker>(seen.markers, marker),
         "supports"_a = named<O::Force>(seen.supports, force), "contacts"_a = named<O::Force>(seen.contacts, force),
-        "self_contact_N"_a = seen.self_contact_N, "smallest_distance_m"_a = seen.smallest_distance_m,
+        "objects"_a = named<O::Object>(seen.objects, object), "self_contact_N"_a = seen.self_contact_N, "smallest_distance_m"_a = seen.smallest_distance_m,
         "energy_J"_a = seen.energy_J, "kinetic_energy_J"_a = seen.kinetic_energy_J, "min_J"_a = seen.min_J);
 }
 

@@ -27,7 +27,7 @@ from .notebook import Viewer, show
 from .objectives import ProgramGradient, gradient
 from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
 from .program import ProgramResult, ProgramStep
-from .results import Cable, Chamber, Fields, Observation, Spring
+from .results import Cable, Chamber, Fields, Object, Observation, Spring
 from .robot import Mesh, Robot
 from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
 
@@ -37,7 +37,7 @@ __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
     "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
     "InverseResult",
-    "Linearisation", "Measure", "Mesh", "Model", "Observation", "Parameter", "PrintPlan", "ProgramGradient",
+    "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation", "Parameter", "PrintPlan", "ProgramGradient",
     "ProgramResult", "ProgramStep", "Robot", "Spring", "State", "SteeredInput", "StepResult", "Vat", "Viewer", "VirtualPrint",
     "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
     "show", "slice", "workspace",

@@ -39,6 +39,17 @@ class Spring(NamedTuple):
     force_N: float
 
 
+class Object(NamedTuple):
+    """A rigid object of an :class:`Observation`."""
+
+    #: (3,) m, of its centre of mass
+    position_m: Array
+    #: (4,) from where it started: unit quaternion w, x, y, z with w >= 0
+    rotation: Array
+    #: (3,) N, pressure and friction of all that touches it
+    force_N: Array
+
+
 @dataclass(frozen=True)
 class Observation:
     """What can be read off a state, by the names of the robot file."""
@@ -55,6 +66,8 @@ class Observation:
     supports: dict[str, Array]
     #: by name of the obstacle: (3,) pressure and friction on the robot, N
     contacts: dict[str, Array]
+    #: by name
+    objects: dict[str, Object]
     #: N, sum of the sizes of the robot's forces on itself
     self_contact_N: float
     #: m, between surfaces that are near enough to act; infinite where none are
@@ -87,5 +100,6 @@ def observation(seen: dict[str, Any]) -> Observation:
         "cables": {name: Cable(*c) for name, c in seen["cables"].items()},
         "chambers": {name: Chamber(*c) for name, c in seen["chambers"].items()},
         "springs": {name: Spring(*s) for name, s in seen["springs"].items()},
+        "objects": {name: Object(*o) for name, o in seen["objects"].items()},
     }
     return Observation(**{**seen, **named})

@@ -112,9 +112,10 @@ test('the emergency stop is at one place of the window, in every section and ove
   const { page } = await openPage(browser, `${studio.address}#print`, t);
   await takeTwin(page, '300');
   await startPrint(page);
-  await page.waitForSelector('[data-testid=enlarge-light]'); // a print that is paused before its first exposure shows none
+  await page.getByTestId('pause').waitFor();
   await page.getByTestId('pause').click();
   await page.getByTestId('resume').waitFor();
+  await page.waitForSelector('[data-testid=enlarge-light]');
   for (const width of [320, 390, 600, 768, 900, 901, 1100, 1440, 2560]) {
     await page.setViewportSize({ width, height: 720 });
     const places = new Set();

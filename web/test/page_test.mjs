@@ -5,7 +5,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, says, settled, startBrowser, startStudio, unzipped, readRobot, typeRobot } from './studio.mjs';
+import { openPage, program, settled, startBrowser, startStudio, unzipped, readRobot, typeRobot } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 let folder;
@@ -129,7 +129,7 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   assert.ok(value < 0.99, `the slider is at ${value}`);
   await page.mouse.move(x - 10, y - 300);
   await page.waitForFunction((near) => window.pliant.frame.value.head.lead?.settled && window.pliant.frame.value.head.lead.error_mm > near + 5, led.lead.error_mm);
-  await says(page.getByTestId('lead-limits'), /nearest point/);
+  assert.match(await page.getByTestId('lead-limits').textContent(), /nearest point/);
   await page.mouse.up();
   await page.waitForFunction(() => !window.pliant.frame.value.head.lead);
   await settled(page);
@@ -570,7 +570,7 @@ test('a graded body has the colours of both its materials, and says which', asyn
     page.evaluate(async (b) => (await fetch('/api/robot', { method: 'PUT', headers: { 'X-Pliant-Page': window.pliant.page }, body: b })).status, body);
   assert.equal(await put(text.replace(place, 'material = "firm"\nblend = { material = "soft", from = [10, 0, 0], to = [30, 0, 0] }\ngeometry')), 200);
   await page.getByTestId('graded-root').waitFor();
-  await says(page.getByTestId('graded-root'), /root: firm to soft/);
+  assert.match(await page.getByTestId('graded-root').textContent(), /root: firm to soft/);
   const shares = await page.evaluate(() => {
     const s = window.pliant.scene.value;
     const at = (x) => s.f32('share').filter((_, v) => Math.abs(s.f32('rest')[3 * v] - x) < 0.01);

@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, realpathSync, rmSync 
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, says, startBrowser, startStudio } from './studio.mjs';
+import { openPage, program, startBrowser, startStudio } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 const printer = new URL('../../examples/printers/tower.toml', import.meta.url).pathname;
@@ -96,7 +96,7 @@ test('a print at a port survives the end of the studio and is gone on with from 
   await shown(page, () => document.querySelector('[data-testid=print-state]').textContent === 'Printed');
   // What the first studio had exposed is remembered by the journal: the part is whole.
   await shown(page, () => Math.abs(Number(document.querySelector('[data-testid=part]')?.dataset.height) - window.pliant.job.value.manifest.layers.at(-1).z_um / 1000) < 1e-3);
-  await says(page.getByTestId('part'), /12\.00 mm exposed; whether it cured is unknown/);
+  assert.match(await page.getByTestId('part').textContent(), /12\.00 mm exposed; whether it cured is unknown/);
   const journal = readFileSync(join(folder, 'finger.zip.journal'), 'utf8');
   const lights = [...journal.matchAll(/ light step=\d+ layer=(\d+)/g)].map((m) => Number(m[1]));
   const layers = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);

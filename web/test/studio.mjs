@@ -89,18 +89,6 @@ export function unzipped(bytes, name) {
   throw new Error(`${name} is not in the archive`);
 }
 
-/// What an element says, as soon as it is drawn: the page draws a little after its values have changed.
-export async function says(locator, wanted, patience = 10_000) {
-  const fits = (text) => (wanted instanceof RegExp ? wanted.test(text) : text === wanted);
-  const end = Date.now() + patience;
-  let text = await locator.textContent();
-  while (!fits(text) && Date.now() < end) {
-    await new Promise((done) => setTimeout(done, 50));
-    text = await locator.textContent();
-  }
-  if (!fits(text)) throw new Error(`"${text}" instead of ${wanted}`);
-}
-
 /// The robot is there and at equilibrium. How soon depends on who else uses the machine.
 export async function settled(page) {
   await page.waitForSelector('[data-testid=status][data-state=arrived]', { timeout: 90_000 });

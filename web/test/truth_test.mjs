@@ -5,7 +5,7 @@ import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, says, settled, startBrowser, startPrint, startStudio, takeTwin, readRobot, typeRobot } from './studio.mjs';
+import { openPage, program, settled, startBrowser, startPrint, startStudio, takeTwin, readRobot, typeRobot } from './studio.mjs';
 
 const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
 const patience = { timeout: 90_000 };
@@ -246,7 +246,7 @@ test('the program ends at its end, and a change of a material leaves the robot w
   const program = page.locator('.track', { has: page.getByTestId('program') }).locator('output');
   await page.getByTestId('play').click();
   await page.waitForFunction(() => window.pliant.frame.value.head.time > 0.999 && !window.pliant.frame.value.head.playing, null, patience);
-  await says(program, '100 %');
+  assert.equal(await program.textContent(), '100 %');
   await page.getByTestId('program').fill('0.97');
   await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
   const { markers } = await head(page);
@@ -257,14 +257,14 @@ test('the program ends at its end, and a change of a material leaves the robot w
   await modulus.press('Enter');
   await page.waitForFunction((r) => window.pliant.scene.value.head.revision > r, revision, patience);
   await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.time - 0.97) < 1e-9 && window.pliant.frame.value.head.arrived, null, patience);
-  await says(program, '97 %');
+  assert.equal(await program.textContent(), '97 %');
   const after = (await head(page)).markers;
   // Bent by the length of its cable it hardly moves with a modulus that is a thousandth higher.
   after[0].forEach((x, k) => assert.ok(Math.abs(x - markers[0][k]) < 0.5, `${after[0]} was ${markers[0]}`));
   // Another page, and one that is loaded anew, show the same.
   const second = await openPage(browser, other.address, t);
   await settled(second.page);
-  await says(second.page.locator('.track', { has: second.page.getByTestId('program') }).locator('output'), '97 %');
+  assert.equal(await second.page.locator('.track', { has: second.page.getByTestId('program') }).locator('output').textContent(), '97 %');
 });
 
 test('a frame that is here before its scene is not lost', async (t) => {

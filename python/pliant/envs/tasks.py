@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _check
-from ..errors import InputError
 from ..model import Model
 from ..results import Observation
 from ..robot import Robot
@@ -131,116 +130,178 @@ class Follow(_Arm):
         return -away / self.reach_m, False, {"distance_m": away}
 
 
-class Grasp(RobotEnv):
-    """Two fingers close on a ball and hold it with a wanted force. The ball is fixed: free bodies are not simulated yet.
+class _InTime(RobotEnv):
+    """A task whose steps are motion in time."""
 
-    Observation (6,): how far each cable is pulled (2), tension of each in N (2), force on the ball over the wanted one,
-    and that in N. Action (2,): change of the pull of each cable. Reward: minus the relative error of the force along x,
-    at most 1. The wanted force of each finger is random; ``options={"force": N}`` sets it.
+    #: s, of a step
+    step_s: ClassVar[float] = 0.02
+    #: m, of a cable at most
+    most_m: ClassVar[float] = 0.004
+
+    def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
+        lengths = self.model.rest().inputs.values_SI
+        return lengths, lengths - self.most_m, ("length",) * len(lengths)
+
+    def time_after(self, episode: Episode) -> float:
+        return (episode.steps + 1) * self.step_s
+
+
+class Grasp(_InTime):
+    """Two fingers close on a cube that stands on a table, and hold it when the table goes away, in time.
+
+    Nothing but friction carries the cube, a rigid body of 20 mm with mass of its own. The table begins to go down after
+    0.3 s, and is 30 mm lower after 0.9 s.
+
+    Observation (11,): place of the cube from where it stood (3) in cm, its speed (3) in dm/s, how far each cable is
+    pulled (2), tension of each in N (2), time until the table begins to go, at least 0, in s. Action (2,): change of the
+    pull of each cable in 20 ms. Reward: minus how far the cube is from where it stood, in cm, at most 1, and minus a
+    tenth of the pulls' mean square; a cube that has fallen by more than 10 mm ends the episode with -10. The mass of the
+    cube is the model's: ``Grasp(Grasp.make_model(mass_g=20))``. The place from which the fingers begin is random:
+    ``options={"pulled": [0.1, 0.2]}`` sets it.
     """
 
+    max_steps: ClassVar[int] = 60
+    largest_change: ClassVar[float] = 0.2
+    most_m: ClassVar[float] = 0.0025
+    #: s, when the table begins to go
+    table_goes_s: ClassVar[float] = 0.3
+    #: m, that the cube may fall
+    fallen_m: ClassVar[float] = 0.01
+
     @classmethod
-    def make_model(cls) -> Model:
-        finger = {"box": [[11, -5, -50], [17, 5, 0]]}
-        cable = [[12, 0, 1], [12, 0, -12], [12, 0, -24], [12, 0, -36], [12, 0, -47]]
+    def make_model(cls, mass_g: float = 8.0) -> Model:
+        finger = {"difference": [{"box": [[12, -5, -34], [18, 5, 0]]}, {"box": [[15.5, -6, -10], [19, 6, -4]]}]}
+        cable = [[13, 0, 1], [13, 0, -5], [13, 0, -10], [13, 0, -18], [13, 0, -30]]
         mirror = [[-x, y, z] for x, y, z in cable]
         return Model(
             Robot(
                 name="gripper",
                 length_unit="mm",
                 material=_SOFT,
-                mesh={"order": 1, "size": "5 mm"},
+                mesh={"order": 1, "size": "4 mm"},
                 body=[
-                    {"name": "palm", "material": "soft", "geometry": {"box": [[-17, -5, 0], [17, 5, 6]]}},
+                    {"name": "palm", "material": "soft", "geometry": {"box": [[-22, -6, 0], [22, 6, 5]]}},
                     {"name": "right", "material": "soft", "geometry": finger},
-                    {"name": "left", "material": "soft", "geometry": {"box": [[-17, -5, -50], [-11, 5, 0]]}},
+                    {"name": "left", "material": "soft", "geometry": {"rotate": 180, "axis": [0, 0, 1], "of": finger}},
                 ],
-                fixed=[{"name": "arm", "plane": {"point": [0, 0, 6], "normal": [0, 0, 1]}}],
-                marker=[{"name": "right", "point": [11, 0, -50]}, {"name": "left", "point": [-11, 0, -50]}],
+                fixed=[{"name": "arm", "plane": {"point": [0, 0, 5], "normal": [0, 0, 1]}}],
+                marker=[{"name": "right", "point": [12, 0, -34]}, {"name": "left", "point": [-12, 0, -34]}],
                 cable=[
-                    {"name": "right", "points": cable, "target": {"shortening": "5 mm"}},
-                    {"name": "left", "points": mirror, "target": {"shortening": "5 mm"}},
+                    {"name": "right", "points": cable, "eyelet_radius": "1.5 mm", "target": {"shortening": "2 mm"}},
+                    {"name": "left", "points": mirror, "eyelet_radius": "1.5 mm", "target": {"shortening": "2 mm"}},
                 ],
                 obstacle=[
                     {
-                        "name": "ball",
-                        "geometry": {"sphere": {"center": [0, 0, -40], "radius": 9}},
+                        "name": "table",
+                        "plane": {"point": [0, 0, -38], "normal": [0, 0, 1]},
                         "friction": 0.5,
+                        "move": [0, 0, -30],
                     }
                 ],
-                contact={"self": False},
+                object=[
+                    {
+                        "name": "cube",
+                        "geometry": {"box": [[-10, -10, -38], [10, 10, -18]]},
+                        "mass": f"{mass_g} g",
+                        "friction": 0.6,
+                    }
+                ],
+                contact={"self": False, "distance": "0.2 mm"},
+                program={
+                    "duration": "1.2 s",
+                    "time_step": "20 ms",
+                    "stiffness_damping": 0.002,
+                    "gravity": [0, 0, -9.81],
+                    "key": [{"time": "0.3 s", "table": 0}, {"time": "0.9 s", "table": 1}],
+                },
             )
         )
 
-    def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
-        lengths = self.model.rest().inputs.values_SI
-        return lengths, lengths - 0.007, ("length", "length")
-
     def observation_size(self) -> int:
-        return 6
+        return 11
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
-        force = _check.number(options.get("force", self._random.uniform(0.1, 0.4)), "force")
-        if not force > 0:
-            raise InputError(f"force is {force}; it must be above 0")
-        episode.task["force"] = force
-
-    def _pressed(self, episode: Episode) -> float:
-        """N, of the two fingers together along x: their sum vanishes, so it is taken from the sides."""
-        forces = self.model.contact_forces(episode.robot)[:, 0]
-        return float(np.abs(forces).sum()) / 2
+        given = options.get("pulled", self._random.uniform(0, 0.2, 2))
+        episode.pulled = np.clip(_check.numbers(given, "pulled", (2,)), 0, 1)
+        stood = np.array(episode.robot.observe().objects["cube"].position_m)
+        episode.task["stood"], episode.task["place"], episode.task["speed"] = stood, stood, np.zeros(3)
 
     def observe(self, episode: Episode, seen: Observation) -> FloatArray:
-        force = episode.task["force"]
+        task = episode.task
         tensions = [cable.tension_N for cable in seen.cables.values()]
-        return _floats(episode.pulled, tensions, self._pressed(episode) / force, force)
+        left_s = max(0.0, self.table_goes_s - episode.steps * self.step_s)
+        return _floats(100 * (task["place"] - task["stood"]), 10 * task["speed"], episode.pulled, tensions, left_s)
 
     def judge(self, episode: Episode, seen: Observation, action: FloatArray) -> tuple[float, bool, dict[str, Any]]:
-        pressed, force = self._pressed(episode), episode.task["force"]
-        return -min(1.0, abs(pressed - force) / force), False, {"force_N": pressed}
+        task = episode.task
+        place = np.array(seen.objects["cube"].position_m)
+        task["speed"], task["place"] = (place - task["place"]) / self.step_s, place
+        away = float(np.linalg.norm(place - task["stood"]))
+        info = {"away_m": away, "force_N": np.array(seen.objects["cube"].force_N)}
+        if place[2] < task["stood"][2] - self.fallen_m:
+            return -10.0, True, {**info, "is_success": False}
+        held = episode.steps >= self.max_steps
+        reward = -min(1.0, 100 * away) - 0.1 * float(np.mean(episode.pulled**2))
+        return reward, False, {**info, "is_success": held}
 
 
-class Crawl(RobotEnv):
+class Crawl(_InTime):
     """A worm with two cables under its back half and its front half crawls over a floor with friction, in time.
 
-    Observation (8,): heights of head, middle and tail over the floor, velocities along x of the same, in cm and dm/s;
+    Nothing holds the worm. It stands on three feet; weights make its ends heavier than its middle.
+
+    Observation (8,): heights of tail, middle and head over the floor, velocities along x of the same, in cm and dm/s;
     how far each cable is pulled (2). Action (2,): change of the pull of each cable in 20 ms. Reward: way of the middle
-    along x in this step, cm. The worm is held in its plane of symmetry alone.
+    along x in this step, cm.
     """
 
     max_steps: ClassVar[int] = 100
-    largest_change: ClassVar[float] = 0.5
-    #: s, of a step
-    step_s: ClassVar[float] = 0.02
+    largest_change: ClassVar[float] = 0.25
 
     @classmethod
-    def make_model(cls) -> Model:
+    def make_model(cls, friction: float = 0.5, size_mm: float = 6.0) -> Model:
+        worm = [
+            {"box": [[0, -6, 2], [90, 6, 8]]},
+            *({"box": [[x, -6, 0], [x + 6, 6, 3]]} for x in (0, 42, 84)),
+        ]
+        eyelet = "2 mm"
         return Model(
             Robot(
                 name="worm",
                 length_unit="mm",
-                material={"soft": {"youngs_modulus": "0.3 MPa", "poisson_ratio": 0.4, "density": "1100 kg/m^3"}},
-                mesh={"order": 1, "size": "6 mm"},
-                body=[{"name": "worm", "material": "soft", "geometry": {"box": [[0, 0, 0.2], [80, 8, 8.2]]}}],
-                fixed=[{"name": "plane", "plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}, "directions": "normal"}],
+                material={"soft": {"youngs_modulus": "0.3 MPa", "poisson_ratio": 0.4, "density": "1070 kg/m^3"}},
+                mesh={"order": 1, "size": f"{size_mm} mm"},
+                body=[{"name": "worm", "material": "soft", "geometry": {"union": worm}}],
+                mass=[
+                    {"name": "tail", "point": [3, 0, 5], "mass": "6 g"},
+                    {"name": "head", "point": [87, 0, 5], "mass": "6 g"},
+                ],
                 marker=[
-                    {"name": "tail", "point": [0, 0, 4]},
-                    {"name": "middle", "point": [40, 0, 4]},
-                    {"name": "head", "point": [80, 0, 4]},
+                    {"name": "tail", "point": [3, 0, 0]},
+                    {"name": "middle", "point": [45, 0, 5]},
+                    {"name": "head", "point": [87, 0, 0]},
                 ],
                 cable=[
-                    {"name": "rear", "points": [[2, 0, 1.2], [20, 0, 1.2], [38, 0, 1.2]], "target": {"shortening": "5 mm"}},
-                    {"name": "front", "points": [[42, 0, 1.2], [60, 0, 1.2], [78, 0, 1.2]], "target": {"shortening": "5 mm"}},
+                    {
+                        "name": name,
+                        "points": [[x, 0, 3] for x in places],
+                        "eyelet_radius": eyelet,
+                        "target": {"shortening": "4 mm"},
+                    }
+                    for name, places in (("rear", (4, 14, 24, 34, 43)), ("front", (47, 56, 66, 76, 86)))
                 ],
-                obstacle=[{"name": "floor", "plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "friction": 0.6}],
-                contact={"self": False},
-                program={"duration": "10 s", "time_step": "20 ms", "gravity": [0, 0, -9.81], "mass_damping": 2},
+                obstacle=[
+                    {"name": "floor", "plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "friction": friction}
+                ],
+                contact={"self": False, "distance": "0.2 mm"},
+                program={
+                    "duration": "10 s",
+                    "time_step": "20 ms",
+                    "gravity": [0, 0, -9.81],
+                    "stiffness_damping": 0.002,
+                },
             )
         )
-
-    def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
-        lengths = self.model.rest().inputs.values_SI
-        return lengths, lengths - 0.006, ("length", "length")
 
     def observation_size(self) -> int:
         return 8
@@ -249,9 +310,6 @@ class Crawl(RobotEnv):
         episode.task["places"] = episode.robot.markers()
         episode.task["speeds"] = np.zeros(3)
 
-    def time_after(self, episode: Episode) -> float:
-        return (episode.steps + 1) * self.step_s
-
     def observe(self, episode: Episode, seen: Observation) -> FloatArray:
         return _floats(100 * episode.task["places"][:, 2], 10 * episode.task["speeds"], episode.pulled)
 
@@ -259,4 +317,4 @@ class Crawl(RobotEnv):
         places = np.array([seen.markers[name] for name in self.model.markers])
         moved = (places - episode.task["places"])[:, 0]
         episode.task["places"], episode.task["speeds"] = places, moved / self.step_s
-        return 100 * float(moved[1]), False, {"way_m": float(places[1, 0]) - 0.04}
+        return 100 * float(moved[1]), False, {"way_m": float(places[1, 0]) - 0.045}

@@ -106,6 +106,8 @@ Observation observation_of(const sim::Step& step) {
     for (const auto& m : step.markers) seen.markers.push_back({m.name, point(m.position_m)});
     for (const auto& s : step.supports) seen.supports.push_back({s.name, point(s.force_N)});
     for (const auto& c : step.contacts) seen.contacts.push_back({c.name, point(c.force_N)});
+    for (const auto& o : step.objects)
+        seen.objects.push_back({o.name, point(o.position_m), o.rotation, point(o.force_N)});
     seen.self_contact_N = step.self_contact_N;
     seen.smallest_distance_m = step.smallest_distance_m;
     seen.energy_J = step.energy_J;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "simulation/run/left_open.hpp"
 #include "simulation/run/warnings.hpp"
 #include "simulation/solver/pressure_limit.hpp"
 #include "simulation/stepper/prediction.hpp"
@@ -108,7 +109,17 @@ void RunChecks::look_for_crossings(const RobotState& robot, std::vector<Step>& s
     for (std::size_t k = end; k > 0 && look(steps[k]) && !steps[k - 1].crossing_m;) --k;
 }
 
+void RunChecks::warn_of_open_places(const RobotState& robot, Trajectory& result) const {
+    if (program_.dynamics || result.steps.size() < 2) return;
+    if (const std::string open = left_open(system_, robot.now.state, robot.controls); !open.empty())
+        result.warnings.push_back(
+            fmt::format("at the end the equilibrium leaves open where some things are, and a weak tether to the step "
+                        "before holds them there: {}",
+                        open));
+}
+
 void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
+    warn_of_open_places(robot, result);
     if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
     std::vector<std::size_t> suspects = state_.before_jump;
     suspects.push_back(result.steps.size() - 1);

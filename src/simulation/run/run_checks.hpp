@@ -36,8 +36,9 @@ public:
     /// Whether surfaces have passed through each other: looked for in every 32nd step and the last, as a search takes
     /// half as long as a step, and from one in which they have back to the last in which they had not.
     void look_for_crossings(const RobotState& robot, std::vector<Step>& steps, bool last) const;
-    /// At the end: whether the last state is stable, and those before a jump. Of the first that is not, the first step
-    /// that was not is sought by halving; a look at every step would take as long as the steps.
+    /// At the end: what an equilibrium leaves open (left_open.hpp); whether the last state is stable, and those before a
+    /// jump. Of the first that is not, the first step that was not is sought by halving; a look at every step would
+    /// take as long as the steps.
     void at_end(const RobotState& robot, Trajectory& result);
 
     [[nodiscard]] const ChecksState& state() const { return state_; }
@@ -45,6 +46,7 @@ public:
 
 private:
     [[nodiscard]] State state_of(const Step& step) const;
+    void warn_of_open_places(const RobotState& robot, Trajectory& result) const;
     [[nodiscard]] bool is_unstable(const RobotState& robot, const Step& step);
     [[nodiscard]] bool jumped(const RobotState& robot, const Progress& progress);
     [[nodiscard]] bool leave(RobotState& robot, const Eigen::VectorXd& motion, StepReport& report,

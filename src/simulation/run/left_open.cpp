@@ -1,0 +1,203 @@
+#include "simulation/run/left_open.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/core/counted.hpp"
+#include "base/linalg/sparse.hpp"
+#include "base/linalg/vectors.hpp"
+#include "simulation/elements/elements.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::view;
+
+/// A motion is held if more resists it than this many tethers: a hundredth of the weight for a way of the robot's size.
+constexpr double held = 10;
+/// With more bodies than this the matrix of all their motions is larger than what the answer is worth.
+constexpr std::size_t most_bodies = 100;
+
+/// A piece or an object, which moves as a whole.
+struct Body {
+    std::string name;
+    std::vector<int> nodes;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of mass
+    double mass_kg = 0, radius_m = 0;                  ///< of gyration
+};
+
+class Bodies {
+public:
+    Bodies(const Equilibrium& system, const State& state, const Controls& controls)
+        : system_(system), state_(state), controls_(controls) {
+        const Model& model = system.model();
+        for (const std::vector<int>& piece : model.free_pieces()) add(piece_name(piece), piece);
+        for (std::size_t k = 0; k < model.objects().size(); ++k) {
+            const auto& nodes = model.objects()[k].nodes();
+            add("object \"" + model.description().objects[k].name + "\"", {nodes.begin(), nodes.end()});
+        }
+    }
+
+    [[nodiscard]] std::string describe() const {
+        if (bodies_.empty() || bodies_.size() > most_bodies || !controls_.inertia) return {};
+        const Eigen::MatrixXd open = open_motions();
+        std::vector<std::string> texts;
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (std::string text = say(open.middleRows(row(b), 6)); !text.empty())
+                texts.push_back(bodies_[b].name + " can " + text);
+        }
+        return fmt::format("{}", fmt::join(texts, ", "));
+    }
+
+private:
+    [[nodiscard]] static Eigen::Index row(std::size_t body) { return 6 * static_cast<Eigen::Index>(body); }
+
+    [[nodiscard]] std::string piece_name(const std::vector<int>& piece) const {
+        const mesh::TetMesh& mesh = system_.model().mesh();
+        std::set<int> regions;
+        for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+            if (std::ranges::binary_search(piece, mesh.tet(t)[0])) regions.insert(mesh.region[t]);
+        }
+        std::vector<std::string> names;
+        for (const int region : regions) {
+            if (static_cast<std::size_t>(region) < mesh.region_names.size())
+                names.push_back("\"" + mesh.region_names[static_cast<std::size_t>(region)] + "\"");
+        }
+        return fmt::format("the piece of {}", fmt::join(names, ", "));
+    }
+
+    void add(std::string name, std::vector<int> nodes) {
+        Body body{std::move(name), std::move(nodes)};
+        const auto& masses = system_.model().elements().node_mass_kg();
+        const auto mass = [&](int node) { return masses[static_cast<std::size_t>(node)]; };
+        for (const int node : body.nodes) {
+            body.mass_kg += mass(node);
+            body.centre += mass(node) * state_.x.segment<3>(3 * node);
+        }
+        body.centre /= body.mass_kg;
+        double inertia = 0;
+        for (const int node : body.nodes)
+            inertia += mass(node) * (state_.x.segment<3>(3 * node) - body.centre).squaredNorm();
+        body.radius_m = std::sqrt(inertia / body.mass_kg);
+        bodies_.push_back(std::move(body));
+    }
+
+    /// Of a body: three ways to go, three to turn by its radius of gyration; (3n) as far as it is this body.
+    [[nodiscard]] Eigen::VectorXd motion(const Body& body, int way) const {
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
+        const Eigen::Vector3d axis = Eigen::Vector3d::Unit(way % 3);
+        for (const int node : body.nodes) {
+            const Eigen::Vector3d arm = (state_.x.segment<3>(3 * node) - body.centre) / body.radius_m;
+            motion.segment<3>(3 * node) = way < 3 ? axis : axis.cross(arm);
+        }
+        return motion;
+    }
+
+    /// Second derivative, by all these ways, of every energy but that which a motion as a whole does not change: what
+    /// touches, springs, cables and gravity.
+    [[nodiscard]] Eigen::MatrixXd stiffness() const {
+        Controls still = controls_;
+        still.inertia = nullptr;
+        const TangentLayout layout =
+            system_.lay_out_tangent_beside_tets(system_.contact_cliques(state_, still, TangentNodes::all));
+        std::vector<double> values(layout.pattern.entries(), 0.0);
+        system_.add_tangent_beside_tets(state_, still, layout, values, false);
+        const Eigen::Index size = row(bodies_.size());
+        Eigen::MatrixXd ways(state_.x.size(), size), resistance(state_.x.size(), size);
+        for (Eigen::Index k = 0; k < size; ++k) {
+            const Eigen::VectorXd way = motion(bodies_[static_cast<std::size_t>(k / 6)], static_cast<int>(k % 6));
+            Eigen::VectorXd resists = Eigen::VectorXd::Zero(way.size());
+            linalg::add_product(layout.pattern, values, view(way), 1, view(resists));
+            hold_by_cables(way, resists);
+            ways.col(k) = way;
+            resistance.col(k) = resists;
+        }
+        Eigen::MatrixXd stiffness = ways.transpose() * resistance;
+        add_turning_forces(stiffness);
+        return stiffness;
+    }
+
+    /// A cable or a chamber of given length or volume resists with more than any other stiffness here.
+    void hold_by_cables(const Eigen::VectorXd& way, Eigen::VectorXd& resists) const {
+        constexpr double stiff = 1e6;  // tethers
+        for (std::size_t a = 0; a < system_.actuators().size(); ++a) {
+            const Actuator& actuator = system_.actuators()[a];
+            const bool slack = actuator.only_pulls() && !(state_.multiplier[static_cast<Eigen::Index>(a)] > 0);
+            if (controls_.drives[a].kind != Drive::Kind::measure || slack) continue;
+            Eigen::VectorXd gradient = Eigen::VectorXd::Zero(way.size());
+            actuator.add_gradient(view(state_.x), 1, view(gradient), controls_.shares[a]);
+            const double squared = gradient.squaredNorm();
+            if (squared > 0)
+                resists += stiff * bodies_.front().mass_kg * tether() * gradient.dot(way) / squared * gradient;
+        }
+    }
+
+    /// A body that turns goes round, not straight on: its points are drawn inwards, along which forces do work. Those of
+    /// everything else balance its own elastic ones.
+    void add_turning_forces(Eigen::MatrixXd& stiffness) const {
+        Eigen::VectorXd own = Eigen::VectorXd::Zero(state_.x.size());
+        system_.model().elements().evaluate(view(state_.x), view(own));
+        for (const AffineBody& object : system_.objects()) object.add_gradient(view(state_.x), view(own));
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            const Body& body = bodies_[b];
+            Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
+            for (const int node : body.nodes)
+                virial -= own.segment<3>(3 * node) * (state_.x.segment<3>(3 * node) - body.centre).transpose();
+            // d2/dt2 of f . exp(t [w]) r at t = 0 is f . [w]^2 r = w . (f r^T) w - (f . r) |w|^2.
+            const Eigen::Matrix3d turning =
+                0.5 * (virial + virial.transpose()) - virial.trace() * Eigen::Matrix3d::Identity();
+            stiffness.block<3, 3>(row(b) + 3, row(b) + 3) += turning / (body.radius_m * body.radius_m);
+        }
+    }
+
+    /// 1/s^2
+    [[nodiscard]] double tether() const { return controls_.inertia->rate() * controls_.inertia->rate(); }
+
+    /// (6 bodies, ways) orthonormal in the masses.
+    [[nodiscard]] Eigen::MatrixXd open_motions() const {
+        Eigen::VectorXd scale(row(bodies_.size()));
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            scale.segment<6>(row(b)).setConstant(1 / std::sqrt(bodies_[b].mass_kg * tether()));
+        const Eigen::MatrixXd relative = scale.asDiagonal() * stiffness() * scale.asDiagonal();
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (relative + relative.transpose()));
+        Eigen::Index count = 0;
+        while (count < eigen.eigenvalues().size() && eigen.eigenvalues()[count] < held) ++count;
+        return eigen.eigenvectors().leftCols(count);
+    }
+
+    /// What a body does in these motions of all, (6, ways).
+    [[nodiscard]] static std::string say(const Eigen::MatrixXd& ways) {
+        constexpr double none = 1e-3;
+        const Eigen::Index all = rank(ways, none), turns = rank(ways.bottomRows(3), none);
+        if (all == 0) return {};
+        const auto slides = static_cast<std::size_t>(all - turns);
+        std::vector<std::string> texts;
+        if (slides > 0) texts.push_back("slide in " + counted(slides, "direction"));
+        if (turns > 0) texts.push_back("turn or roll in " + counted(static_cast<std::size_t>(turns), "way"));
+        return fmt::format("{}", fmt::join(texts, " and "));
+    }
+    [[nodiscard]] static Eigen::Index rank(const Eigen::MatrixXd& ways, double none) {
+        if (ways.cols() == 0) return 0;
+        const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXd>(ways).singularValues();
+        return (sizes.array() > none).count();
+    }
+
+    const Equilibrium& system_;
+    const State& state_;
+    const Controls& controls_;
+    std::vector<Body> bodies_;
+};
+
+}  // namespace
+
+std::string left_open(const Equilibrium& system, const State& state, const Controls& controls) {
+    return Bodies(system, state, controls).describe();
+}
+
+}  // namespace pliant::sim

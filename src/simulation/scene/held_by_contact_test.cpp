@@ -1,0 +1,141 @@
+// Robots and objects that nothing holds but contact and friction, from the robot file on: a grip that does not creep,
+// several robots in one scene, and what an equilibrium leaves open.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/core/near.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double g = 9.81;
+
+sim::Trajectory run(const std::string& text) {
+    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "held.toml")));
+}
+
+/// Bodies of soft rubber on a ground.
+std::string on_ground(const std::string& bodies, double friction, const std::string& program) {
+    return fmt::format(R"(
+name = "held"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "0.2 MPa"
+poisson_ratio = 0.4
+density = "1000 kg/m^3"
+{}
+[mesh]
+size = "10 mm"
+order = 1
+[contact]
+distance = "0.1 mm"
+[[obstacle]]
+name = "ground"
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+friction = {}
+[program]
+{}
+)",
+                       bodies, friction, program);
+}
+std::string cube(const std::string& name, double x_mm, double z_mm) {
+    return fmt::format(
+        "[[body]]\nname = \"{0}\"\nmaterial = \"rubber\"\ngeometry = {{ box = [[{1}, 0, {2}], [{3}, 20, {4}]] }}\n"
+        "[[marker]]\nname = \"{0}\"\npoint = [{5}, 10, {6}]\n",
+        name, x_mm, z_mm, x_mm + 20, z_mm + 20, x_mm + 10, z_mm + 10);
+}
+const std::string still = "steps = 4\ngravity = [0, 0, -9.81]\n";
+
+/// The warning that begins so, or "".
+std::string warning(const sim::Trajectory& result, const std::string& begins) {
+    const auto found = std::ranges::find_if(result.warnings, [&](const auto& w) { return w.starts_with(begins); });
+    return found == result.warnings.end() ? "" : *found;
+}
+const std::string open_places = "at the end the equilibrium leaves open";
+
+}  // namespace
+
+TEST_CASE("a cube of 100 g that three fingers hold creeps by less than 0.1 mm in 10 s") {
+    const sim::Trajectory t = run(R"(
+name = "grip"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.45
+body = [{ name = "one", material = "rubber", geometry = { box = [[-24, -9, -4], [-10.3, -1, 4]] } },
+        { name = "two", material = "rubber", geometry = { box = [[-24, 1, -4], [-10.3, 9, 4]] } },
+        { name = "thumb", material = "rubber", geometry = { box = [[10.3, -4, -4], [24, 4, 4]] } }]
+mesh = { size = "5 mm", order = 1 }
+fixed = [{ name = "left", plane = { point = [-24, 0, 0], normal = [1, 0, 0] }, move = [1.3, 0, 0] },
+         { name = "right", plane = { point = [24, 0, 0], normal = [1, 0, 0] }, move = [-1.3, 0, 0] }]
+contact = { distance = "0.2 mm" }
+obstacle = [{ name = "table", plane = { point = [0, 0, -10], normal = [0, 0, 1] }, friction = 0.3, move = [0, 0, -5] }]
+object = [{ name = "cube", geometry = { box = [[-10, -10, -10], [10, 10, 10]] }, mass = "100 g", friction = 0.5 }]
+[program]
+duration = "10.8 s"
+time_step = "0.05 s"
+stiffness_damping = 0.002
+gravity = [0, 0, -9.81]
+key = [{ time = "0.3 s", left = 1, right = 1, table = 0 }, { time = "0.6 s", table = 1 }]
+)");
+    const auto height = [&](std::size_t k) { return t.steps[k].objects[0].position_m.z; };
+    MESSAGE("sunk by ", 1e3 * height(16), " mm when the table had gone, and by ", 1e6 * (height(16) - height(216)),
+            " um in the 10 s after that");
+    CHECK(t.steps.size() == 217);
+    CHECK(norm(t.steps[216].contacts[0].force_N) == 0);
+    CHECK(t.steps[216].objects[0].force_N.z == near(0.1 * g, {.relative = 1e-3}));
+    CHECK(height(16) > -1e-3);  // in the grip
+    CHECK(std::abs(height(216) - height(16)) < 0.1e-3);
+}
+
+TEST_CASE("several robots in one scene: each stands for itself, and one that stands on another is carried by it") {
+    const sim::Trajectory beside = run(on_ground(cube("left", 0, 0) + cube("right", 30, 0), 0.5, still));
+    const sim::Step& end = beside.steps.back();
+    CHECK(end.contacts[0].force_N.z == near(16e-3 * g, {.relative = 1e-3}));
+    CHECK(end.self_contact_N == 0);
+    CHECK(end.markers[1].position_m.x - end.markers[0].position_m.x == near(30e-3, {.absolute = 1e-6}));
+    CHECK(end.markers[0].position_m.z == near(end.markers[1].position_m.z, {.absolute = 1e-6}));
+
+    const sim::Trajectory stacked = run(on_ground(cube("lower", 0, 0) + cube("upper", 0, 20.5), 0.5,
+                                                  "duration = \"0.6 s\"\ntime_step = \"0.01 s\"\nmass_damping = 5\n"
+                                                  "stiffness_damping = 0.002\ngravity = [0, 0, -9.81]\n"));
+    const sim::Step& last = stacked.steps.back();
+    CHECK(last.contacts[0].force_N.z == near(16e-3 * g, {.relative = 0.01}));
+    CHECK(last.self_contact_N == near(8e-3 * g, {.relative = 0.02}));  // what the lower one carries
+    CHECK(last.markers[1].position_m.z == near(30e-3, {.absolute = 0.5e-3}));
+    CHECK(last.smallest_distance_m > 0);
+}
+
+TEST_CASE("what contact, friction and gravity leave open is said in one line, and nothing where they hold") {
+    const auto open = [&](double friction, const std::string& more = "") {
+        return warning(run(on_ground(cube("cube", 0, 0) + more, friction, still)), open_places);
+    };
+    CHECK(open(0.5) == "");
+    const std::string smooth = open(0);
+    CHECK_MESSAGE(smooth.ends_with("the piece of \"cube\" can slide in 2 directions and turn or roll in 1 way"), smooth);
+    CHECK(smooth.find('\n') == std::string::npos);
+    // An object on the same smooth ground is as free, and one that has nothing under it falls as far as the tether lets.
+    const std::string both = open(0, R"(
+[[object]]
+name = "block"
+geometry = { box = [[40, 0, 0], [60, 20, 8]] }
+mass = "5 g"
+)");
+    CHECK_MESSAGE(both.find("\"cube\" can slide in 2 directions and turn or roll in 1 way, object \"block\" can slide in "
+                            "2 directions and turn or roll in 1 way") != std::string::npos,
+                  both);
+    // A spring to a fixed point takes one direction.
+    const std::string tied = open(0, R"(
+[[spring]]
+name = "tie"
+points = [[-30, 10, 10], [10, 10, 10]]
+anchor = "first"
+stiffness = "0.1 N/mm"
+)");
+    CHECK_MESSAGE(tied.find("can slide in 1 direction") != std::string::npos, tied);
+}
