@@ -50,7 +50,7 @@ export async function startBrowser() {
 export async function openPage(browser, address, t, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1100, height: 720 }, bypassCSP: true, ...options });
   const page = await context.newPage();
-  page.setDefaultTimeout(30000);
+  page.setDefaultTimeout(90_000); // a browser without a GPU on a busy computer is slow, not wrong
   const wrong = [];
   page.on('pageerror', (error) => wrong.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && wrong.push(`${message.text()} ${message.location().url}`));
