@@ -35,7 +35,7 @@ Plan squares(const std::string& kind, int rows = 8) {
 }
 
 RunSettings settings(const Plan& plan, int jobs = 2) {
-    return {{PLIANT_TEST_ROWS, {}}, jobs, all_chunks(plan)};
+    return {.worker = {PLIANT_TEST_ROWS, {}}, .jobs = jobs, .chunks = all_chunks(plan), .place = ""};
 }
 
 Result<RunAccount> run(const Plan& plan, const fs::path& folder, const RunSettings& how) {
