@@ -224,13 +224,15 @@ test('while a hand moves linear answers are marked and never green; as soon as i
   const { ratio, tension_N: shown } = await there.jsonValue();
   const right = JSON.parse(execFileSync(program, ['simulate', join(folder, 'finger.toml'), '--json', '--set', `cable.flexor.target.length_ratio=${ratio}`])).steps.at(-1).cables.flexor.tension_N;
   assert.ok(Math.abs(shown - right) < 0.01 * right, `${shown} N, and it is ${right} N`);
-  assert.ok(rough.at(-1).tension > 1.2 * right, `linear elements say ${rough.at(-1).tension} N, quadratic ones ${right} N`);
   // What asks for linear elements alone says so.
   await page.getByTestId('preview').click();
   await page.waitForFunction(() => window.pliant.scene.value.head.order === 1, null, patience);
   await settled(page);
   assert.equal(await page.getByTestId('status').getAttribute('data-lamp'), 'warn');
   assert.match(await text(page, 'rough'), /1\.3 to 3 times too large/);
+  // At rest: of the frames of a hand that moves a busy computer may not draw the last, and the hand may since be a little on.
+  const linear = (await head(page)).cables[0];
+  assert.ok(Math.abs(linear.ratio - ratio) < 0.03 && linear.tension_N > 1.5 * right, `linear elements say ${linear.tension_N} N at ${linear.ratio}, quadratic ones ${right} N at ${ratio}`);
   await page.getByTestId('refine').click();
   await page.waitForFunction(() => window.pliant.scene.value.head.order === 2, null, patience);
   await settled(page);
