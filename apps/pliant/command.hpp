@@ -24,6 +24,7 @@ struct Output {
 /// A command adds itself to the parser; `status` receives its exit status when it has run.
 using AddCommand = void (*)(CLI::App& app, int& status);
 void add_new(CLI::App& app, int& status);
+void add_study(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_inverse(CLI::App& app, int& status);
 void add_workspace(CLI::App& app, int& status);

@@ -1,14 +1,10 @@
 // The program as a function: what main() does with its words.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
 namespace pliant::app {
-
-/// Adds the command `study`, as those of command.hpp do.
-void add_study(CLI::App& app, int& status);
 
 /// Runs a command line, without the program's name, and gives its exit status.
 int run_program(const std::vector<std::string>& words);
