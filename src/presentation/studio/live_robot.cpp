@@ -8,6 +8,13 @@ namespace {
 constexpr double mm = 1e3;
 constexpr double patch_share = 0.04;  // of the robot's size: what a hand takes hold of
 
+/// The thesis' elements know lengths and volumes only.
+bool is_by_elements(const sim::Model& model, std::size_t actuator) {
+    return std::ranges::any_of(model.description().growths, [&](const sim::Growth& growth) {
+        return growth.actuator == static_cast<int>(actuator);
+    });
+}
+
 }  // namespace
 
 LiveRobot::LiveRobot(const robot::Robot& robot, const sim::Model& model, double size_m)
@@ -37,7 +44,10 @@ void LiveRobot::drive(double time, const std::vector<ActuatorValue>& actuators) 
     driven_.clear();
     target_.time = std::min(time, robot_->program.duration);
     for (const ActuatorValue& value : actuators) {
-        if (set_actuator(value)) driven_.push_back(value);
+        const std::optional<ActuatorDrive> wanted = drive_of(value);
+        if (!wanted) continue;
+        target_.drives[wanted->actuator] = wanted->drive;
+        driven_.push_back(value);
     }
 }
 
@@ -87,39 +97,44 @@ sim::LiveProgress LiveRobot::advance(const Progress& progress) {
     return done;
 }
 
-bool LiveRobot::set_actuator(const ActuatorValue& value) {
+bool LiveRobot::can_be(const ActuatorValue& value) const {
+    return drive_of(value).has_value();
+}
+
+std::optional<LiveRobot::ActuatorDrive> LiveRobot::drive_of(const ActuatorValue& value) const {
+    const sim::Description& d = model_->description();
+    const auto named = [&](const auto& actuator) { return actuator.name == value.name; };
+    if (const auto cable = std::ranges::find_if(d.cables, named); cable != d.cables.end())
+        return cable_drive(static_cast<std::size_t>(cable - d.cables.begin()), value);
+    if (const auto chamber = std::ranges::find_if(d.chambers, named); chamber != d.chambers.end())
+        return chamber_drive(static_cast<std::size_t>(chamber - d.chambers.begin()), value);
+    return std::nullopt;
+}
+
+std::optional<LiveRobot::ActuatorDrive> LiveRobot::cable_drive(std::size_t cable, const ActuatorValue& value) const {
+    using Kind = sim::Drive::Kind;
+    const double rest = live_.rest_measures()[cable], v = value.value;
+    const auto drive = [&](Kind kind, double target) { return ActuatorDrive{cable, {kind, target}}; };
+    if (value.kind == "length_ratio" && v > 0) return drive(Kind::measure, v * rest);
+    if (value.kind == "shortening_mm" && v / mm < rest) return drive(Kind::measure, rest - v / mm);
+    if (value.kind == "tension_N" && !is_by_elements(*model_, cable))
+        return drive(Kind::multiplier, std::max(v, 0.0));
+    return std::nullopt;
+}
+
+std::optional<LiveRobot::ActuatorDrive> LiveRobot::chamber_drive(std::size_t chamber,
+                                                                 const ActuatorValue& value) const {
     using Kind = sim::Drive::Kind;
     const sim::Description& d = model_->description();
-    const std::vector<double> rest = live_.rest_measures();
-    const double v = value.value;
-    bool possible = false;
-    // The thesis' elements know lengths and volumes only.
-    const auto by_elements = [&](std::size_t a) {
-        return std::any_of(d.growths.begin(), d.growths.end(),
-                           [&](const sim::Growth& growth) { return growth.actuator == static_cast<int>(a); });
-    };
-    const auto set = [&](sim::Drive& drive, const char* kind, bool can_be, const sim::Drive& next) {
-        if (value.kind != kind || !can_be) return;
-        drive = next;
-        possible = true;
-    };
-    for (std::size_t c = 0; c < d.cables.size(); ++c) {
-        if (d.cables[c].name != value.name) continue;
-        sim::Drive& drive = target_.drives[c];
-        set(drive, "length_ratio", v > 0, {Kind::measure, v * rest[c]});
-        set(drive, "shortening_mm", v / mm < rest[c], {Kind::measure, rest[c] - v / mm});
-        set(drive, "tension_N", !by_elements(c), {Kind::multiplier, std::max(v, 0.0)});
-    }
-    for (std::size_t k = 0; k < d.chambers.size(); ++k) {
-        if (d.chambers[k].name != value.name) continue;
-        const std::size_t a = d.cables.size() + k;
-        sim::Drive& drive = target_.drives[a];
-        set(drive, "volume_ratio", v > 0, {Kind::measure, v * rest[a]});
-        set(drive, "volume_change_mm3", rest[a] + 1e-9 * v > 0, {Kind::measure, rest[a] + 1e-9 * v});
-        set(drive, "pressure_kPa", !by_elements(a), {Kind::multiplier, 0 - 1e3 * v});
-        set(drive, "gas_ratio", v > 0 && !by_elements(a), {Kind::gas, v * d.ambient_pressure_Pa * rest[a]});
-    }
-    return possible;
+    const std::size_t a = d.cables.size() + chamber;
+    const double rest = live_.rest_measures()[a], v = value.value;
+    const bool by_elements = is_by_elements(*model_, a);
+    const auto drive = [&](Kind kind, double target) { return ActuatorDrive{a, {kind, target}}; };
+    if (value.kind == "volume_ratio" && v > 0) return drive(Kind::measure, v * rest);
+    if (value.kind == "volume_change_mm3" && rest + 1e-9 * v > 0) return drive(Kind::measure, rest + 1e-9 * v);
+    if (value.kind == "pressure_kPa" && !by_elements) return drive(Kind::multiplier, 0 - 1e3 * v);
+    if (value.kind == "gas_ratio" && v > 0 && !by_elements) return drive(Kind::gas, v * d.ambient_pressure_Pa * rest);
+    return std::nullopt;
 }
 
 }  // namespace pliant::studio

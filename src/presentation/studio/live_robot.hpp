@@ -30,8 +30,10 @@ public:
     void to_rest();
     /// All of it where the program has it at `time`.
     void follow(double time);
+    /// False for what cannot be: strange names and kinds, a length below nothing.
+    [[nodiscard]] bool can_be(const ActuatorValue& value) const;
     /// Loads and supports where the program has them at `time`, these actuators where they are asked for, all others as
-    /// they are wanted already. What cannot be is left out: strange names, a length below nothing.
+    /// they are wanted already. What cannot be is left out.
     void drive(double time, const std::vector<ActuatorValue>& actuators);
     void pull(const std::optional<Pulled>& pulled);
     /// Brings a marker to where it is wanted. False, and nothing happens, if there is no such marker or no actuator.
@@ -54,7 +56,14 @@ public:
     [[nodiscard]] int pulled_vertex() const { return pulled_vertex_; }
 
 private:
-    bool set_actuator(const ActuatorValue& value);
+    struct ActuatorDrive {
+        std::size_t actuator = 0;
+        sim::Drive drive;
+    };
+    /// Nothing for what cannot be.
+    [[nodiscard]] std::optional<ActuatorDrive> drive_of(const ActuatorValue& value) const;
+    [[nodiscard]] std::optional<ActuatorDrive> cable_drive(std::size_t cable, const ActuatorValue& value) const;
+    [[nodiscard]] std::optional<ActuatorDrive> chamber_drive(std::size_t chamber, const ActuatorValue& value) const;
 
     const robot::Robot* robot_;
     const sim::Model* model_;

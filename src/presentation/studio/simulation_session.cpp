@@ -42,6 +42,12 @@ double diagonal(const std::vector<Vec3>& points) {
     return norm(high - low);
 }
 
+/// The last value of an actuator is the one that counts.
+void put(std::vector<ActuatorValue>& values, const ActuatorValue& value) {
+    std::erase_if(values, [&](const ActuatorValue& v) { return v.name == value.name; });
+    values.push_back(value);
+}
+
 }  // namespace
 
 std::string problem_lines(const Error& error) {
@@ -128,10 +134,7 @@ void SimulationSession::drive(const DriveMessage& message) {
     wanted_.tag = message.tag;
     if (message.time >= 0) wanted_.time = message.time;
     if (message.time >= 0) wanted_.follow = false;
-    for (const ActuatorValue& value : message.actuators) {
-        std::erase_if(wanted_.actuators, [&](const ActuatorValue& v) { return v.name == value.name; });
-        wanted_.actuators.push_back(value);
-    }
+    for (const ActuatorValue& value : message.actuators) put(wanted_.asked, value);
     wanted_.playing = false;
     wanted_.lead.reset();
     wanted_.let_go = false;
@@ -143,6 +146,7 @@ void SimulationSession::follow(const Follow& message) {
     wanted_.tag = message.tag;
     wanted_.time = wanted_.followed = std::max(message.time, 0.0);
     wanted_.actuators.clear();
+    wanted_.asked.clear();
     wanted_.follow = true;
     wanted_.playing = false;
     wanted_.lead.reset();
@@ -153,6 +157,7 @@ void SimulationSession::play(bool on) {
     const std::lock_guard lock(mutex_);
     wanted_.playing = on;
     if (on) wanted_.actuators.clear();
+    if (on) wanted_.asked.clear();
     if (on) wanted_.lead.reset();
     take_input();
 }
@@ -232,6 +237,14 @@ void SimulationSession::tell(const std::string& key, const std::string& json) {
     if (!json.empty()) events_.text(json);
 }
 
+/// A robot stays where it is wanted already when it is asked for what cannot be.
+void SimulationSession::take_what_can_be() {
+    if (hand_ == nullptr) return;
+    for (const ActuatorValue& value : wanted_.asked)
+        if (hand_->can_be(value)) put(wanted_.actuators, value);
+    wanted_.asked.clear();
+}
+
 void SimulationSession::work() {
     for (;;) {
         std::optional<RobotText> source;
@@ -247,6 +260,7 @@ void SimulationSession::work() {
                 source = *to_build_;
                 to_build_.reset();
             } else if (input_) {
+                take_what_can_be();
                 wanted = wanted_;
                 wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = wanted_.let_go = false;
                 wanted_.changed = false;

@@ -104,6 +104,7 @@ private:
         double time = 0;
         double followed = 0;  ///< time to which the program itself was followed; of actuators that are not listed
         std::vector<ActuatorValue> actuators;
+        std::vector<ActuatorValue> asked;  ///< since they were last looked at; some of it may be impossible
         std::optional<PullMessage> pull;
         std::optional<LeadMessage> lead;
         bool playing = false;
@@ -118,6 +119,8 @@ private:
     void work();
     /// Under the lock: something else is wanted.
     void take_input();
+    /// Under the lock.
+    void take_what_can_be();
     void build(RobotText source);
     void start(const std::shared_ptr<const Built>& built);
     [[nodiscard]] bool is_input_waiting() const;

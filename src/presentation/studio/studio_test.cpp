@@ -208,6 +208,7 @@ TEST_CASE("expanding elements are steered by volume, and know no pressure") {
     studio.receive(page, R"({"type":"drive","tag":2,"actuators":[{"name":"air","kind":"pressure_kPa","value":50}]})");
     const Json still = arrived(studio, page, 2);
     CHECK(still["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
+    CHECK(still["wanted"]["actuators"] == Json{{{"name", "air"}, {"kind", "volume_ratio"}, {"value", 1.15}}});
 }
 
 TEST_CASE("a page that comes back hears that there is neither job nor machine") {
