@@ -1,10 +1,12 @@
 // What must hold of the robots that nothing holds, whatever their numbers are: a crawler gets nowhere without friction,
-// nor with a gait that is the same forwards and backwards; with friction every cycle takes it further. The examples'
-// own numbers are in their expected.json.
+// nor with a gait that is the same forwards and backwards; with friction every cycle takes it further; a swimmer gets
+// nowhere without water; a motor does the work that bends a bar. The examples' own numbers are in their expected.json.
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/core/near.hpp"
 #include "robot/file/robot_file.hpp"
@@ -48,4 +50,26 @@ TEST_CASE("a crawler goes forward by an arch that runs along it, and nowhere by 
     MESSAGE("forward ", 1e3 * forward, ", nodding ", 1e3 * nod, " mm");
     CHECK(forward > 2e-3);
     CHECK(std::abs(nod) < 0.1 * forward);
+}
+
+TEST_CASE("a swimmer is taken forward by the water that its tail pushes back") {
+    const auto gone = [](const std::vector<std::string>& changes) {
+        const sim::Trajectory t = run_file("examples/swimmer/robot.toml", changes);
+        return along(t, 2, 0, 1) - along(t, 0, 0, 1);
+    };
+    const double in_water = gone({}), in_vacuum = gone({"fluid.drag_normal=0", "fluid.drag_tangential=0"});
+    MESSAGE("in water ", 1e3 * in_water, ", in a vacuum ", 1e3 * in_vacuum, " mm");
+    CHECK(in_water < -5e-3);
+    CHECK(std::abs(in_vacuum) < 0.05 * std::abs(in_water));
+}
+
+TEST_CASE("the motor of a crank does the work that bends the bar") {
+    const sim::Trajectory t = run_file("examples/crank_and_rod/robot.toml", {"program.steps=60"});
+    double work_J = 0;
+    for (std::size_t k = 1; k < t.steps.size(); ++k) {
+        const sim::JointState &before = t.steps[k - 1].joints.at(2), &now = t.steps[k].joints.at(2);
+        work_J += 0.5 * (before.effort + now.effort) * (now.coordinate - before.coordinate);
+    }
+    CHECK(t.steps.back().joints.at(2).coordinate == near(150 * 3.14159265358979 / 180, {.relative = 1e-3}));
+    CHECK(work_J == near(t.steps.back().energy_J, {.relative = 5e-3}));
 }

@@ -22,7 +22,7 @@ namespace {
 
 struct SliceOptions {
     prepare::Order order;
-    std::string printer, job, picture;
+    std::string printer, job, picture, paint;
     Output output;
 };
 
@@ -109,9 +109,22 @@ Result<prepare::PrinterFile> with_mask(const std::string& file) {
     return prepare::PrinterFile{std::move(read->printer), std::move(read->text), std::move(*mask)};
 }
 
-Status slice(const SliceOptions& options) {
+/// The table itself goes into the order, so that the job can keep it.
+Status read_paint(const std::string& file, prepare::Order& order) {
+    if (file.empty()) return {};
+    constexpr std::uintmax_t largest = 64 << 20;
+    Result<std::string> text = read_file(file, largest);
+    if (!text) return tl::unexpected(text.error());
+    if (text->empty()) return input_error("--support-paint {}: is empty", file);
+    order.support_paint = std::move(*text);
+    order.support_paint_file = file;
+    return {};
+}
+
+Status slice(SliceOptions& options) {
     Status named = check_ending("-o", options.job, "a job", ".zip");
     if (named) named = check_ending("--picture", options.picture, "a picture", ".png");
+    if (named) named = read_paint(options.paint, options.order);
     if (!named) return named;
     auto progress = terminal_progress(options.output);
     const Result<prepare::PrinterFile> printer = with_mask(options.printer);
@@ -171,6 +184,10 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--copies", order.copies, "number of copies, side by side");
     command.add_option("--spacing", order.spacing, "distance between copies, as in \"2 mm\"")->capture_default_str();
     command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")->expected(3);
+    command.add_option("--scale", order.scale, "factor by which the part is printed larger or smaller, 0.01 to 100")
+        ->capture_default_str();
+    command.add_option("--at", order.at, "X Y: where the part's middle stands, in mm from that of the platform")
+        ->expected(2);
     command.add_flag("--no-anti-alias", order.no_anti_alias, "no anti-aliasing: each pixel is fully lit or dark");
     command.add_option("--threshold", order.threshold, "without anti-aliasing: minimum coverage of a lit pixel")
         ->capture_default_str();
@@ -180,6 +197,8 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--support-spacing", order.support_spacing, "maximum distance between tips (\"3 mm\")");
     command.add_option("--support-tip", order.support_tip, "diameter of a tip where it touches the part (\"0.4 mm\")");
     command.add_option("--support-pillar", order.support_pillar, "diameter of a pillar (\"1 mm\")");
+    command.add_option("--support-paint", options.paint,
+                       "table of places painted by hand where supports are wanted, or blocked (CSV)");
     command.add_option("--lift", order.lift, "height of the part above the platform, on supports");
     command.add_option("--raft", order.raft, "thickness of a plate under the supports");
     command.add_option("--hollow", order.hollow, "hollow the part, leaving walls of this thickness, as in \"2 mm\"");

@@ -207,6 +207,25 @@ struct Observation {
         std::string name;  ///< as in the robot file
         Point force_N;     ///< on the robot
     };
+    /// A sensor.
+    struct Sensor {
+        /// One of the numbers that it gives.
+        struct Reading {
+            std::string name;  ///< "strain", "force_x"; docs/reference/robot.md lists them
+            std::string unit;  ///< SI: "N"; "" for a plain number
+            double value = 0;  ///< in the unit
+        };
+        std::string name;               ///< as in the robot file
+        std::vector<Reading> readings;  ///< always the same, in the same order
+    };
+    /// A joint.
+    struct Joint {
+        std::string name;       ///< as in the robot file
+        Point force_N;          ///< of the first of the two things on the second
+        Point torque_Nm;        ///< likewise, about the joint
+        double coordinate = 0;  ///< angle of a hinge, rad, with whole turns; place of a slider, m; else 0
+        double effort = 0;      ///< what drives, holds and damps along it, N m or N
+    };
     /// A rigid object.
     struct Object {
         std::string name;                            ///< as in the robot file
@@ -220,6 +239,8 @@ struct Observation {
     std::vector<Marker> markers;    ///< in the order of Model::markers()
     std::vector<Force> supports;    ///< reactions
     std::vector<Force> contacts;    ///< pressure and friction of obstacles
+    std::vector<Sensor> sensors;    ///< in the order of the robot file
+    std::vector<Joint> joints;      ///< in the order of the robot file
     std::vector<Object> objects;    ///< in the order of the robot file
     double self_contact_N = 0;      ///< sum of the sizes of the robot's forces on itself
     /// Smallest distance between surfaces that are near enough to act; infinite where none are.

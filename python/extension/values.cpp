@@ -65,6 +65,14 @@ py::dict dict_of(const Observation& seen) {
     const auto spring = [](const O::Spring& s) -> py::object { return py::make_tuple(s.length_m, s.force_N); };
     const auto marker = [](const O::Marker& m) -> py::object { return array_of(m.position_m); };
     const auto force = [](const O::Force& f) -> py::object { return array_of(f.force_N); };
+    const auto sensor = [](const O::Sensor& s) -> py::object {
+        py::dict readings;
+        for (const O::Sensor::Reading& r : s.readings) readings[py::str(r.name)] = r.value;
+        return readings;
+    };
+    const auto joint = [](const O::Joint& j) -> py::object {
+        return py::make_tuple(array_of(j.force_N), array_of(j.torque_Nm), j.coordinate, j.effort);
+    };
     const auto object = [](const O::Object& o) -> py::object {
         return py::make_tuple(array_of(o.position_m), py::array_t<double>(4, o.rotation.data()), array_of(o.force_N));
     };
@@ -72,6 +80,7 @@ py::dict dict_of(const Observation& seen) {
         "cables"_a = named<O::Cable>(seen.cables, cable), "chambers"_a = named<O::Chamber>(seen.chambers, chamber),
         "springs"_a = named<O::Spring>(seen.springs, spring), "markers"_a = named<O::Marker>(seen.markers, marker),
         "supports"_a = named<O::Force>(seen.supports, force), "contacts"_a = named<O::Force>(seen.contacts, force),
+        "sensors"_a = named<O::Sensor>(seen.sensors, sensor), "joints"_a = named<O::Joint>(seen.joints, joint),
         "objects"_a = named<O::Object>(seen.objects, object), "self_contact_N"_a = seen.self_contact_N,
         "smallest_distance_m"_a = seen.smallest_distance_m, "energy_J"_a = seen.energy_J,
         "kinetic_energy_J"_a = seen.kinetic_energy_J, "min_J"_a = seen.min_J);

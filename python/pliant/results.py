@@ -39,6 +39,19 @@ class Spring(NamedTuple):
     force_N: float
 
 
+class Joint(NamedTuple):
+    """A joint of an :class:`Observation`."""
+
+    #: (3,) N, of the first of the two things on the second
+    force_N: Array
+    #: (3,) N m, likewise, about the joint
+    torque_Nm: Array
+    #: angle of a hinge, rad, with whole turns; place of a slider, m; else 0
+    coordinate: float
+    #: what drives, holds and damps along it, N m or N
+    effort: float
+
+
 class Object(NamedTuple):
     """A rigid object of an :class:`Observation`."""
 
@@ -66,6 +79,10 @@ class Observation:
     supports: dict[str, Array]
     #: by name of the obstacle: (3,) pressure and friction on the robot, N
     contacts: dict[str, Array]
+    #: by name: what a [[sensor]] reads, by name of the reading, in SI units
+    sensors: dict[str, dict[str, float]]
+    #: by name
+    joints: dict[str, Joint]
     #: by name
     objects: dict[str, Object]
     #: N, sum of the sizes of the robot's forces on itself
@@ -100,6 +117,7 @@ def observation(seen: dict[str, Any]) -> Observation:
         "cables": {name: Cable(*c) for name, c in seen["cables"].items()},
         "chambers": {name: Chamber(*c) for name, c in seen["chambers"].items()},
         "springs": {name: Spring(*s) for name, s in seen["springs"].items()},
+        "joints": {name: Joint(*j) for name, j in seen["joints"].items()},
         "objects": {name: Object(*o) for name, o in seen["objects"].items()},
     }
     return Observation(**{**seen, **named})

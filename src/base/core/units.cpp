@@ -32,6 +32,8 @@ constexpr Unit angular_acceleration_units[] = {{"deg/s^2", std::numbers::pi / 18
 constexpr Unit dose_units[] = {{"mJ/cm^2", 10}, {"J/m^2", 1}};
 
 constexpr Unit stiffness_units[] = {{"N/mm", 1e3}, {"N/m", 1}, {"mN/mm", 1}};
+constexpr Unit inertia_units[] = {{"kg m^2", 1}, {"g mm^2", 1e-9}, {"kg mm^2", 1e-6}, {"g cm^2", 1e-7}};
+constexpr Unit torque_units[] = {{"N mm", 1e-3}, {"N m", 1}, {"mN m", 1e-3}, {"mN mm", 1e-6}};
 
 struct DimensionInfo {
     std::string_view text;
@@ -70,6 +72,10 @@ DimensionInfo info(Dimension dimension) {
             return {"a dose of light such as \"8 mJ/cm^2\"", dose_units};
         case Dimension::stiffness:
             return {"a stiffness such as \"0.5 N/mm\"", stiffness_units};
+        case Dimension::inertia:
+            return {"a moment of inertia such as \"40 g mm^2\"", inertia_units};
+        case Dimension::torque:
+            return {"a torque such as \"15 N mm\"", torque_units};
     }
     return {"", {}};
 }

@@ -22,7 +22,9 @@ enum class Dimension {
     angular_speed,
     angular_acceleration,
     dose,
-    stiffness
+    stiffness,
+    torque,
+    inertia
 };
 
 /// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.

@@ -84,6 +84,31 @@ TEST_CASE("the path of a cable is as long as the cable") {
     CHECK(length == near(stepper.observe(state).cables[0].length_m, {.relative = 1e-12}));
 }
 
+TEST_CASE("sensors are read in SI units, with the names of their readings") {
+    const Model model(bar(R"(
+        [[sensor]]
+        name = "pull"
+        kind = "tension"
+        cable = "flexor"
+        [[sensor]]
+        name = "line"
+        kind = "strain"
+        points = [[5, 5, 1], [55, 5, 1]]
+    )"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    (void)stepper.step(state, pulled(state, 0.002));
+    const Observation seen = stepper.observe(state);
+    REQUIRE(seen.sensors.size() == 2);
+    CHECK(seen.sensors[0].name == "pull");
+    CHECK(seen.sensors[0].readings[0].name == "tension");
+    CHECK(seen.sensors[0].readings[0].unit == "N");
+    CHECK(seen.sensors[0].readings[0].value == seen.cables[0].tension_N);
+    CHECK(seen.sensors[1].readings[1].unit == "m");
+    CHECK(seen.sensors[1].readings[1].value ==
+          near(0.05 * (1 + seen.sensors[1].readings[0].value), {.relative = 1e-9}));
+}
+
 TEST_CASE("a quantity has a unit that fits") {
     CHECK(quantity("4 mm", "m") == near(0.004, {.relative = 1e-15}));
     CHECK(quantity("20 kPa", "Pa") == near(2e4, {.relative = 1e-15}));

@@ -106,6 +106,13 @@ Observation observation_of(const sim::Step& step) {
     for (const auto& m : step.markers) seen.markers.push_back({m.name, point(m.position_m)});
     for (const auto& s : step.supports) seen.supports.push_back({s.name, point(s.force_N)});
     for (const auto& c : step.contacts) seen.contacts.push_back({c.name, point(c.force_N)});
+    for (const auto& s : step.sensors) {
+        seen.sensors.push_back({s.name, {}});
+        for (const sim::Reading& r : s.readings)
+            seen.sensors.back().readings.push_back({r.name, std::string(sim::shown(r.quantity).si_unit), r.value});
+    }
+    for (const auto& j : step.joints)
+        seen.joints.push_back({j.name, point(j.force_N), point(j.torque_Nm), j.coordinate, j.effort});
     for (const auto& o : step.objects)
         seen.objects.push_back({o.name, point(o.position_m), o.rotation, point(o.force_N)});
     seen.self_contact_N = step.self_contact_N;

@@ -1,6 +1,7 @@
 #include "presentation/report/summary.hpp"
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace pliant::report {
 namespace {
@@ -40,6 +41,7 @@ Json step_json(const sim::Step& step, bool contact) {
                 {"residual", step.residual},     {"wall_ms", 1e3 * step.wall_s},
                 {"min_J", step.min_J},           {"solver", step.index == 0 ? "" : sim::name(step.solver)},
                 {"energy_J", step.energy_J},     {"kinetic_energy_J", step.kinetic_energy_J}};
+    if (step.refused > 0) out["refused"] = step.refused;
     out.update(actuators_json(step));
     out["supports"] = Json::object();
     for (const auto& support : step.supports) {
@@ -56,6 +58,20 @@ Json step_json(const sim::Step& step, bool contact) {
         out["objects"][object.name] = {{"position_mm", vector_json(object.position_m, mm_per_m)},
                                        {"rotation", object.rotation},
                                        {"force_N", vector_json(object.force_N, 1)}};
+    for (const auto& joint : step.joints) {
+        Json& entry = out["joints"][joint.name];
+        entry = {{"force_N", vector_json(joint.force_N, 1)}, {"torque_Nm", vector_json(joint.torque_Nm, 1)}};
+        if (joint.turns) entry["angle_deg"] = 180 / std::numbers::pi * joint.coordinate;
+        if (joint.slides) entry["position_mm"] = mm_per_m * joint.coordinate;
+        if (joint.turns) entry["effort_Nm"] = joint.effort;
+        if (joint.slides) entry["effort_N"] = joint.effort;
+    }
+    for (const auto& sensor : step.sensors) {
+        for (const sim::Reading& r : sensor.readings) {
+            const sim::Shown as = sim::shown(r.quantity);
+            out["sensors"][sensor.name][r.name + std::string(as.suffix)] = as.factor * r.value;
+        }
+    }
     if (step.crossing_m) out["crossing_mm"] = vector_json(*step.crossing_m, mm_per_m);
     out["markers"] = Json::object();
     for (const auto& marker : step.markers) out["markers"][marker.name] = vector_json(marker.position_m, mm_per_m);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace pliant::report {
 namespace {
@@ -40,6 +41,10 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
     static constexpr std::array<std::string_view, 10> object = {"x_mm", "y_mm", "z_mm",      "qw",        "qx",
                                                                 "qy",   "qz",   "force_x_N", "force_y_N", "force_z_N"};
+    static constexpr std::array<std::string_view, 6> load = {"force_x_N",   "force_y_N",   "force_z_N",
+                                                             "torque_x_Nm", "torque_y_Nm", "torque_z_Nm"};
+    static constexpr std::array<std::string_view, 2> turning = {"angle_deg", "effort_Nm"};
+    static constexpr std::array<std::string_view, 2> sliding = {"position_mm", "effort_N"};
     Row row;
     for (const std::string_view name : common) row.text(name);
     for (const auto& c : rest.cables) names(row, c.name, cable);
@@ -48,6 +53,14 @@ std::string steps_header(const sim::Step& rest, bool contact) {
     for (const auto& s : rest.supports) names(row, s.name, force);
     for (const auto& o : rest.contacts) names(row, o.name, force);
     for (const auto& o : rest.objects) names(row, o.name, object);
+    for (const auto& j : rest.joints) {
+        names(row, j.name, load);
+        if (j.turns || j.slides) names(row, j.name, j.turns ? turning : sliding);
+    }
+    for (const auto& sensor : rest.sensors) {
+        for (const sim::Reading& r : sensor.readings)
+            row.text(fmt::format("{}_{}{}", sensor.name, r.name, sim::shown(r.quantity).suffix));
+    }
     if (contact) {
         row.text("self_contact_N");
         row.text("smallest_distance_mm");
@@ -86,6 +99,16 @@ std::string steps_row(const sim::Step& step, bool contact) {
         row.vector(o.position_m, 1e3);
         for (const double q : o.rotation) row.number(q);
         row.vector(o.force_N, 1);
+    }
+    for (const auto& j : step.joints) {
+        row.vector(j.force_N, 1);
+        row.vector(j.torque_Nm, 1);
+        if (!j.turns && !j.slides) continue;
+        row.number(j.turns ? 180 / std::numbers::pi * j.coordinate : 1e3 * j.coordinate);
+        row.number(j.effort);
+    }
+    for (const auto& sensor : step.sensors) {
+        for (const sim::Reading& r : sensor.readings) row.number(sim::shown(r.quantity).factor * r.value);
     }
     if (contact) {
         row.number(step.self_contact_N);

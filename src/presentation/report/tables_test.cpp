@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "presentation/report/summary.hpp"
 #include "presentation/report/test_robot.hpp"
 
 using namespace pliant;
@@ -66,6 +67,20 @@ TEST_CASE("forces of obstacles and of the robot on itself have columns where any
                            "smallest_distance_mm"));
     CHECK(lines[1].ends_with(",0.5,0.5,0,-0,0,"));
     CHECK(lines[3].ends_with(",0.5,0.5,0,-4,3.5,0.02"));
+}
+
+TEST_CASE("readings of sensors have columns that name their unit, and keys in the summary") {
+    auto robot = test::bent_bar(2, 1);
+    for (auto& step : robot.result.steps)
+        step.sensors = {
+            {"gauge", {{"strain", sim::SensedQuantity::ratio, 0.25}, {"length", sim::SensedQuantity::length, 0.002}}},
+            {"gyro", {{"acceleration_x", sim::SensedQuantity::acceleration, 9.5}}}};
+    const auto lines = lines_of(steps_csv(robot.result));
+    CHECK(lines[0].ends_with(",base_force_z_N,gauge_strain,gauge_length_mm,gyro_acceleration_x_m_per_s2"));
+    CHECK(lines[1].ends_with(",0.5,0.25,2,9.5"));
+    const std::string summary = summary_json(robot, -1);
+    CHECK(summary.find(R"("gauge":{"strain":0.25,"length_mm":2.0})") != std::string::npos);
+    CHECK(summary.find(R"("gyro":{"acceleration_x_m_per_s2":9.5})") != std::string::npos);
 }
 
 TEST_CASE("fields are quoted as RFC 4180 says, and never start a formula") {

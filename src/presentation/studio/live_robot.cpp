@@ -117,8 +117,7 @@ std::optional<LiveRobot::ActuatorDrive> LiveRobot::cable_drive(std::size_t cable
     const auto drive = [&](Kind kind, double target) { return ActuatorDrive{cable, {kind, target}}; };
     if (value.kind == "length_ratio" && v > 0) return drive(Kind::measure, v * rest);
     if (value.kind == "shortening_mm" && v / mm < rest) return drive(Kind::measure, rest - v / mm);
-    if (value.kind == "tension_N" && !is_by_elements(*model_, cable))
-        return drive(Kind::multiplier, std::max(v, 0.0));
+    if (value.kind == "tension_N" && !is_by_elements(*model_, cable)) return drive(Kind::multiplier, std::max(v, 0.0));
     return std::nullopt;
 }
 

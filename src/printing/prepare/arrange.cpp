@@ -1,9 +1,11 @@
 // Where the part stands, and what stands under it.
 #include "printing/slice/arrange.hpp"
 
+#include <cmath>
 #include <tuple>
 
 #include "printing/prepare/option_text.hpp"
+#include "printing/prepare/paint_file.hpp"
 #include "printing/prepare/settings.hpp"
 #include "printing/slice/adaptive.hpp"
 #include "printing/slice/hollow.hpp"
@@ -39,7 +41,20 @@ Result<slice::SupportSettings> support_settings(const Order& order) {
     return s;
 }
 
+/// Where the middle is to stand, from that of the platform.
+Result<Vec3> shift_of(const Order& order) {
+    if (order.at.empty()) return Vec3{};
+    constexpr double um = 1000, most_mm = 1000;
+    if (order.at.size() != 2 || !(std::fabs(order.at[0]) <= most_mm && std::fabs(order.at[1]) <= most_mm))
+        return input_error("--at: two numbers in mm are needed, from the middle of the platform");
+    return Vec3{um * order.at[0], um * order.at[1], 0};
+}
+
 Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) {
+    if (order.scale != 1) {
+        if (Status status = slice::scale(drawing.bodies, order.scale); !status)
+            return input_error("--scale: {}", status.error().message);
+    }
     if (!order.turn.empty()) {
         const Vec3 degrees{order.turn[0], order.turn[1], order.turn[2]};
         if (Status status = slice::turn(drawing.bodies, degrees); !status) return status;
@@ -50,7 +65,44 @@ Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) 
     const Result<std::vector<std::string>> warnings = slice::place_on_platform(drawing.bodies, raster);
     if (!warnings) return tl::unexpected(warnings.error());
     drawing.warnings.insert(drawing.warnings.end(), warnings->begin(), warnings->end());
+    const Result<Vec3> shift = shift_of(order);
+    if (!shift) return tl::unexpected(shift.error());
+    for (slice::Body& body : drawing.bodies) slice::move(body, *shift);
     return {};
+}
+
+/// Painted places go with the part: as points of bodies without a triangle, of no material, one for each copy. Behind
+/// each place stands one a millimetre outwards.
+Status add_paint(const Order& order, Drawing& drawing, std::vector<slice::SupportTouch>& touches) {
+    if (order.support_paint.empty()) return {};
+    if (order.support.empty()) return input_error("--support-paint: needs --support MATERIAL");
+    auto read = read_paint(order.support_paint, order.support_paint_file);
+    if (!read) return tl::unexpected(read.error());
+    touches = std::move(*read);
+    slice::Body carrier;
+    for (const slice::SupportTouch& t : touches) {
+        carrier.surface_um.points.push_back(t.at_um);
+        carrier.surface_um.points.push_back(t.at_um + (1000 / norm(t.normal)) * t.normal);
+    }
+    drawing.bodies.push_back(std::move(carrier));
+    return {};
+}
+
+/// Back from those bodies, which go, to touches on every copy; a later touch comes after earlier ones of all copies,
+/// which may reach over to it.
+std::vector<slice::SupportTouch> take_paint(Drawing& drawing, const std::vector<slice::SupportTouch>& touches,
+                                            double scale) {
+    std::vector<slice::SupportTouch> placed;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        for (const slice::Body& body : drawing.bodies) {
+            if (!body.material.empty()) continue;
+            const std::vector<Vec3>& points = body.surface_um.points;
+            const Vec3 out = points[2 * i + 1] - points[2 * i];
+            placed.push_back({touches[i].wish, points[2 * i], (1 / norm(out)) * out, scale * touches[i].radius_um});
+        }
+    }
+    std::erase_if(drawing.bodies, [](const slice::Body& body) { return body.material.empty(); });
+    return placed;
 }
 
 /// With a raft the part must be off it, or there is nothing to break away.
@@ -104,6 +156,8 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     for (const auto& [option, text] : {std::pair{"--raft", &order.raft}, std::pair{"--lift", &order.lift}}) {
         if (!supported && !text->empty()) return input_error("{}: needs --support MATERIAL", option);
     }
+    std::vector<slice::SupportTouch> touches;
+    if (Status status = add_paint(order, drawing, touches); !status) return status;
     if (Status status = place(order, settings.slicing.raster, drawing); !status) return status;
     slice::SupportSettings wanted;
     if (supported) {
@@ -111,6 +165,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
         if (!read) return tl::unexpected(read.error());
         wanted = std::move(*read);
         if (Status status = lift(order, wanted.raft_um, drawing); !status) return status;
+        wanted.paint = take_paint(drawing, touches, order.scale);
     }
     if (Status status = set_heights(order, drawing, settings.slicing); !status) return status;
     if (Status status = hollow_part(order, settings, drawing, notes, progress); !status) return status;
@@ -119,6 +174,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     if (!supports) return tl::unexpected(supports.error());
     notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {} struts, {:.1f} mm^3",
                                 supports->tips, supports->on_part, supports->struts, supports->volume_mm3));
+    if (!wanted.paint.empty()) notes.push_back(fmt::format("painted supports: {} of the tips", supports->painted));
     if (supports->islands_left > 0)
         drawing.warnings.push_back(
             fmt::format("{} islands are left that supports do not reach", supports->islands_left));

@@ -154,3 +154,96 @@ TEST_CASE("--least-layer makes layers of many heights, --hollow cavities") {
     CHECK(refused([](Order& o) { o.hollow = "2 mm"; }).find("nothing of the part lies") != std::string::npos);
     CHECK(refused([](Order& o) { o.hollow = "101 mm"; }).find("at most 100 mm") != std::string::npos);
 }
+
+TEST_CASE("--scale and --at") {
+    const Box3 larger = done([](Order& o) { o.scale = 1.5; }).box();
+    CHECK(larger.size().x == near(12000, {.relative = 1e-12}));
+    CHECK(larger.size().z == near(4500, {.relative = 1e-12}));
+    CHECK(larger.center().x == near(0, {.absolute = 1e-9}));
+    const Box3 aside = done([](Order& o) { o.at = {3, -1.5}; }).box();
+    CHECK(aside.low == Vec3{-1000, -3500, 0});
+    CHECK(aside.high == Vec3{7000, 500, 3000});
+    CHECK(refused([](Order& o) { o.scale = 0; }) == "--scale: a scale of 0: must be 0.01 to 100");
+    CHECK(refused([](Order& o) { o.at = {3}; }).find("--at: two numbers in mm") == 0);
+    CHECK(refused([](Order& o) { o.at = {3, 1e300}; }).find("--at: two numbers in mm") == 0);
+}
+
+namespace {
+
+/// A table of 6 x 4 mm on a column of 2 mm, 3 mm high.
+Arranged table_with(const std::function<void(Order&)>& change) {
+    Order order;
+    order.support = "firm";
+    change(order);
+    Arranged a{two_blocks(), {}, {}, {}};
+    a.drawing.bodies = {{"soft", box_um({2000, 1000, 0}, {4000, 3000, 3000}), "column"},
+                        {"soft", box_um({0, 0, 3000}, {6000, 4000, 4000}), "top"}};
+    auto settings = job_settings(order, printer(), {}, a.drawing);
+    REQUIRE_MESSAGE(settings.has_value(), (settings ? "" : settings.error().message));
+    a.settings = std::move(*settings);
+    Progress silent;
+    a.status = arrange(order, a.settings, a.drawing, a.notes, silent);
+    return a;
+}
+
+/// Middles of all supports.
+std::vector<Vec3> supports_of(const Arranged& a) {
+    std::vector<Vec3> middles;
+    for (const slice::Body& body : a.drawing.bodies) {
+        if (body.filler) middles.push_back(mesh::bounds(body.surface_um).center());
+    }
+    return middles;
+}
+
+const std::string table_head = "wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)\n";
+
+}  // namespace
+
+TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy") {
+    // Drawn coordinates: blocked everywhere, wanted at the corner x = 5.5, y = 3.5 under the top.
+    const std::string paint = table_head + "block,3,2,3,0,0,-1,9\nenforce,5.5,3.5,3,0,0,-1,0.4\n";
+    const Arranged plain = table_with([&](Order& o) { o.support_paint = paint; });
+    REQUIRE_MESSAGE(plain.status.has_value(), (plain.status ? "" : plain.status.error().message));
+    const auto at = supports_of(plain);
+    REQUIRE(at.size() == 1);
+    CHECK(at[0].x == near(2500, {.absolute = 450}));
+    CHECK(at[0].y == near(1500, {.absolute = 450}));
+    CHECK(plain.notes.back() == "painted supports: 1 of the tips");
+    // Turned by half a turn about z it lies at the opposite corner; twice as large, twice as far out.
+    const Arranged turned = table_with([&](Order& o) {
+        o.support_paint = paint;
+        o.turn = {0, 0, 180};
+        o.scale = 2;
+    });
+    const auto there = supports_of(turned);
+    REQUIRE(!there.empty());
+    for (const Vec3& p : there) {
+        CHECK(p.x == near(-5000, {.absolute = 900}));
+        CHECK(p.y == near(-3000, {.absolute = 900}));
+    }
+    const Arranged two = table_with([&](Order& o) {
+        o.support_paint = paint;
+        o.copies = 2;
+        o.spacing = "1 mm";
+    });
+    CHECK(two.notes.back() == "painted supports: 2 of the tips");
+    CHECK(supports_of(two).size() == 2);
+    CHECK(two.drawing.bodies.size() == 6);
+    // Upside down nothing of it looks down.
+    const Arranged over = table_with([&](Order& o) {
+        o.support_paint = table_head + "enforce,5.5,3.5,3,0,0,-1,0.4\n";
+        o.turn = {180, 0, 0};
+    });
+    CHECK(supports_of(over).empty());
+}
+
+TEST_CASE("--support-paint without supports, or with a table that is none, is refused") {
+    CHECK(refused([](Order& o) { o.support_paint = table_head + "block,3,2,3,0,0,-1,9\n"; }) ==
+          "--support-paint: needs --support MATERIAL");
+    const std::string text = refused([](Order& o) {
+        o.support = "firm";
+        o.support_paint = "wish\nblock\n";
+        o.support_paint_file = "mine.csv";
+    });
+    CHECK(text == "mine.csv:1: there is no column \"x (mm)\"");
+}

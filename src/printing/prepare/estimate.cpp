@@ -12,9 +12,9 @@ namespace {
 
 /// What is left out of an estimate.
 void leave_out_slow(Order& order) {
-    for (std::string* text :
-         {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip, &order.support_pillar,
-          &order.lift, &order.raft, &order.hollow, &order.drain, &order.least_layer, &order.least_feature})
+    for (std::string* text : {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip,
+                              &order.support_pillar, &order.support_paint, &order.lift, &order.raft, &order.hollow,
+                              &order.drain, &order.least_layer, &order.least_feature})
         text->clear();
 }
 

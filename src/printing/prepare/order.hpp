@@ -14,11 +14,15 @@ struct Order {
     int copies = 1;
     std::string spacing = "2 mm";
     std::vector<double> turn;
+    double scale = 1;
+    std::vector<double> at;  ///< of the part's middle from the platform's, mm; empty: in the middle
     std::string least_feature;
     bool any_vat = false;  ///< a resin that no vat holds may be filled into any
     bool no_anti_alias = false;
     double threshold = 0.5;
     std::string support, support_angle, support_spacing, support_tip, support_pillar, lift, raft;
+    std::string support_paint;                    ///< a table as read_paint() reads it, not its name
+    std::string support_paint_file = "supports";  ///< what messages call it
     std::string hollow, drain;
     std::string version;  ///< of Pliant, for the job to keep
 };

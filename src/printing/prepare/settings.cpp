@@ -9,6 +9,7 @@
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
 #include "printing/prepare/option_text.hpp"
+#include "printing/prepare/paint_file.hpp"
 
 namespace pliant::prepare {
 namespace {
@@ -241,6 +242,8 @@ Status check_stacks(const Order& order, const Drawing& drawing) {
     if (drawing.stacks.empty()) return {};
     const std::pair<const char*, bool> given[] = {{"--copies", order.copies != 1},
                                                   {"--turn", !order.turn.empty()},
+                                                  {"--scale", order.scale != 1},
+                                                  {"--at", !order.at.empty()},
                                                   {"--least-layer", !order.least_layer.empty()},
                                                   {"--support", !order.support.empty()},
                                                   {"--hollow", !order.hollow.empty()}};
@@ -343,6 +346,8 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
 
 job::Request request_of(const Order& order, const job::JobSettings& settings) {
     job::Request request{order.inputs, order.assignments, order.turn, order.spacing};
+    request.scale = order.scale;
+    request.at_mm = order.at;
     if (!settings.slicing.tops_um.empty()) {
         const Result<int> least = layer_height_um("--least-layer", order.least_layer);
         request.least_layer_um = least.value_or(0);
@@ -359,6 +364,7 @@ job::Request request_of(const Order& order, const job::JobSettings& settings) {
     for (const auto& [key, text] : texts) {
         if (!text->empty()) request.supports.emplace_back(key, *text);
     }
+    if (!order.support_paint.empty()) request.supports.emplace_back("support_paint", paint_entry);
     return request;
 }
 

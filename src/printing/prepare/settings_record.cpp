@@ -73,6 +73,8 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
     root["copies"] = settings.copies;
     root["spacing"] = request.spacing;
     root["turn_deg"] = request.turn_deg.empty() ? std::vector<double>(3, 0.0) : request.turn_deg;
+    root["scale"] = request.scale;
+    root["at_mm"] = request.at_mm.empty() ? std::vector<double>(2, 0.0) : request.at_mm;
     root["least_feature_um"] = settings.least_feature_um;
     root["materials"] = Json::array();
     for (const Material& m : settings.materials) root["materials"].push_back(material_json(m, settings));

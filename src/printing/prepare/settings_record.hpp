@@ -18,6 +18,8 @@ struct Request {
     int least_layer_um = 0;                ///< of layers that follow the slope; 0: all are alike
     /// Options of supports, raft, hollowing and drains that were given, as they were given.
     std::vector<std::pair<std::string, std::string>> supports{};
+    double scale = 1;
+    std::vector<double> at_mm{};  ///< of the part's middle from the platform's; empty: in the middle
 };
 
 /// settings.json, as docs/reference/job.md describes it. Folders of inputs are left out, so that the same files give

@@ -25,6 +25,8 @@ TEST_CASE("the record holds what was asked for, and no folder") {
     CHECK(record["raster"]["width_px"] == 64);
     CHECK(record["anti_alias"] == false);
     CHECK(record["turn_deg"] == json{0.0, 90.0, 0.0});
+    CHECK(record["scale"] == 1);
+    CHECK(record["at_mm"] == json{0.0, 0.0});
     CHECK(record["least_feature_um"] == 300);
     CHECK(record["materials"][0]["resin"] == "flex");
     CHECK(record["materials"][0]["xy_compensation_um"] == -40);

@@ -1,6 +1,9 @@
 #include "printing/prepare/slice_job.hpp"
 
+#include <utility>
+
 #include "printing/plan/proof.hpp"
+#include "printing/prepare/paint_file.hpp"
 
 namespace pliant::prepare {
 namespace {
@@ -13,6 +16,7 @@ Status add_files(const Order& order, const PrinterFile& printer, const job::JobS
     if (status) status = writer.add_file("printer.toml", printer.text);
     if (status && settings.light.mask) status = writer.add_image(job::mask_entry, *settings.light.mask);
     if (status) status = writer.add_file("settings.json", job::settings_json(settings, request_of(order, settings)));
+    if (status && !order.support_paint.empty()) status = writer.add_file(paint_entry, order.support_paint);
     if (status) status = writer.add_file("plan.json", plan::plan_json(plan));
     if (status) status = writer.add_file("job.gcode", gcode);
     return status;
@@ -21,9 +25,10 @@ Status add_files(const Order& order, const PrinterFile& printer, const job::JobS
 }  // namespace
 
 Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
-                            const std::filesystem::path& file, Progress& progress) {
+                            const std::filesystem::path& file, Progress& progress, job::LayerWatch watch) {
     Result<job::JobSettings> settings = job_settings(order, printer.printer, printer.mask, drawing);
     if (!settings) return tl::unexpected(settings.error());
+    settings->watch = std::move(watch);
     std::vector<std::string> notes;
     if (Status s = arrange(order, *settings, drawing, notes, progress); !s) return tl::unexpected(s.error());
     Result<job::Writer> writer = job::Writer::create(file);

@@ -31,6 +31,30 @@ int fitting(double room, double size, double spacing) {
 
 }  // namespace
 
+Status scale(std::vector<Body>& bodies, double factor) {
+    constexpr double least = 0.01, most = 100;
+    if (!(factor >= least && factor <= most))
+        return input_error("a scale of {:.6g}: must be {} to {}", factor, least, most);
+    for (Body& body : bodies) {
+        for (Vec3& p : body.surface_um.points) p *= factor;
+        if (body.blend) {
+            body.blend->from_um *= factor;
+            body.blend->to_um *= factor;
+        }
+        for (OutlineSlice& slice : body.slices) {
+            slice.bottom_um *= factor;
+            slice.top_um *= factor;
+            for (auto& outline : slice.outlines_um) {
+                for (auto& [x, y] : outline) {
+                    x *= factor;
+                    y *= factor;
+                }
+            }
+        }
+    }
+    return {};
+}
+
 Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
     if (!is_finite(degrees))
         return input_error("a turn by {}, {}, {} degrees is no turn", degrees.x, degrees.y, degrees.z);

@@ -1,4 +1,4 @@
-// Turning a part and laying out copies of it.
+// Scaling and turning a part, and laying out copies of it.
 #pragma once
 
 #include <string>
@@ -7,6 +7,9 @@
 #include "printing/slice/body.hpp"
 
 namespace pliant::slice {
+
+/// Makes all bodies `factor` times as large, seen from the origin. Errors: a factor that is not 0.01 to 100.
+[[nodiscard]] Status scale(std::vector<Body>& bodies, double factor);
 
 /// Turns all bodies about x, then y, then z, by degrees, counter-clockwise seen from the axis' end. Quarter turns are
 /// exact. Errors: a body of slices is turned about another axis than z.

@@ -21,6 +21,20 @@ TEST_CASE("a part is turned about x, then y, then z") {
           "body 's' (soft): consists of slices, which can be turned about z only");
 }
 
+TEST_CASE("a part is scaled in all its numbers") {
+    std::vector<Body> bodies{{"soft", box({-1000, 0, 0}, {1000, 2000, 3000}), "a"},
+                             {"soft", {}, "s", {{100, 150, {{{0, 0}, {100, 0}, {0, 100}}}}}}};
+    bodies[0].blend = Blend{"firm", {0, 0, 0}, {0, 0, 3000}};
+    REQUIRE(scale(bodies, 1.5).has_value());
+    CHECK(mesh::bounds(bodies[0].surface_um).low == Vec3{-1500, 0, 0});
+    CHECK(mesh::bounds(bodies[0].surface_um).high == Vec3{1500, 3000, 4500});
+    CHECK(bodies[0].blend->to_um == Vec3{0, 0, 4500});
+    CHECK(bodies[1].slices[0].top_um == 225);
+    CHECK(bodies[1].slices[0].outlines_um[0][1] == std::array<double, 2>{150, 0});
+    CHECK(scale(bodies, 0).error().message == "a scale of 0: must be 0.01 to 100");
+    CHECK(scale(bodies, 101).error().message == "a scale of 101: must be 0.01 to 100");
+}
+
 TEST_CASE("copies fill rows, and too many are refused with the number that fits") {
     const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
     std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1800, 1000, 100}), "a"}};

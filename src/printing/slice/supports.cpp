@@ -90,6 +90,7 @@ public:
           wanted_(wanted),
           layers_(settings.layers()),
           frame_(settings.raster, 1),
+          paint_(wanted.paint, settings.raster, layers_),
           tips_(wanted.spacing_um / settings.raster.pixel_um, settings.raster.pixel_um, layers_) {
         // Tips stand under what is drawn; light is corrected, and the inside taken out, when all is sliced together.
         settings_.bonds.clear();
@@ -103,6 +104,7 @@ public:
         if (!slicer) return tl::unexpected(slicer.error());
         if (auto status = slice(*slicer, progress); !status) return tl::unexpected(status.error());
         for (int k = 1; k < static_cast<int>(solids_.size()); ++k) {
+            if (!paint_.empty()) hold_painted(k);
             hold_islands(k);
             if (wanted_.angle_deg > 0) hold_undersides(k);
             if (tips_.tips().size() > most_tips)
@@ -140,7 +142,7 @@ private:
             }
         }
         for (std::uint32_t p = 0; p < held.size(); ++p) {
-            if (!held[p]) tips_.add(middle_of(pieces, p, k));
+            if (!held[p]) add_unless_blocked(middle_of(pieces, p, k));
         }
     }
 
@@ -190,8 +192,36 @@ private:
                     if (tips_.near(tip)) continue;
                     while (tip.layer > 0 && holds(solids_[static_cast<std::size_t>(tip.layer - 1)], row, column))
                         --tip.layer;
-                    if (tip.layer > 0 && !tips_.near(tip)) tips_.add(tip);
+                    if (tip.layer > 0 && !tips_.near(tip)) add_unless_blocked(tip);
                 }
+            }
+        }
+    }
+
+    [[nodiscard]] SupportWish wish(const Tip& tip) const { return paint_.at(tip.layer, tip.row, tip.column); }
+
+    bool add_unless_blocked(const Tip& tip) {
+        const SupportWish wish = this->wish(tip);
+        if (wish == SupportWish::block) return false;
+        if (wish == SupportWish::enforce) ++painted_;
+        tips_.add(tip);
+        return true;
+    }
+
+    void add_where_painted(const Tip& tip) {
+        if (wish(tip) == SupportWish::enforce && !tips_.near(tip)) add_unless_blocked(tip);
+    }
+
+    /// Undersides on which somebody has painted that they are to be held, however steep: first where the brush was put
+    /// down, then where that leaves too wide a gap.
+    void hold_painted(int k) {
+        const RunSet open = without(solids_[static_cast<std::size_t>(k)], solids_[static_cast<std::size_t>(k - 1)]);
+        for (const auto& [row, column] : paint_.middles(k)) {
+            if (holds(open, row, column)) add_where_painted({k, row, column});
+        }
+        for (int row = open.first_row(); row < open.end_row(); ++row) {
+            for (const PixelSpan& span : open.row(row)) {
+                for (int column = span.begin; column < span.end; ++column) add_where_painted({k, row, column});
             }
         }
     }
@@ -208,7 +238,10 @@ private:
             supports.islands_left = static_cast<int>(islands.size());
             if (islands.empty() || round == support_rounds) return supports;
             if (progress.cancelled()) return cancelled();
-            for (const Island& island : islands) tips_.add({island.layer, island.row, island.column});
+            bool more = false;
+            for (const Island& island : islands)
+                more = add_unless_blocked({island.layer, island.row, island.column}) || more;
+            if (!more) return supports;
         }
     }
 
@@ -245,6 +278,7 @@ private:
 
     [[nodiscard]] Supports built() const {
         Supports supports;
+        supports.painted = painted_;
         std::vector<std::array<double, 2>> feet;
         std::vector<Column> columns;
         std::vector<Pillar> pillars;
@@ -362,7 +396,9 @@ private:
     SupportSettings wanted_;
     Layers layers_;
     RasterFrame frame_;
+    SupportPaint paint_;
     TipMap tips_;
+    int painted_ = 0;
     std::vector<RunSet> solids_;
     std::vector<LayerShape> shapes_;
 };
@@ -384,6 +420,9 @@ Status check(const SupportSettings& s) {
     if (!(s.angle_deg >= 0 && s.angle_deg <= 89))
         return input_error("supports: angle of {} degrees: must be 0 to 89", s.angle_deg);
     if (s.material.empty()) return input_error("supports: a material is needed");
+    for (const SupportTouch& touch : s.paint) {
+        if (Status status = check(touch); !status) return status;
+    }
     return {};
 }
 

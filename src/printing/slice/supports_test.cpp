@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -137,6 +138,73 @@ TEST_CASE("a sphere in mid-air, on a raft, in a material of its own") {
     CHECK(o.support_mm3 > 0.8 * 16);
 }
 
+namespace {
+
+SupportTouch touch(SupportWish wish, const Vec3& at_um, double radius_um, const Vec3& normal = {0, 0, -1}) {
+    return {wish, at_um, normal, radius_um};
+}
+
+/// Whether any filler stands under this place.
+bool stands_under(const Supports& supports, double x_um, double y_um) {
+    return std::any_of(supports.bodies.begin(), supports.bodies.end(), [&](const Body& b) {
+        const Box3 box = mesh::bounds(b.surface_um);
+        return box.low.x <= x_um && x_um <= box.high.x && box.low.y <= y_um && y_um <= box.high.y;
+    });
+}
+
+/// Right of an upright wall a roof that leans by 60 degrees: steeper than needs a tip.
+std::vector<Body> steep_roof() {
+    const mesh::TriMesh wedge = prism({{-1000, -3000}, {1000, -3000}, {1000, 3000}, {-1000, 3000}}, 0, 8000);
+    mesh::TriMesh leaning = wedge;
+    for (Vec3& p : leaning.points) p.x += p.z / std::tan(60 * std::numbers::pi / 180);
+    return {{"soft", leaning, ""}};
+}
+
+}  // namespace
+
+TEST_CASE("painted by hand: a steep underside is held where it is wanted, and nowhere else") {
+    SupportSettings wanted = in_wax();
+    CHECK(supported(steep_roof(), wanted).supports.tips == 0);
+    // On its underside, 4 mm up: x = 1000 + 4000 / tan 60, looking down and to the right.
+    const double lean = std::tan(60 * std::numbers::pi / 180);
+    const Vec3 under{1000 + 4000 / lean, 0, 4000};
+    const Vec3 down{std::sin(60 * std::numbers::pi / 180), 0, -0.5};
+    wanted.paint = {touch(SupportWish::enforce, under, 1200, down)};
+    const Outcome held = supported(steep_roof(), wanted);
+    REQUIRE(held.supports.tips > 0);
+    CHECK(held.supports.painted == held.supports.tips);
+    for (const Body& b : held.supports.bodies) {
+        const Vec3 middle = mesh::bounds(b.surface_um).center();
+        CHECK(std::hypot(middle.x - under.x, middle.y - under.y) < 1200 + 500);
+    }
+    // Rubbed out again, or painted on the face above, where nothing hangs.
+    wanted.paint.push_back(touch(SupportWish::usual, under, 1300, down));
+    CHECK(supported(steep_roof(), wanted).supports.tips == 0);
+    wanted.paint = {touch(SupportWish::enforce, under, 1200, {0, 0, 1})};
+    CHECK(supported(steep_roof(), wanted).supports.tips == 0);
+}
+
+TEST_CASE("painted by hand: no tip where it is blocked, not even under an island") {
+    const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
+    SupportSettings wanted = in_wax();
+    wanted.paint = {touch(SupportWish::block, {4000, 0, 5000}, 2500)};
+    const Outcome half = supported(plate, wanted);
+    CHECK(half.supports.tips > 3);
+    CHECK_FALSE(stands_under(half.supports, 4000, 0));
+    CHECK(stands_under(half.supports, 0, 0));
+    // All of it, then one place given back.
+    wanted.paint = {touch(SupportWish::block, {0, 0, 5000}, 10000)};
+    const Outcome none = supported(plate, wanted);
+    CHECK(none.supports.tips == 0);
+    CHECK(none.supports.islands_left == 1);
+    wanted.paint.push_back(touch(SupportWish::enforce, {-3000, 0, 5000}, 1000));
+    const Outcome one = supported(plate, wanted);
+    CHECK(one.supports.tips > 0);
+    CHECK(stands_under(one.supports, -3000, 0));
+    CHECK_FALSE(stands_under(one.supports, 3000, 0));
+    CHECK(one.islands == 0);
+}
+
 TEST_CASE("supports that make no sense are refused") {
     const std::vector<Body> plate{{"soft", box({-600, -400, 500}, {600, 400, 600}), ""}};
     Progress progress;
@@ -151,6 +219,11 @@ TEST_CASE("supports that make no sense are refused") {
     s.angle_deg = 90;
     CHECK(refused(s) == "supports: angle of 90 degrees: must be 0 to 89");
     CHECK(refused({}) == "supports: a material is needed");
+    s = in_wax();
+    s.paint = {touch(SupportWish::block, {0, 0, 0}, 0)};
+    CHECK(refused(s) == "painted supports: a radius of 0 mm: must be above 0 and at most 100 mm");
+    s.paint = {touch(SupportWish::block, {0, 0, 0}, 1000, {0, 0, 0})};
+    CHECK(refused(s) == "painted supports: a normal of no length");
 }
 
 TEST_CASE("tall supports are braced, the braces need no support themselves, and one alone has a broad foot") {

@@ -13,9 +13,17 @@ struct Damping {
     double stiffness_s = 0;
 };
 
+/// How a step in time leads on.
+enum class Integrator {
+    bdf2,               ///< takes a little energy out of what it does not resolve, and never adds any
+    energy_conserving,  ///< keeps the energy of what is neither damped nor touches anything
+};
+
 /// Motion in time instead of rest at every instant.
 struct Dynamics {
     Damping damping;
+    Integrator integrator = Integrator::bdf2;
+    double time_tolerance_m = 0;  ///< above 0: steps are as long as this error of each allows
 };
 
 struct Program {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -123,20 +124,41 @@ struct PlateSpec {
     int line = 0;
 };
 
+/// Where a load acts, but for a selector of faces.
+struct LoadPoints {
+    std::vector<Vec3> points;  ///< length units; shared evenly
+    double radius = 0;         ///< of the material that each is spread over, length units; 0: the tet that holds it
+};
+struct LoadLine {
+    std::vector<Vec3> points;  ///< length units; spread evenly over its length at rest
+};
+struct LoadOnNodes {
+    Selector selector;  ///< shared evenly by the nodes that it catches
+};
+struct LoadOnRigid {
+    bool object = false;  ///< else a plate
+    std::string name;
+};
+
 struct LoadSpec {
     std::string name;
-    Selector selector;
+    std::variant<Selector, LoadOnNodes, LoadPoints, LoadLine, LoadOnRigid> place;
     Vec3 force_N;
+    Vec3 torque_Nm;                     ///< on what is rigid
     std::optional<double> pressure_Pa;  ///< instead of the force: follows the surface, presses on it where positive
     Curve share = ramp(0, 1);
     int line = 0;
 };
 
-/// A mass at a point of the robot.
+/// A mass at a point of the robot, or glued on there.
 struct MassSpec {
     std::string name;
     Vec3 point;
     double mass_kg = 0;
+    std::optional<Vec3> center{};                            ///< of mass, length units; none: the point
+    Vec3 inertia_kg_m2;                                      ///< principal, about the center; zero: none
+    std::array<Vec3, 2> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}};  ///< of the first two of them
+    double radius = 0;  ///< of the material that carries it, length units; 0: as little as can
     int line = 0;
 };
 
@@ -213,6 +235,25 @@ struct ObjectSpec {
     int line = 0;
 };
 
+/// Two things that hold on to each other at a point.
+struct JointSpec {
+    enum class Kind { glue, hinge, slider, ball, motor };
+    std::string name;
+    Kind kind = Kind::glue;
+    std::array<std::string, 2> between;  ///< bodies, plates, objects, or world_name
+    Vec3 point;                          ///< length units
+    Vec3 axis{0, 0, 1};                  ///< of a hinge, motor or slider, not zero
+    double radius = 0;                   ///< of the patch of a soft body that it holds, length units; 0: the mesh's
+    double stiffness = 0;                ///< of the coordinate that is left, N m/rad or N/m
+    double damping = 0;                  ///< N m s/rad or N s/m
+    std::optional<std::array<double, 2>> limits;  ///< rad, or m
+    bool by_force = false;                        ///< `wanted` is a torque, N m, or a force, N; else a place
+    std::optional<Curve> wanted;                  ///< rad, m, N m or N over the program's time; none: not driven
+    std::optional<double> clearance;              ///< length units; none: the two things touch nowhere
+    int line = 0;
+};
+inline constexpr std::string_view world_name = "world";
+
 struct ContactSpec {
     bool self = true;
     double distance = 0;                 ///< length units; 0: a thousandth of the robot's size
@@ -222,9 +263,50 @@ struct ContactSpec {
     int line = 0;
 };
 
+/// What the robot and objects are in.
+struct FluidSpec {
+    double density_kg_m3 = 0;
+    double drag_normal = 0, drag_tangential = 0;
+    std::optional<double> level;  ///< of its surface against gravity, length units; none: it is everywhere
+    Vec3 current_m_s;
+    int line = 0;
+};
+
 struct MarkerSpec {
     std::string name;
     std::variant<Vec3, BoxSelector> place;
+    int line = 0;
+};
+
+/// What is measured, and where; lengths in length units.
+struct StrainSensorSpec {
+    std::vector<Vec3> points;
+};
+struct BackboneSensorSpec {
+    std::vector<Vec3> points;
+    double radius = 0;  ///< of the material whose turn is taken about each point; 0: as little as can
+};
+struct ContactSensorSpec {
+    Selector selector;
+};
+struct ActuatorSensorSpec {
+    enum class Kind { tension, volume, pressure };
+    Kind kind = Kind::tension;
+    std::size_t index = 0;  ///< of Robot::cables or Robot::chambers
+};
+struct DistanceSensorSpec {
+    std::array<std::variant<Vec3, std::string>, 2> ends;  ///< a point, or the name of a marker or an object
+};
+struct MotionSensorSpec {
+    std::variant<Vec3, std::string> place;  ///< a point, or the name of an object
+    std::array<Vec3, 2> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}};
+    double radius = 0;
+};
+struct SensorSpec {
+    std::string name;
+    std::variant<StrainSensorSpec, BackboneSensorSpec, ContactSensorSpec, ActuatorSensorSpec, DistanceSensorSpec,
+                 MotionSensorSpec>
+        what;
     int line = 0;
 };
 
@@ -246,7 +328,10 @@ struct Robot {
     std::optional<ContactSpec> contact;  ///< where the file has [contact], an obstacle or an object
     std::vector<ObstacleSpec> obstacles;
     std::vector<ObjectSpec> objects;
+    std::vector<JointSpec> joints;
+    std::optional<FluidSpec> fluid;
     std::vector<MarkerSpec> markers;
+    std::vector<SensorSpec> sensors;
     std::vector<GoalSpec> goals;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
@@ -256,7 +341,8 @@ struct Robot {
 
 /// Whether pieces that nothing holds are no mistake: they move in time, or something is there that may hold them.
 [[nodiscard]] inline bool may_be_free(const Robot& robot) {
-    return robot.program.dynamics.has_value() || !robot.obstacles.empty();
+    return robot.program.dynamics.has_value() || !robot.obstacles.empty() || !robot.joints.empty() ||
+           robot.fluid.has_value();
 }
 
 }  // namespace pliant::robot

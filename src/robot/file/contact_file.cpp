@@ -66,6 +66,23 @@ void read_object(Reader& reader, Context& context, ObjectSpec& object) {
     object.friction = read_friction(reader);
 }
 
+FluidSpec read_fluid_table(Reader reader) {
+    FluidSpec fluid;
+    fluid.line = reader.line();
+    fluid.density_kg_m3 = reader.quantity("density", Dimension::density);
+    if (reader.has("density") && !(fluid.density_kg_m3 > 0)) reader.problem("density", "must be above zero");
+    for (const auto& [key, drag] :
+         {std::pair{"drag_normal", &fluid.drag_normal}, std::pair{"drag_tangential", &fluid.drag_tangential}}) {
+        *drag = reader.number(key, 0);
+        if (!(*drag >= 0 && *drag <= 1000)) reader.problem(key, "is a coefficient: 0 or more, a plate has about 1");
+    }
+    if (reader.has("level")) fluid.level = reader.number("level");
+    (void)reader.raw("level");
+    fluid.current_m_s = reader.vector("current", Vec3{});
+    reader.finish();
+    return fluid;
+}
+
 ContactSpec read_rules(Reader reader, const Robot& robot) {
     ContactSpec contact;
     contact.line = reader.line();
@@ -93,6 +110,12 @@ void read_contact(Reader& root, Context& context) {
     read_each(root, context, "obstacle", "obstacles", robot.obstacles, read_obstacle);
     read_each(root, context, "object", "objects", robot.objects, read_object);
     if (has_rules || !robot.obstacles.empty() || !robot.objects.empty()) robot.contact = rules;
+}
+
+void read_fluid(Reader& root, Context& context) {
+    const bool given = root.has("fluid");
+    const Reader reader = root.table("fluid", false);
+    if (given) context.robot.fluid = read_fluid_table(reader);
 }
 
 }  // namespace pliant::robot

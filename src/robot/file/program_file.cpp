@@ -45,10 +45,23 @@ Driven driven(ChamberSpec& chamber) {
     return d;
 }
 
+/// A torque has no dimension of its own: N m, as a plain number.
+Driven driven(JointSpec& joint) {
+    Driven d{
+        joint.name, {}, 0, joint.wanted->value.back(), -1e300, 1e300, [&](Curve c) { joint.wanted = std::move(c); }};
+    const bool slides = joint.kind == JointSpec::Kind::slider;
+    if (!joint.by_force) d.dimension = slides ? Dimension::length : Dimension::angle;
+    if (joint.by_force && slides) d.dimension = Dimension::force;
+    return d;
+}
+
 std::vector<Driven> everything_driven(Robot& robot) {
     std::vector<Driven> list;
     for (CableSpec& cable : robot.cables) list.push_back(driven(cable));
     for (ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    for (JointSpec& joint : robot.joints) {
+        if (joint.wanted) list.push_back(driven(joint));
+    }
     const auto share = [&](const std::string& name, Curve& curve) {
         Driven d;
         d.name = name;
@@ -129,6 +142,25 @@ void read_keys(Reader& program, Robot& robot) {
     for (Reader& key : keys) key.finish();
 }
 
+/// What is prescribed does work on the robot that no energy of the robot's knows.
+void check_conserving(Reader& program, const Robot& robot) {
+    for (const CableSpec& cable : robot.cables) {
+        if (cable.target.kind != CableTarget::Kind::tension_N)
+            program.problem("integrator",
+                            fmt::format("cable \"{}\" is driven by its length, and energy-conserving steps "
+                                        "know only tensions; drive it by tension, or use \"bdf2\"",
+                                        cable.name));
+    }
+    for (const ChamberSpec& chamber : robot.chambers) {
+        using Kind = ChamberTarget::Kind;
+        if (chamber.target.kind == Kind::volume_ratio || chamber.target.kind == Kind::volume_change_m3)
+            program.problem("integrator", fmt::format("chamber \"{}\" is driven by its volume, and energy-conserving "
+                                                      "steps know only pressures and sealed gas; drive it so, or use "
+                                                      "\"bdf2\"",
+                                                      chamber.name));
+    }
+}
+
 /// Mass and damping take part where a time step is given. Gravity then acts from the beginning.
 void read_dynamics(Reader& program, Robot& robot) {
     const bool moving = program.has("time_step");
@@ -138,7 +170,17 @@ void read_dynamics(Reader& program, Robot& robot) {
     if (mass < 0) program.problem("mass_damping", "must not be negative (1/s)");
     if (stiffness < 0) program.problem("stiffness_damping", "must not be negative (s)");
     if (!moving && (mass > 0 || stiffness > 0)) program.problem("", "damping has no meaning without time_step");
-    if (moving) robot.program.dynamics->damping = {mass, stiffness};
+    const bool conserving = program.choice("integrator", {"bdf2", "energy-conserving"}, "bdf2") == "energy-conserving";
+    const double tolerance = program.quantity("time_tolerance", Dimension::length, 0);
+    for (const char* key : {"integrator", "time_tolerance"}) {
+        if (!moving && program.has(key)) program.problem(key, "has no meaning without time_step");
+    }
+    if (program.has("time_tolerance") && !(tolerance > 0)) program.problem("time_tolerance", "must be above zero");
+    if (conserving) check_conserving(program, robot);
+    if (moving)
+        robot.program.dynamics = Dynamics{{mass, stiffness},
+                                          conserving ? Integrator::energy_conserving : Integrator::bdf2,
+                                          tolerance > 0 ? tolerance : 0};
 }
 
 /// As many steps of `time_step` as fit into the duration.

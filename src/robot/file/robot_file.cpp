@@ -10,9 +10,11 @@
 #include "robot/file/body_file.hpp"
 #include "robot/file/contact_file.hpp"
 #include "robot/file/goal_file.hpp"
+#include "robot/file/joint_file.hpp"
 #include "robot/file/place_file.hpp"
 #include "robot/file/program_file.hpp"
 #include "robot/file/robot_document.hpp"
+#include "robot/file/sensor_file.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -58,9 +60,14 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_places(root, context);
     read_actuators(root, context);
     read_contact(root, context);
+    read_joints(root, context);
+    read_fluid(root, context);
     read_markers(root, context);
+    read_sensors(root, context);
     read_goals(root, context);
     read_program(root, robot);
+    if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{})
+        root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     if (robot.fixed.empty() && !may_be_free(robot))
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "

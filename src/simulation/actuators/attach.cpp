@@ -75,6 +75,18 @@ public:
         return weights_.allFinite() && !((moments_.transpose() * weights_ - Eigen::Vector4d::Unit(0)).norm() > 1e-9);
     }
     [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
+    /// (nodes, 3) 1/m: of the affine motion that fits best, what each node has in its slope.
+    [[nodiscard]] Eigen::MatrixXd gradients() const {
+        const Eigen::Matrix<double, 4, 3> slopes = matrix_.ldlt().solve(Eigen::Matrix<double, 4, 3>(
+            (Eigen::Matrix<double, 4, 3>() << Eigen::RowVector3d::Zero(), Eigen::Matrix3d::Identity()).finished()));
+        return kernel_.asDiagonal() * (moments_ * slopes) / reach_;
+    }
+    /// The gradients reproduce affine functions.
+    [[nodiscard]] bool good_slope() const {
+        const Eigen::MatrixXd sums = moments_.transpose() * gradients() * reach_;
+        return sums.allFinite() && !(sums.topRows<1>().norm() > 1e-9) &&
+               !((sums.bottomRows<3>() - Eigen::Matrix3d::Identity()).norm() > 1e-9);
+    }
     /// How fast the weights change as the point moves along `direction` and the reach grows by `of_reach`.
     [[nodiscard]] Eigen::VectorXd change(const Eigen::Vector3d& direction, double of_reach) const {
         const Eigen::MatrixXd offsets = moments_.rightCols<3>();
@@ -100,6 +112,40 @@ private:
 };
 
 }  // namespace
+
+Attachment AffinePatch::at(const Vec3& point) const {
+    if (nodes.empty()) return {{}, {}, point};
+    Attachment attachment{nodes, weights, {}};
+    for (std::size_t k = 0; k < nodes.size(); ++k) attachment.weights[k] += dot(slopes[k], point - center);
+    return attachment;
+}
+
+/// w(p) = k_i m_i . M^-1 (1, p - c) with M = sum k_i m_i m_i^T and m_i = (1, X_i - c), all over the reach.
+std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const double> importance,
+                                        const std::vector<Vec3>& points, const Vec3& center) {
+    constexpr double flat = 1e-9;
+    AffinePatch patch{std::move(nodes), {}, {}, center, 0};
+    for (const int node : patch.nodes)
+        patch.reach = std::max(patch.reach, norm(points[static_cast<std::size_t>(node)] - center));
+    const auto n = static_cast<Eigen::Index>(patch.nodes.size());
+    Eigen::MatrixXd moments(n, 4);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const int node = patch.nodes[static_cast<std::size_t>(i)];
+        const Vec3 off = (points[static_cast<std::size_t>(node)] - center) / patch.reach;
+        moments.row(i) << 1, off.x, off.y, off.z;
+    }
+    const Eigen::Map<const Eigen::VectorXd> kernel(importance.data(), n);
+    const Eigen::Matrix4d M = moments.transpose() * kernel.asDiagonal() * moments;
+    const Eigen::Matrix4d inverse = M.fullPivLu().inverse();
+    const Eigen::MatrixXd basis = kernel.asDiagonal() * (moments * inverse);
+    if (!basis.allFinite() || !((moments.transpose() * basis - Eigen::Matrix4d::Identity()).norm() < flat))
+        return std::nullopt;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        patch.weights.push_back(basis(i, 0));
+        patch.slopes.push_back(Vec3{basis(i, 1), basis(i, 2), basis(i, 3)} / patch.reach);
+    }
+    return patch;
+}
 
 Attacher::Attacher(const mesh::TetMesh& mesh) : mesh_(&mesh), locator_(mesh), tet_start_(mesh.points.size() + 1, 0) {
     for (const int node : mesh.nodes) ++tet_start_[static_cast<std::size_t>(node) + 1];
@@ -173,6 +219,46 @@ Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tol
     const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
     if (!fit.good()) return carried_by_tet(point, tolerance);
     return Attachment{std::move(patch.nodes), {fit.weights().data(), fit.weights().data() + fit.weights().size()}, {}};
+}
+
+Result<AffinePatch> Attacher::patch(const Vec3& point, double radius, double tolerance) const {
+    const auto location = locate(point, tolerance);
+    if (!location) return tl::unexpected(location.error());
+    Patch found = patch_at(location->tet, point, radius);
+    std::vector<double> kernel;
+    for (const int node : found.nodes) {
+        const double share = norm(mesh_->points[static_cast<std::size_t>(node)] - point) / found.reach;
+        kernel.push_back((1 - share * share) * (1 - share * share));
+    }
+    std::optional<AffinePatch> patch = fitted_patch(std::move(found.nodes), kernel, mesh_->points, point);
+    if (!patch) return input_error("its nodes lie in one plane");
+    return *std::move(patch);
+}
+
+Result<AttachedFrame> Attacher::frame(const Vec3& point, double radius, double tolerance) const {
+    const auto location = locate(point, tolerance);
+    if (!location) return tl::unexpected(location.error());
+    Patch patch = patch_at(location->tet, point, radius);
+    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    AttachedFrame frame;
+    if (fit.good() && fit.good_slope()) {
+        const Eigen::MatrixXd gradients = fit.gradients();
+        frame.nodes = std::move(patch.nodes);
+        frame.weights.assign(fit.weights().data(), fit.weights().data() + fit.weights().size());
+        for (Eigen::Index i = 0; i < gradients.rows(); ++i)
+            frame.gradients.push_back({gradients(i, 0), gradients(i, 1), gradients(i, 2)});
+        return frame;
+    }
+    const AttachmentSlope slope = slope_in_tet(*location);
+    frame.nodes = slope.nodes;
+    frame.gradients = slope.weights;
+    frame.weights.assign(frame.nodes.size(), 0);
+    const Result<Attachment> carried = carried_by_tet(point, tolerance);
+    for (std::size_t k = 0; carried && k < carried->nodes.size(); ++k) {
+        const auto at = std::find(frame.nodes.begin(), frame.nodes.end(), carried->nodes[k]);
+        frame.weights[static_cast<std::size_t>(at - frame.nodes.begin())] = carried->weights[k];
+    }
+    return frame;
 }
 
 Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double tolerance) const {

@@ -1,6 +1,7 @@
 // Ties points of space to the mesh that carries them.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,22 @@ struct AttachmentSlope {
     std::vector<int> nodes;
     std::vector<Vec3> weights;
 };
+
+/// A patch of nodes whose mean affine motion carries every point near its centre: weights that are linear in where the
+/// point is.
+struct AffinePatch {
+    std::vector<int> nodes;       ///< none: fixed in space
+    std::vector<double> weights;  ///< of the centre
+    std::vector<Vec3> slopes;     ///< how they change with where the point is, 1/m
+    Vec3 center;                  ///< metres
+    double reach = 0;             ///< about how far the patch goes
+    [[nodiscard]] Attachment at(const Vec3& point) const;
+};
+
+/// The patch that fits the motion of these nodes best, each as important as it weighs; nothing where they lie in one
+/// plane.
+[[nodiscard]] std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const double> importance,
+                                                      const std::vector<Vec3>& points, const Vec3& center);
 
 /// Built once per mesh; the mesh must outlive it. Lengths are in the mesh's unit.
 class Attacher {
@@ -37,6 +54,14 @@ public:
     /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and
     /// uses at most 64 nodes.
     [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
+
+    /// The material within `radius` of a point, as spread() takes it. Errors: those of spread(), and nodes in one
+    /// plane.
+    [[nodiscard]] Result<AffinePatch> patch(const Vec3& point, double radius, double tolerance) const;
+
+    /// The mean affine motion of the material within `radius`: that of the same patch, by the same fit, and where no
+    /// patch has one that of the tet that holds the point.
+    [[nodiscard]] Result<AttachedFrame> frame(const Vec3& point, double radius, double tolerance) const;
 
     /// How the attachment that spread() gives changes with the point, for as long as the nodes of its patch, or the tet
     /// that holds the point, stay the same. Its errors.

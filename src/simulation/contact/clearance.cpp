@@ -142,7 +142,7 @@ class Clearance::Look {
 public:
     Look(const Clearance& clearance, State x, State dx) : clearance_(clearance), x_(x), dx_(dx) {
         for (const Reference& side : clearance.sides_)
-            motions_.push_back({side.regions->displacements(clearance.x_, x, dx), {}});
+            motions_.push_back({side.regions->displacements(clearance.x_, x, dx), {}, {}});
     }
 
     [[nodiscard]] bool holds(const Cover& cover) {
@@ -177,8 +177,8 @@ private:
     /// Both turned back as the first has turned: what is left is how far each is off from a rigid motion, and how much
     /// the two motions differ where the second is.
     [[nodiscard]] bool turned_back_moved_less(const Cover& cover, const Pair& pair) {
-        const Turned& first = turned(cover.sides.first)[pair.first];
-        const Turned& second = turned(cover.sides.second)[pair.second];
+        const Turned& first = turned(cover.sides.first, pair.first);
+        const Turned& second = turned(cover.sides.second, pair.second);
         const Ball& mine = clearance_.sides_[cover.sides.first].balls[pair.first];
         const Ball& theirs = clearance_.sides_[cover.sides.second].balls[pair.second];
         const double turn_m = (second.rotation - first.rotation).norm() * theirs.radius_m;
@@ -190,15 +190,17 @@ private:
         return true;
     }
 
-    const std::vector<Turned>& turned(std::size_t side) {
+    /// Of a leaf, found when it is first asked for: of a body that turns little, few leaves are.
+    const Turned& turned(std::size_t side, std::size_t leaf) {
         const Reference& reference = clearance_.sides_[side];
-        const auto& regions = reference.regions->nodes();
-        std::vector<Turned>& turned = motions_[side].turned;
-        if (!turned.empty()) return turned;
-        turned.resize(regions.size());
-        for (std::size_t n = 0; n < regions.size(); ++n)
-            if (regions[n].is_leaf()) turned[n] = turned_leaf(reference, n);
-        return turned;
+        Motion& motion = motions_[side];
+        if (motion.place.empty()) motion.place.assign(reference.regions->nodes().size(), -1);
+        int& place = motion.place[leaf];
+        if (place < 0) {
+            place = static_cast<int>(motion.turned.size());
+            motion.turned.push_back(turned_leaf(reference, leaf));
+        }
+        return motion.turned[static_cast<std::size_t>(place)];
     }
 
     [[nodiscard]] Turned turned_leaf(const Reference& side, std::size_t leaf) const {

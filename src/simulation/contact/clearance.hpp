@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -67,7 +68,8 @@ private:
     };
     struct Motion {
         std::vector<Bounds> displacement;  ///< (regions)
-        std::vector<Turned> turned;        ///< (regions) filled for leaves, at the first question
+        std::vector<int> place;            ///< (regions) of a leaf among the turned, -1: not asked for
+        std::deque<Turned> turned;         ///< stay where they are when more come
     };
     class Look;
 

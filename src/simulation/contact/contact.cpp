@@ -71,7 +71,8 @@ Friction Contact::freeze(const Pairs& pairs, std::span<const double> frozen, std
                          const Friction* before) const {
     std::vector<FrozenPair> result;
     for (const Pair& pair : pairs) {
-        const double coefficient = friction_of(pair);
+        const auto nodes = std::span(pair.nodes).first(static_cast<std::size_t>(pair.node_count()));
+        const double coefficient = friction_owner(nodes, pair.obstacle).coefficient;
         if (coefficient == 0) continue;
         FrozenPair f = contact::freeze(pair, coefficient, settings_.stiffness_Pa, stencil_of(pair, frozen));
         if (f.limit_N > 0) result.push_back(f);
@@ -80,16 +81,17 @@ Friction Contact::freeze(const Pairs& pairs, std::span<const double> frozen, std
     return {std::move(result), {step_start.begin(), step_start.end()}, settings_.slip_m};
 }
 
-double Contact::friction_of(const Pair& pair) const {
-    double coefficient = pair.obstacle < 0 ? 0 : obstacles_[pair.obstacle].friction;
-    bool rigid = false;
-    for (int i = 0; i < pair.node_count(); ++i) {
-        const int part = part_of(pair.nodes[i]);
-        if (part == 0) continue;
-        rigid = true;
-        coefficient = std::max(coefficient, rigid_[static_cast<std::size_t>(part) - 1].friction);
+FrictionOwner Contact::friction_owner(std::span<const int> nodes, int obstacle) const {
+    FrictionOwner owner;
+    if (obstacle >= 0) owner = {obstacles_[static_cast<std::size_t>(obstacle)].friction, obstacle, -1};
+    for (const int node : nodes) {
+        const int rigid = part_of(node) - 1;
+        if (rigid < 0) continue;
+        const double own = rigid_[static_cast<std::size_t>(rigid)].friction;
+        if ((owner.obstacle < 0 && owner.rigid < 0) || own > owner.coefficient) owner = {own, -1, rigid};
     }
-    return pair.obstacle < 0 && !rigid ? settings_.friction : coefficient;
+    if (owner.obstacle < 0 && owner.rigid < 0) owner.coefficient = settings_.friction;
+    return owner;
 }
 
 double Contact::smallest_distance(const Pairs& pairs, std::span<const double> x) const {

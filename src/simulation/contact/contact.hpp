@@ -58,6 +58,13 @@ struct RigidPart {
     double friction = 0;  ///< coefficient; of two things that have one, the larger counts
 };
 
+/// Two things that are joined, and do not touch each other near there: rigid parts, or -1 for the rest of the robot.
+struct Joined {
+    int first = -1, second = -1;
+    Vec3 center;          ///< at rest
+    double radius_m = 0;  ///< in which both features begin at rest; of rigid parts infinite: they touch nowhere
+};
+
 /// What contact does to the robot, for results.
 struct Forces {
     std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot, without objects
@@ -65,6 +72,13 @@ struct Forces {
     double self_N = 0;                ///< sum of the sizes of all normal forces of the robot on itself
     std::vector<double> pressure_Pa;  ///< (robot nodes) normal force over the area of the node; 0 inside
     double smallest_distance_m = 0;   ///< as of smallest_distance()
+};
+
+/// Whose coefficient of friction a pair has: an obstacle's, a rigid part's or, with neither, the robot's against
+/// itself.
+struct FrictionOwner {
+    double coefficient = 0;
+    int obstacle = -1, rigid = -1;
 };
 
 /// An edge that passes through a triangle.
@@ -83,11 +97,12 @@ struct Crossing {
 /// among themselves.
 class Contact {
 public:
-    /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. Refused: obstacles and rigid parts
+    /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. `joined`: what of them, and of the
+    /// robot, is left out. Refused: obstacles and rigid parts
     /// that touch or cross what they may touch at rest (on a plane it may stand), numbers that make no sense.
     [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
                                                 const Settings& settings, std::span<const double> rest,
-                                                std::vector<RigidPart> rigid = {});
+                                                std::vector<RigidPart> rigid = {}, std::vector<Joined> joined = {});
 
     /// Rest positions of all nodes, (3 nodes); obstacles as they act, drawn in.
     [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
@@ -122,6 +137,10 @@ public:
     /// the step that has ended there, which what sticks remembers. Null: there was none.
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
                                   std::span<const double> step_start, const Friction* before = nullptr) const;
+
+    /// Of two things that have a coefficient the larger one counts; of equal ones the obstacle's. `nodes` of a pair,
+    /// and its obstacle or -1.
+    [[nodiscard]] FrictionOwner friction_owner(std::span<const int> nodes, int obstacle) const;
 
     /// Sum of the sizes of the robot's normal forces on itself, N; adds its gradient, N/m, to `gradient` (3 nodes).
     double add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
@@ -177,10 +196,12 @@ private:
         visit(robot_);
         for (const Side& part : parts_) visit(part);
     }
+    /// Whether two features belong together, or are of things that are joined there. `apart_m`: at rest.
+    [[nodiscard]] bool left_out(std::span<const int> first, std::span<const int> second, double apart_m) const;
+    [[nodiscard]] bool are_joined(std::span<const int> first, std::span<const int> second) const;
     /// The sides, by index, that may touch; {0, 0}, the robot itself, last.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> meetings(bool self) const;
     void make_sides(const Surface& robot);
-    [[nodiscard]] double friction_of(const Pair& pair) const;
     void number_parts(std::vector<RigidPart> rigid);
     [[nodiscard]] Status check_parts_at_rest() const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
@@ -200,6 +221,7 @@ private:
     std::vector<int> first_node_;        ///< (obstacles + 1)
     std::vector<int> obstacle_of_node_;  ///< (nodes), -1 for the robot's
     std::vector<RigidPart> rigid_;
+    std::vector<Joined> joined_;
     std::vector<int> part_of_node_;  ///< (nodes) as part_of(); empty without rigid parts
     std::vector<double> rest_;
     int robot_nodes_ = 0;

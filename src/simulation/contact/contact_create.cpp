@@ -89,7 +89,8 @@ Contact::Side Contact::make_side(Surface surface, std::span<const double> rest) 
 }
 
 Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, const Settings& settings,
-                                std::span<const double> rest, std::vector<RigidPart> rigid) {
+                                std::span<const double> rest, std::vector<RigidPart> rigid,
+                                std::vector<Joined> joined) {
     if (auto status = check_settings(settings); !status) return tl::unexpected(status.error());
     if (auto status = check_triangles(robot.triangles, rest.size() / 3, "contact surface"); !status)
         return tl::unexpected(status.error());
@@ -103,6 +104,7 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.obstacle_of_node_.assign(rest.size() / 3, -1);
     contact.obstacles_ = std::move(obstacles);
     contact.number_parts(std::move(rigid));
+    contact.joined_ = std::move(joined);
     contact.touching_m_ = 1e-9 * diagonal(rest);
     contact.belonging_ = Belonging(robot, rest, contact.touching_m_);
     contact.seen_m_ = std::max(seen_edges * mean_edge(robot, rest), seen_distances * settings.distance_m);

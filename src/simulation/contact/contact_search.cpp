@@ -371,8 +371,7 @@ void Contact::note_clearance(std::span<const double> x) const {
     const auto look = [&](const Search::Candidate& c, std::vector<Seen>& seen) {
         if (c.distance_bound(x) >= seen_m_) return;
         const double now = std::sqrt(c.squared_distance(x)), rest = std::sqrt(c.squared_distance(rest_));
-        if (now < seen_m_ && !belonging_.together(c.first_nodes(), c.second_nodes(), rest))
-            seen.push_back({c, now, rest});
+        if (now < seen_m_ && !left_out(c.first_nodes(), c.second_nodes(), rest)) seen.push_back({c, now, rest});
     };
     const Search search(*this, x, {}, seen_m_, Search::What::pairs, settings_.self);
     std::vector<Seen> all;
@@ -422,7 +421,7 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
         if (squared >= most * most) return;
         const double apart = std::sqrt(c.squared_distance(rest_));
         const double reach = this->reach(obstacle_of(c.nodes), apart);
-        if (squared < reach * reach && !belonging_.together(c.first_nodes(), c.second_nodes(), apart))
+        if (squared < reach * reach && !left_out(c.first_nodes(), c.second_nodes(), apart))
             found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
     };
     const auto known = nearby(x, {});
@@ -440,6 +439,20 @@ int Contact::obstacle_of(std::span<const int> nodes) const {
 
 double Contact::reach(int obstacle, double apart_m) const {
     return std::min(settings_.distance_m, obstacle < 0 || drawn_in_m_[obstacle] == 0 ? 0.5 * apart_m : apart_m);
+}
+
+bool Contact::left_out(std::span<const int> first, std::span<const int> second, double apart_m) const {
+    return belonging_.together(first, second, apart_m) || are_joined(first, second);
+}
+
+bool Contact::are_joined(std::span<const int> first, std::span<const int> second) const {
+    if (joined_.empty() || obstacle_of_node_[first[0]] >= 0 || obstacle_of_node_[second[0]] >= 0) return false;
+    const int a = part_of(first[0]) - 1, b = part_of(second[0]) - 1;
+    return std::ranges::any_of(joined_, [&](const Joined& j) {
+        if (std::minmax(j.first, j.second) != std::minmax(a, b)) return false;
+        const auto is_near = [&](int node) { return norm(node_at(rest_, node) - j.center) <= j.radius_m; };
+        return std::ranges::any_of(first, is_near) && std::ranges::any_of(second, is_near);
+    });
 }
 
 Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const {
@@ -460,7 +473,14 @@ Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, 
 std::vector<std::pair<std::size_t, std::size_t>> Contact::meetings(bool self) const {
     std::vector<std::pair<std::size_t, std::size_t>> meetings{{0, 1}};
     for (std::size_t k = 2; k < 2 + parts_.size(); ++k) {
-        for (std::size_t other = 0; other < k; ++other) meetings.emplace_back(other, k);
+        for (std::size_t other = 0; other < k; ++other) {
+            const auto apart = [&](const Joined& j) {
+                const std::size_t a = j.first < 0 ? 0 : 2 + static_cast<std::size_t>(j.first);
+                const std::size_t b = j.second < 0 ? 0 : 2 + static_cast<std::size_t>(j.second);
+                return std::isinf(j.radius_m) && std::minmax(a, b) == std::minmax(other, k);
+            };
+            if (std::ranges::none_of(joined_, apart)) meetings.emplace_back(other, k);
+        }
     }
     if (self) meetings.emplace_back(0, 0);
     return meetings;
@@ -494,8 +514,7 @@ double Contact::largest_step(std::span<const double> x, std::span<const double> 
         if (!c.comes_near(x, dx, margin)) return;
         const double t =
             contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
-        if (t < step && !belonging_.together(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_))))
-            step = t;
+        if (t < step && !left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)))) step = t;
     };
     const auto known = nearby(x, dx);
     const std::vector<double> steps =
@@ -533,7 +552,8 @@ std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool 
         const Vec3 a = node_at(x, n[0]), b = node_at(x, n[1]);
         const Vec3 t0 = node_at(x, n[2]), t1 = node_at(x, n[3]), t2 = node_at(x, n[4]);
         const Rim rim = at_rest ? Rim::left_out : Rim::counts;
-        if (!segment_crosses_triangle(a, b, t0, t1, t2, rim) || (!at_rest && edge_and_triangle_belong_together(n)))
+        if (!segment_crosses_triangle(a, b, t0, t1, t2, rim) || (!at_rest && edge_and_triangle_belong_together(n)) ||
+            are_joined(std::span(n).first(2), std::span(n).last(3)))
             return;
         const int obstacle = std::max(obstacle_of_node_[n[0]], obstacle_of_node_[n[2]]);
         found = {{n[0], n[1]}, {n[2], n[3], n[4]}, obstacle, point_in_plane(a, b, t0, t1, t2)};
@@ -553,7 +573,7 @@ bool Contact::edge_and_triangle_belong_together(std::span<const int, 5> n) const
     };
     for (std::size_t k = 0; k < 2; ++k) offer(Features::point_triangle, {r(k), r(2), r(3), r(4)});
     for (std::size_t k = 0; k < 3; ++k) offer(Features::edge_edge, {r(0), r(1), r(2 + k), r(2 + (k + 1) % 3)});
-    return belonging_.together(edge, triangle, std::sqrt(squared));
+    return left_out(edge, triangle, std::sqrt(squared));
 }
 
 std::optional<Crossing> Contact::crossing(std::span<const double> x) const {
@@ -596,7 +616,7 @@ Status Contact::check_parts_at_rest() const {
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
     const auto test = [&](const Search::Candidate& c, Found& found) {
         if (part_of(c.nodes[0]) != part_of(c.nodes[3]) && obstacle_of(c.nodes) < 0 &&
-            std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+            std::sqrt(c.squared_distance(rest_)) <= touching_m_ && !are_joined(c.first_nodes(), c.second_nodes()))
             found = {c.nodes[0], c.nodes[3]};
     };
     for (const Found& piece : search.run(Found{}, test))

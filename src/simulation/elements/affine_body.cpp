@@ -49,23 +49,50 @@ double AffineBody::energy(std::span<const double> x) const {
     return 0.25 * stiffness_ * (A.transpose() * A - Matrix3::Identity()).squaredNorm();
 }
 
-void AffineBody::add_gradient(std::span<const double> x, std::span<double> forces) const {
-    const Matrix3 A = deformation(x);
-    const Matrix3 P = stiffness_ * A * (A.transpose() * A - Matrix3::Identity());
+Matrix3 AffineBody::stress(const Matrix3& A) const {
+    return stiffness_ * A * (A.transpose() * A - Matrix3::Identity());
+}
+
+Matrix3 AffineBody::stress_change(const Matrix3& A, const Matrix3& dA) const {
+    const Matrix3 C = A.transpose() * A - Matrix3::Identity();
+    return stiffness_ * (dA * C + A * (dA.transpose() * A + A.transpose() * dA));
+}
+
+/// forces += P gₐ.
+void AffineBody::add(const Matrix3& P, std::span<double> forces) const {
     for (std::size_t a = 0; a < 4; ++a) {
         Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[a]));
         force += P * gradients_[a];
     }
 }
 
+void AffineBody::add_gradient(std::span<const double> x, std::span<double> forces) const {
+    add(stress(deformation(x)), forces);
+}
+
+/// With L the gradient of the motion, gₐ changes by −Lᵀ gₐ, A by −A L and k by tr L of itself.
+void AffineBody::add_rest_product(std::span<const double> x, std::span<const double> motion,
+                                  std::span<double> forces) const {
+    const Matrix3 A = deformation(x), L = deformation(motion), P = stress(A);
+    add(L.trace() * P + stress_change(A, -A * L) - P * L.transpose(), forces);
+}
+
+/// The change of the stress is symmetric in what changes it and what it is weighed with.
+void AffineBody::add_rest_weights(std::span<const double> x, std::span<const double> weights,
+                                  std::span<double> result) const {
+    const Matrix3 A = deformation(x), G = deformation(weights), P = stress(A);
+    add(P.cwiseProduct(G).sum() * Matrix3::Identity() - A.transpose() * stress_change(A, G) - G.transpose() * P,
+        result);
+}
+
 void AffineBody::add_hessian(std::span<const double> x, const std::vector<int>& index,
                              const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
-    const Matrix3 A = deformation(x), C = A.transpose() * A - Matrix3::Identity();
+    const Matrix3 A = deformation(x);
     Matrix9 H;
     for (int k = 0; k < 9; ++k) {
         Matrix3 dA = Matrix3::Zero();
         dA(k % 3, k / 3) = 1;
-        const Matrix3 dP = stiffness_ * (dA * C + A * (dA.transpose() * A + A.transpose() * dA));
+        const Matrix3 dP = stress_change(A, dA);
         H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
     }
     if (project) H = linalg::project_to_positive(H);

@@ -31,6 +31,11 @@ public:
     void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
+    /// forces (3n) += change of the gradient with a motion (3n) of the rest positions: k grows with the volume, and the
+    /// surface moves along, so that shares stay.
+    void add_rest_product(std::span<const double> x, std::span<const double> motion, std::span<double> forces) const;
+    /// result (3n) += the transpose of that product with `weights` (3n) of the forces.
+    void add_rest_weights(std::span<const double> x, std::span<const double> weights, std::span<double> result) const;
 
     /// A; its determinant is 1 but for what contact squeezes it.
     [[nodiscard]] linalg::Matrix3 deformation(std::span<const double> x) const;
@@ -39,11 +44,19 @@ public:
     /// (4) shares of the nodes in the motion of the point that is at `rest_point` at rest, metres; sum 1.
     [[nodiscard]] std::array<double, 4> shares(const linalg::Vector3& rest_point) const;
 
+    /// How they change with where the point is, 1/m.
+    [[nodiscard]] const std::array<linalg::Vector3, 4>& share_slopes() const { return gradients_; }
+
     [[nodiscard]] const std::array<int, 4>& nodes() const { return nodes_; }
     /// N/m of one node, about: what a stretch of the body takes.
     [[nodiscard]] double node_stiffness() const;
 
 private:
+    /// dE/dA, J, and how it changes with A.
+    [[nodiscard]] linalg::Matrix3 stress(const linalg::Matrix3& A) const;
+    [[nodiscard]] linalg::Matrix3 stress_change(const linalg::Matrix3& A, const linalg::Matrix3& dA) const;
+    void add(const linalg::Matrix3& per_gradient, std::span<double> forces) const;
+
     std::array<int, 4> nodes_;
     double stiffness_;
     std::array<linalg::Vector3, 4> gradients_;  ///< gₐ, 1/m

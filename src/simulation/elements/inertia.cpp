@@ -7,16 +7,28 @@
 namespace pliant::sim {
 
 Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, History begin, double dt,
-                 const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness)
+                 const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness, Scheme scheme)
     : elements_(&elements),
       free_index_(&free_index),
       start_(std::move(begin)),
       dt_(dt),
+      scheme_(scheme),
       damping_(damping),
       stiffness_(std::move(stiffness)) {
+    if (scheme_ == Scheme::bdf2 && !(start_.dt_before > 0)) scheme_ = Scheme::euler;
+    if (scheme_ == Scheme::bdf2) {
+        set_uneven();
+    } else if (scheme_ == Scheme::conserving) {
+        set_conserving();
+    } else {
+        set_even();
+    }
+}
+
+void Inertia::set_even() {
     const History& history = start_;
-    even_ = history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
-    rate_ = even_ ? 1.5 / dt : 1 / dt;
+    even_ = scheme_ == Scheme::even && history.dt_before > 0 && std::fabs(dt_ / history.dt_before - 1) < 1e-9;
+    rate_ = even_ ? 1.5 / dt_ : 1 / dt_;
     from_ = history.x;
     Eigen::VectorXd velocity = history.v;
     if (even_) {
@@ -24,6 +36,58 @@ Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, H
         velocity = (4 * history.v - history.v_before) / 3;
     }
     coast_ = from_ + velocity / rate_;
+    mass_rate_ = rate_ * rate_;
+    mass_entry_ = rate_ * (rate_ + damping_.mass_per_s);
+}
+
+void Inertia::set_uneven() {
+    const double r = dt_ / start_.dt_before, now = (1 + r) * (1 + r) / (1 + 2 * r), before = -r * r / (1 + 2 * r);
+    rate_ = (1 + 2 * r) / ((1 + r) * dt_);
+    from_ = now * start_.x + before * start_.x_before;
+    coast_ = from_ + (now * start_.v + before * start_.v_before) / rate_;
+    mass_rate_ = rate_ * rate_;
+    mass_entry_ = rate_ * (rate_ + damping_.mass_per_s);
+}
+
+void Inertia::set_conserving() {
+    rate_ = 1 / dt_;
+    from_ = start_.x;
+    coast_ = start_.x + dt_ * start_.v;
+    mass_rate_ = 2 / (dt_ * dt_);
+    mass_entry_ = mass_rate_ + rate_ * damping_.mass_per_s;
+}
+
+/// Held nodes go where they are moved: the mean of the velocities at both ends of a conserving step says nothing of
+/// their velocity at the end, which would swing about the true one for ever.
+Eigen::VectorXd Inertia::velocity(const Eigen::VectorXd& x) const {
+    if (scheme_ != Scheme::conserving) return rate_ * (x - from_);
+    Eigen::VectorXd v = 2 * rate_ * (x - from_) - start_.v;
+    for (std::size_t node = 0; node < free_index_->size(); ++node) {
+        const auto at = 3 * static_cast<Eigen::Index>(node);
+        if ((*free_index_)[node] < 0) v.segment<3>(at) = rate_ * (x.segment<3>(at) - from_.segment<3>(at));
+    }
+    return v;
+}
+
+/// What the mass is multiplied with, over its rate.
+Eigen::VectorXd Inertia::off(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd off = x - coast_;
+    if (scheme_ != Scheme::conserving) return off;
+    for (std::size_t node = 0; node < free_index_->size(); ++node) {
+        if ((*free_index_)[node] < 0) off.segment<3>(3 * static_cast<Eigen::Index>(node)) *= 0.5;
+    }
+    return off;
+}
+
+/// Errors are h^3 times the third derivative, times a number that theory gives for each of the two.
+Eigen::VectorXd Inertia::error(const Eigen::VectorXd& x) const {
+    const History& h = start_;
+    const bool of_first_order = scheme_ == Scheme::euler || (scheme_ == Scheme::even && !even_);
+    if (of_first_order) return 0.5 * dt_ * (velocity(x) - h.v);
+    if (!(h.dt_before > 0)) return x - h.x - dt_ * h.v;
+    const double r = dt_ / h.dt_before, onward = 1.0 / 6 + 1 / (4 * r);
+    const double own = scheme_ == Scheme::conserving ? 1.0 / 12 : (1 + r) * (1 + r) / (6 * r * (1 + 2 * r));
+    return own / (own + onward) * (x - h.x - dt_ * h.v - 0.5 * dt_ * r * (h.v - h.v_before));
 }
 
 Eigen::VectorXd Inertia::mass_times(const Eigen::VectorXd& v) const {
@@ -64,23 +128,29 @@ Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
 History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen::VectorXd& velocity_weights) const {
     const Eigen::VectorXd mass = -rate_ * mass_times(force_weights);
     const Eigen::VectorXd by_from = rate_ * (mass - damping_force(force_weights) - velocity_weights);
-    if (!even_) return {by_from, mass, Eigen::VectorXd::Zero(mass.size()), Eigen::VectorXd::Zero(mass.size()), 0};
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(mass.size());
+    if (start_.is_still) return {by_from, none, none, none, 0};
+    if (scheme_ == Scheme::bdf2) {
+        const double r = dt_ / start_.dt_before, now = (1 + r) * (1 + r) / (1 + 2 * r), before = -r * r / (1 + 2 * r);
+        return {now * by_from, now * mass, before * by_from, before * mass, 0};
+    }
+    if (!even_) return {by_from, mass, none, none, 0};
     return {4.0 / 3 * by_from, 4.0 / 3 * mass, -1.0 / 3 * by_from, -1.0 / 3 * mass, 0};
 }
 
 double Inertia::energy(const Eigen::VectorXd& x) const {
-    const Eigen::VectorXd off = x - coast_;
+    const Eigen::VectorXd off = this->off(x);
     const Eigen::VectorXd motion = x - from_;
-    return 0.5 * rate_ * rate_ * off.dot(mass_times(off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
+    return 0.5 * mass_rate_ * off.dot(mass_times(off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
 }
 
 void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const {
-    forces += rate_ * rate_ * mass_times(x - coast_) + rate_ * damping_force(x - from_);
+    forces += mass_rate_ * mass_times(off(x)) + rate_ * damping_force(x - from_);
 }
 
 void Inertia::add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                           std::span<double> values) const {
-    elements_->add_mass(index, pattern, values, rate_ * (rate_ + damping_.mass_per_s));
+    elements_->add_mass(index, pattern, values, mass_entry_);
     if (!stiffness_) return;
     const linalg::SymmetricPattern& own = *stiffness_->pattern;
     std::vector<int> place(static_cast<std::size_t>(own.nodes));  // of each free node in the pattern

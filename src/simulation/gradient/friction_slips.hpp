@@ -6,16 +6,19 @@
 #include <vector>
 
 #include "simulation/contact/friction.hpp"
+#include "simulation/solver/equilibrium.hpp"
 
 namespace pliant::sim {
 
 /// Along the tangents of each pair.
 using Slips = std::vector<Eigen::Vector2d>;
 
-/// How far a motion (3 robot nodes, then 3 obstacle nodes) takes the two features of a pair past each other.
-[[nodiscard]] Eigen::Vector2d slip_of_motion(const contact::FrozenPair& pair, const Eigen::VectorXd& motion);
+/// How far a motion, in the numbers of contact_forces.hpp, takes the two features of each pair past each other.
+[[nodiscard]] Slips slips_of_motion(const Equilibrium& system, const contact::Friction& friction,
+                                    const Eigen::VectorXd& motion);
 
-/// The transpose of that, of all pairs: adds to `nodes` (3 robot nodes, then 3 obstacle nodes).
-void add_to_nodes(const contact::Friction& friction, const Slips& slips, Eigen::VectorXd& nodes);
+/// The transpose of that: adds to `forces`, in the same numbers.
+void add_to_forces(const Equilibrium& system, const contact::Friction& friction, const Slips& slips,
+                   Eigen::VectorXd& forces);
 
 }  // namespace pliant::sim

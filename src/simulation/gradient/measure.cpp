@@ -144,9 +144,10 @@ Slope of_reaction(const Place& at, std::size_t support, const Vec3& direction) {
 Slope of_contact(const Place& at, std::size_t obstacle, const Vec3& direction) {
     Slope slope = nothing(at);
     const contact::Contact& contact = *at.system().model().contact(true);
-    slope.state.by_forces = Eigen::VectorXd::Zero(3 * contact.node_count());
+    slope.state.by_forces = Eigen::VectorXd::Zero(force_size(at.system()));
+    const Eigen::Index first = at.system().model().node_count() - contact.robot_node_count();
     for (int node = contact.first_node(obstacle); node < contact.first_node(obstacle + 1); ++node)
-        slope.state.by_forces.segment<3>(3 * static_cast<Eigen::Index>(node)) = linalg::vector(direction);
+        slope.state.by_forces.segment<3>(3 * (first + node)) = linalg::vector(direction);
     const ContactForces forces = contact_forces(at.system(), at.state(), at.controls());
     slope.value = slope.state.by_forces.dot(forces.pressure + forces.friction);
     return slope;
@@ -157,8 +158,7 @@ Slope of_self_contact(const Place& at) {
     Slope slope = nothing(at);
     const contact::Contact* contact = at.system().model().contact(at.controls().met);
     if (contact == nullptr) return slope;
-    std::vector<double> x(at.state().x.begin(), at.state().x.end());
-    x.insert(x.end(), at.controls().obstacles.begin(), at.controls().obstacles.end());
+    const std::vector<double> x = contact_nodes(at.system(), at.state(), at.controls());
     std::vector<double> gradient(x.size(), 0.0);
     slope.value = contact->add_self_force(contact->find(x), x, gradient);
     slope.state.by_positions = Eigen::Map<const Eigen::VectorXd>(gradient.data(), at.state().x.size());

@@ -12,6 +12,7 @@ struct There {
 There there(const Equilibrium& system, const State& state, const Controls& controls) {
     There at{state, system.controls(controls.time)};
     at.controls.met = controls.met;
+    at.controls.joint_start = controls.joint_start;
     system.place_supports(at.controls, at.state.x);
     for (std::size_t a = 0; a < at.controls.drives.size(); ++a) {
         if (at.controls.drives[a].kind == Drive::Kind::multiplier)

@@ -1,10 +1,12 @@
 #include "simulation/gradient/program_gradient.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/linalg/vectors.hpp"
 #include "simulation/gradient/backwards.hpp"
 #include "simulation/gradient/step_adjoint.hpp"
 #include "simulation/run/simulate.hpp"
@@ -101,8 +103,33 @@ private:
                 }
                 return {};
             });
-        if (status && result_.by.rest.size() > 0) result_.by.rest += carried_.x;  // it began at rest
+        if (!status) return status;
+        if (result_.by.rest.size() > 0) result_.by.rest += carried_.x;  // it began at rest
+        if (stepper_.options().dynamics) go_back_to_start();
         return status;
+    }
+
+    /// Nodes of an object start with v + w x (x - c), c their mean.
+    void go_back_to_start() {
+        const Description& d = stepper_.model().description();
+        const Eigen::VectorXd rest = stepper_.system().rest().x;
+        result_.by_start = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(d.objects.size()));
+        for (std::size_t k = 0; k < d.objects.size(); ++k) {
+            const Eigen::Vector3d spin = linalg::vector(d.objects[k].angular_velocity_rad_s);
+            const Eigen::Vector3d centre = stepper_.model().objects()[k].centre(linalg::view(rest));
+            auto by = result_.by_start.col(static_cast<Eigen::Index>(k));
+            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+            for (const int node : d.objects[k].nodes) {
+                const Eigen::Vector3d worth = carried_.v.segment<3>(3 * node);
+                by.head<3>() += worth;
+                by.tail<3>() += (rest.segment<3>(3 * node) - centre).cross(worth);
+                sum += worth.cross(spin) / 4;
+            }
+            if (result_.by.rest.size() == 0) continue;
+            for (const int node : d.objects[k].nodes)
+                result_.by.rest.segment<3>(3 * node) +=
+                    Eigen::Vector3d(carried_.v.segment<3>(3 * node)).cross(spin) - sum;
+        }
     }
 
     /// `last`: of its step, so that it is judged. Where nothing is worth anything there is nothing to solve.

@@ -25,7 +25,9 @@ struct ProgramGradient {
         Eigen::VectorXd by_inputs;  ///< (inputs(at)); empty: not wanted, or nothing depends on them
     };
     std::vector<Instant> instants;  ///< in the order of time
-    int steps_taken = 0;            ///< solved in all, those again that were not kept
+    /// (6, objects) by the velocity, m/s, and the angular velocity, rad/s, with which each starts; empty: not in time.
+    Eigen::MatrixXd by_start;
+    int steps_taken = 0;  ///< solved in all, those again that were not kept
 };
 
 struct GradientOptions {

@@ -188,17 +188,20 @@ void try_robot(Linearisation& at, unsigned seed, Found& found) {
 
 }  // namespace
 
-TEST_CASE("random robots, by what is wanted of them and by what they are made with") {
-    const auto asked = [](const char* name, unsigned unless) {
-        const char* text = std::getenv(name);
-        return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : unless;
-    };
+namespace {
+
+unsigned asked(const char* name, unsigned unless) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : unless;
+}
+
+void try_robots(const std::function<test::RandomProgram(unsigned seed)>& made) {
     const unsigned count = asked("PLIANT_RANDOM_ROBOTS", 4), first = asked("PLIANT_RANDOM_FIRST", 1);
     Found found;
     unsigned tried = 0, seed = first, given_up = 0;
     for (; tried < count; ++seed) {
-        const test::RandomProgram p = test::random_program(seed);
-        const auto model = Model::create(with_more(p.robot, seed));
+        const test::RandomProgram p = made(seed);
+        const auto model = Model::create(p.robot);
         if (!model) continue;
         RandomState random(*model, p, seed);
         if (!random.moved) continue;
@@ -218,4 +221,25 @@ TEST_CASE("random robots, by what is wanted of them and by what they are made wi
             " derivatives to 1e-6 of themselves; ", found.hidden, " of ", found.measures,
             " measures left out, which rounding of positions hides");
     CHECK(found.told > 0.7 * found.tried);
+}
+
+}  // namespace
+
+TEST_CASE("random robots, by what is wanted of them and by what they are made with") {
+    try_robots([](unsigned seed) {
+        test::RandomProgram p = test::random_program(seed);
+        p.robot = with_more(std::move(p.robot), seed);
+        return p;
+    });
+}
+
+TEST_CASE("random bodies that nothing holds, with objects over a ground, at rest and thrown") {
+    try_robots([](unsigned seed) {
+        test::RandomProgram p = test::random_free_program(seed);
+        for (const FreeObject& object : p.robot.objects)
+            p.robot.markers.push_back(
+                {object.name, {{object.nodes.begin(), object.nodes.end()}, {0.25, 0.25, 0.25, 0.25}, {}}});
+        p.robot.markers.push_back({"corner", {{p.robot.mesh.nodes.back()}, {1}, {}}});
+        return p;
+    });
 }

@@ -37,6 +37,22 @@ void carry_inertia(const Inertia& inertia, const Eigen::VectorXd& force_weights,
     carried.v_before = by.v_before;
 }
 
+/// What damps a joint does so against where it was when the step began.
+void carry_joints(const Linearisation& at, const Eigen::VectorXd& force_weights, Carried& carried) {
+    const Equilibrium& system = at.system();
+    const Description& d = system.model().description();
+    for (std::size_t j = 0; j < d.joints.size(); ++j) {
+        const JointForce& joint = system.joints()[j];
+        const double dt = system.joint_drive(at.controls(), j).dt;
+        if (!(dt > 0) || !(d.joints[j].law.damping > 0) || !joint.has_coordinate()) continue;
+        Eigen::VectorXd now = Eigen::VectorXd::Zero(force_weights.size());
+        joint.add_coordinate_gradient(linalg::view(at.state().x), 1, linalg::view(now));
+        const Eigen::VectorXd& start = at.controls().inertia->start().x;
+        const double worth = -d.joints[j].law.damping / dt * now.dot(force_weights);
+        joint.add_coordinate_gradient(linalg::view(start), worth, linalg::view(carried.x));
+    }
+}
+
 void carry_nothing(Carried& carried) {
     carried.x.setZero();
     carried.v.setZero();
@@ -57,29 +73,30 @@ Slips worth_of_slips(const Linearisation& at, std::span<const double> x, const C
 
 /// The same by the positions that make the slips (3 robot nodes, then 3 obstacle nodes).
 Eigen::VectorXd by_positions(const Linearisation& at, const Slips& slips) {
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(at.state().x.size() + at.controls().obstacles.size());
-    if (at.controls().friction) add_to_nodes(*at.controls().friction, slips, by);
-    return by;
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(force_size(at.system()));
+    if (at.controls().friction) add_to_forces(at.system(), *at.controls().friction, slips, by);
+    return force_on_places(at.system(), by);
 }
 
-/// How far the weights (3 robot nodes, then 3 obstacle nodes) move each pair along its tangents, as hard as it resists.
-void add_resistance(const contact::Friction& friction, std::span<const double> x, const Eigen::VectorXd& weights,
-                    Slips& slips) {
-    for (std::size_t k = 0; k < slips.size(); ++k)
-        slips[k] += friction.stiffness(k, x) * slip_of_motion(friction.pairs()[k], weights);
+/// How far the weights of forces move each pair along its tangents, as hard as it resists.
+void add_resistance(const Equilibrium& system, const contact::Friction& friction, std::span<const double> x,
+                    const Eigen::VectorXd& weights, Slips& slips) {
+    const Slips moved = slips_of_motion(system, friction, weights);
+    for (std::size_t k = 0; k < slips.size(); ++k) slips[k] += friction.stiffness(k, x) * moved[k];
 }
 
 /// Friction slips from where the step begins, and goes on from the slip with which the step before has ended.
 void carry_friction(const Linearisation& at, std::span<const double> x, const Eigen::VectorXd& force_weights,
                     Slips slips, const Eigen::VectorXd& by_slips, Carried& carried) {
     const Eigen::Index robot = at.state().x.size();
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(by_slips.size());
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(force_size(at.system()));
     weights.head(force_weights.size()) = force_weights;
-    const Eigen::VectorXd by = friction_stiffness_times(at.system(), at.state(), at.controls(), weights) + by_slips;
+    const Eigen::VectorXd resisted = friction_stiffness_times(at.system(), at.state(), at.controls(), weights);
+    const Eigen::VectorXd by = force_on_places(at.system(), resisted) + by_slips;
     carried.x -= by.head(robot);
     carried.obstacles = -by.tail(by.size() - robot);
     carried.friction = at.controls().friction;
-    if (carried.friction) add_resistance(*carried.friction, x, weights, slips);
+    if (carried.friction) add_resistance(at.system(), *carried.friction, x, weights, slips);
     carried.slips = std::move(slips);
 }
 
@@ -97,9 +114,7 @@ bool Carried::is_nothing() const {
 
 Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by, Carried& carried) {
     const auto& inertia = at.controls().inertia;
-    Eigen::VectorXd all(at.state().x.size() + at.controls().obstacles.size());
-    all << at.state().x, at.controls().obstacles;
-    const std::span<const double> x = linalg::view(std::as_const(all));
+    const std::vector<double> x = contact_nodes(at.system(), at.state(), at.controls());
     Slips slips = worth_of_slips(at, x, carried);
     const Eigen::VectorXd by_slips = by_positions(at, slips);
     carried.obstacles += by_slips.tail(carried.obstacles.size());
@@ -115,6 +130,7 @@ Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by
         carry_inertia(*inertia, weights.head(at.state().x.size()), carried);
     else
         carry_nothing(carried);
+    carry_joints(at, weights.head(at.state().x.size()), carried);
     carry_friction(at, x, weights, std::move(slips), by_slips, carried);
     return result;
 }

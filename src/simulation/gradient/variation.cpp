@@ -5,6 +5,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/guide_points.hpp"
+#include "simulation/linearisation/contact_forces.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/linearisation/rest_positions.hpp"
 
@@ -61,7 +62,7 @@ Derivative nothing(const Linearisation& at) {
     const Eigen::Index nodes = at.state().x.size();
     return {Eigen::VectorXd::Zero(at.size()),
             {Eigen::VectorXd::Zero(nodes), Eigen::VectorXd::Zero(at.state().multiplier.size())},
-            Eigen::VectorXd::Zero(nodes + at.controls().obstacles.size())};
+            Eigen::VectorXd::Zero(force_size(at.system()))};
 }
 
 void add_parameters(Linearisation& at, std::span<const Parameter> all, const Eigen::VectorXd& change, Derivative& sum) {

@@ -14,7 +14,7 @@ Trial::Trial(std::unique_ptr<Variant> variant, std::span<const Channel> channels
       stepper_(std::make_unique<sim::Stepper>(variant_->model, sim::stepper_options(variant_->program))) {}
 
 bool Trial::has_history() const {
-    return variant_->program.dynamics.has_value() || stepper_->system().has_friction();
+    return stepper_->has_inertia() || stepper_->system().has_friction();
 }
 
 void Trial::plan(std::span<const double> times) {

@@ -144,17 +144,34 @@ private:
     /// How the forces of a piece change with where it begins.
     [[nodiscard]] VectorXd start_force(const sim::Linearisation& at, std::size_t unknown) const {
         const sim::History& h = by[unknown];
-        VectorXd force = VectorXd::Zero(h.x.size() + at.controls().obstacles.size());
+        VectorXd force = VectorXd::Zero(sim::force_size(at.system()));
         if (at.controls().inertia) {
             VectorXd inertia = VectorXd::Zero(h.x.size());
             from(at, unknown).add_gradient(VectorXd::Zero(h.x.size()), inertia);
             force.head(h.x.size()) += inertia;
+            add_joint_force(at, h.x, force);
         }
         VectorXd motion = VectorXd::Zero(force.size());
         motion.head(h.x.size()) = h.x;
         force -= sim::friction_stiffness_times(at.system(), at.state(), at.controls(), motion);
         if (friction_) add_slip_force(at, unknown, force);
         return force;
+    }
+
+    /// What damps a joint does so against where it was when the piece began.
+    static void add_joint_force(const sim::Linearisation& at, const VectorXd& motion, VectorXd& force) {
+        const sim::Equilibrium& system = at.system();
+        const auto& joints = system.model().description().joints;
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const double dt = system.joint_drive(at.controls(), j).dt;
+            if (!(dt > 0) || !(joints[j].law.damping > 0)) continue;
+            VectorXd start = VectorXd::Zero(motion.size()), now = start;
+            system.joints()[j].add_coordinate_gradient(linalg::view(at.controls().inertia->start().x), 1,
+                                                       linalg::view(start));
+            system.joints()[j].add_coordinate_gradient(
+                linalg::view(at.state().x), -joints[j].law.damping / dt * start.dot(motion), linalg::view(now));
+            force.head(motion.size()) += now;
+        }
     }
 
     /// What the piece before hands on becomes what this one begins with.
@@ -170,39 +187,31 @@ private:
     }
 
     void add_slip_force(const sim::Linearisation& at, std::size_t unknown, VectorXd& force) const {
-        const VectorXd x = end_of(at);
+        const std::vector<double> x = sim::contact_nodes(at.system(), at.state(), at.controls());
         sim::Slips resisted = slips_[unknown];
-        for (std::size_t k = 0; k < resisted.size(); ++k)
-            resisted[k] = friction_->stiffness(k, linalg::view(x)) * resisted[k];
-        sim::add_to_nodes(*friction_, resisted, force);
+        for (std::size_t k = 0; k < resisted.size(); ++k) resisted[k] = friction_->stiffness(k, x) * resisted[k];
+        sim::add_to_forces(at.system(), *friction_, resisted, force);
     }
 
     /// The slips at the end of the piece, cut to what is handed on; `x`: how that end moves.
     void keep_slips(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
-        const VectorXd end = end_of(at);
-        VectorXd motion = VectorXd::Zero(end.size());
+        if (!friction_) return;
+        const std::vector<double> end = sim::contact_nodes(at.system(), at.state(), at.controls());
+        VectorXd motion = VectorXd::Zero(x.size() + at.controls().obstacles.size());
         motion.head(x.size()) = x - by[unknown].x;
+        const sim::Slips moved = sim::slips_of_motion(at.system(), *friction_, motion);
         sim::Slips& slips = slips_[unknown];
         for (std::size_t k = 0; k < slips.size(); ++k) {
-            const auto& pair = friction_->pairs()[k];
-            const auto slip = friction_->slip(pair, linalg::view(end));
-            slips[k] = sim::contact::kept_slip_gradient(slip, friction_->slip_m()) *
-                       (slips[k] + sim::slip_of_motion(pair, motion));
+            const auto slip = friction_->slip(friction_->pairs()[k], end);
+            slips[k] = sim::contact::kept_slip_gradient(slip, friction_->slip_m()) * (slips[k] + moved[k]);
         }
-    }
-
-    /// Where the nodes of the robot and those of the obstacles are.
-    [[nodiscard]] static VectorXd end_of(const sim::Linearisation& at) {
-        VectorXd all(at.state().x.size() + at.controls().obstacles.size());
-        all << at.state().x, at.controls().obstacles;
-        return all;
     }
 
     void keep(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
         keep_slips(at, unknown, x);
         sim::History& h = by[unknown];
         VectorXd v = h.v;
-        if (at.controls().inertia) v = from(at, unknown).velocity(x);
+        if (at.controls().inertia && !at.controls().inertia->is_tether()) v = from(at, unknown).velocity(x);
         h.x_before = std::exchange(h.x, x);
         h.v_before = std::exchange(h.v, std::move(v));
     }
@@ -210,6 +219,7 @@ private:
     [[nodiscard]] sim::Inertia from(const sim::Linearisation& at, std::size_t unknown) const {
         sim::History history = by[unknown];
         history.dt_before = at.controls().inertia->start().dt_before;
+        history.is_still = at.controls().inertia->is_tether();
         return at.controls().inertia->from(std::move(history));
     }
 

@@ -28,13 +28,14 @@ struct Unit {
     std::string_view shown;
     double factor;  ///< SI to `shown`
 };
-constexpr std::array<Unit, 6> units = {{
+constexpr std::array<Unit, 7> units = {{
     {"Pa", Dimension::pressure, "kPa", 1e-3},
     {"m", Dimension::length, "mm", 1e3},
     {"m^3", Dimension::volume, "mm^3", 1e9},
     {"N", Dimension::force, "N", 1},
     {"N/m", Dimension::stiffness, "N/m", 1},
     {"kg/m^3", Dimension::density, "kg/m^3", 1},
+    {"kg", Dimension::mass, "g", 1e3},
 }};
 
 const Unit* find_unit(std::string_view si) {
@@ -128,6 +129,16 @@ void add_contact(const robot::Robot& robot, Collector& to) {
         to.positive("obstacle." + obstacle.name + ".friction", "", obstacle.friction, 10);
 }
 
+void add_masses(const robot::Robot& robot, Collector& to) {
+    for (const auto& object : robot.objects) {
+        const std::string owner = "object." + object.name + ".";
+        if (object.mass_kg > 0) to.positive(owner + "mass", "kg", object.mass_kg);
+        if (object.density_kg_m3 > 0) to.positive(owner + "density", "kg/m^3", object.density_kg_m3);
+        to.positive(owner + "friction", "", object.friction, 10);
+    }
+    for (const auto& mass : robot.masses) to.positive("mass." + mass.name + ".mass", "kg", mass.mass_kg);
+}
+
 /// One end of "LOW..HIGH".
 Result<double> read_bound(const Unknown& unknown, std::string_view text) {
     text = trimmed(text);
@@ -215,11 +226,13 @@ std::vector<Unknown> possible_unknowns(const robot::Robot& robot) {
                    std::max(1e3, 0.1 * std::fabs(*load.pressure_Pa)));
             continue;
         }
+        if (load.force_N == Vec3{} && !(load.torque_Nm == Vec3{})) continue;  // the file need not have the key
         for (std::size_t axis = 0; axis < 3; ++axis)
             to.any(fmt::format("load.{}.force.{}", load.name, axis), "N", load.force_N[axis],
                    std::max(0.1, 0.1 * std::fabs(load.force_N[axis])));
     }
     add_contact(robot, to);
+    add_masses(robot, to);
     if (robot.program.dynamics) {
         to.positive("program.mass_damping", "", robot.program.dynamics->damping.mass_per_s);
         to.positive("program.stiffness_damping", "", robot.program.dynamics->damping.stiffness_s);

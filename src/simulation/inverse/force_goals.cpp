@@ -11,13 +11,6 @@ namespace {
 
 constexpr Eigen::Index axes = 3;
 
-/// Robot and obstacle nodes, as contact knows them.
-std::vector<double> positions(const State& state, const Controls& controls) {
-    std::vector<double> all(state.x.begin(), state.x.end());
-    all.insert(all.end(), controls.obstacles.begin(), controls.obstacles.end());
-    return all;
-}
-
 contact::Stencil stencil_of(const contact::Pair& pair, const std::vector<double>& x) {
     contact::Stencil stencil;
     for (std::size_t k = 0; k < stencil.size(); ++k) {
@@ -27,20 +20,21 @@ contact::Stencil stencil_of(const contact::Pair& pair, const std::vector<double>
     return stencil;
 }
 
-/// Calls `visit` with each pair that the goal's obstacle presses with.
+/// Calls `visit` with each pair that the goal's obstacle presses on the robot with.
 template <class Visit>
 void visit_pairs(const Equilibrium& system, const Controls& controls, const std::vector<double>& x, const Goal& goal,
                  const Visit& visit) {
     const contact::Contact* contact = system.model().contact(controls.met);
     if (contact == nullptr) return;
     for (const contact::Pair& pair : contact->find(x)) {
-        if (pair.obstacle == static_cast<int>(goal.on)) visit(pair, contact->settings().stiffness_Pa);
+        if (pair.obstacle == static_cast<int>(goal.on) && !touches_object(system, pair.nodes))
+            visit(pair, contact->settings().stiffness_Pa);
     }
 }
 
 /// The sizes of all normal forces of the obstacle on the robot, added up.
 double pressing_force(const Equilibrium& system, const State& state, const Controls& controls, const Goal& goal) {
-    const std::vector<double> x = positions(state, controls);
+    const std::vector<double> x = contact_nodes(system, state, controls);
     double sum = 0;
     visit_pairs(system, controls, x, goal, [&](const contact::Pair& pair, double stiffness_Pa) {
         sum += contact::normal_force(pair, stiffness_Pa, stencil_of(pair, x));
@@ -51,7 +45,7 @@ double pressing_force(const Equilibrium& system, const State& state, const Contr
 /// By central differences of each pair's own force: it depends on the four nodes of the pair alone.
 Quantity pressing_gradient(const Linearisation& at, const Goal& goal) {
     Quantity quantity{Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())};
-    const std::vector<double> x = positions(at.state(), at.controls());
+    const std::vector<double> x = contact_nodes(at.system(), at.state(), at.controls());
     const int robot_nodes = at.system().model().node_count();
     visit_pairs(at.system(), at.controls(), x, goal, [&](const contact::Pair& pair, double stiffness_Pa) {
         constexpr double share = 1e-5;  // of the distance within which the pair acts
@@ -79,9 +73,10 @@ std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goa
     const contact::Contact& contact = *system.model().contact(true);
     std::vector<Quantity> all;
     for (Eigen::Index axis = 0; axis < axes; ++axis) {
-        Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * Eigen::Index{contact.node_count()});
+        Eigen::VectorXd motion = Eigen::VectorXd::Zero(force_size(system));
+        const Eigen::Index first = system.model().node_count() - contact.robot_node_count();
         for (int node = contact.first_node(goal.on); node < contact.first_node(goal.on + 1); ++node)
-            motion[3 * node + axis] = 1;
+            motion[3 * (first + node) + axis] = 1;
         all.push_back({contact_stiffness_times(system, at.state(), at.controls(), motion).head(at.state().x.size()),
                        Eigen::VectorXd::Zero(at.state().multiplier.size())});
     }

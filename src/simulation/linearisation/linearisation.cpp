@@ -52,10 +52,11 @@ Parts assembled(const Equilibrium& system, const State& state, const Controls& c
     Parts parts;
     parts.symmetric.assign(layout.pattern.entries(), 0.0);
     system.add_tangent(state, controls, layout, parts.symmetric, false);
-    if (layout.nodes == TangentNodes::free && !system.has_skew() && system.model().elements().has_energy())
+    if (layout.nodes == TangentNodes::free && !system.has_skew() && !system.has_torques() &&
+        system.model().elements().has_energy())
         return parts;
     parts.skew.assign(layout.pattern.entries(), 0.0);
-    system.add_skew(state, layout, parts.skew);
+    system.add_skew(state, controls, layout, parts.skew);
     const auto is_zero = [](double entry) { return entry == 0; };
     if (std::ranges::all_of(parts.skew, is_zero)) parts.skew.clear();
     return parts;
@@ -96,8 +97,10 @@ KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& l
 
 Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,
                                             const KnownPattern& known, double residual) {
-    if (!system.objects().empty())
-        return input_error("a robot with an [[object]] has no linearisation: gradients and the inverse need obstacles");
+    if (system.model().description().fluid)
+        return input_error("a robot in a [fluid] has no linearisation: gradients and the inverse know no drag");
+    if (controls.inertia && controls.inertia->scheme() == Scheme::conserving)
+        return input_error("a step with integrator = \"energy-conserving\" has no linearisation; use \"bdf2\"");
     const Evaluation evaluation = system.evaluate(state, controls);
     if (!evaluation.possible()) return failure("a state that {} has no linearisation", name(evaluation.flaw));
     Linearisation made;
@@ -256,6 +259,7 @@ bool Linearisation::is_tets_and_more() const {
 
 bool Linearisation::has_more_than_tets() const {
     return !system_->actuators().empty() || !system_->plates().empty() || !system_->springs().empty() ||
+           !system_->objects().empty() || !system_->joints().empty() ||
            system_->model().contact(controls_.met) != nullptr;
 }
 
@@ -293,7 +297,7 @@ void Linearisation::add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::V
         system_->lay_out_tangent_beside_tets(system_->contact_cliques(state_, controls_, TangentNodes::all));
     std::vector<double> symmetric(layout.pattern.entries(), 0.0), skew(layout.pattern.entries(), 0.0);
     system_->add_tangent_beside_tets(state_, controls_, layout, symmetric, false);
-    system_->add_skew(state_, layout, skew);
+    system_->add_skew(state_, controls_, layout, skew);
     linalg::add_product(layout.pattern, symmetric, view(v), 1, view(result));
     add_skew_product(layout.pattern, skew, v, -1, result);
 }

@@ -101,6 +101,31 @@ void add_contact(const Description& d, std::vector<Parameter>& all) {
     }
 }
 
+void add_joints(const Description& d, bool in_time, std::vector<Parameter>& all) {
+    for (std::size_t j = 0; j < d.joints.size(); ++j) {
+        const Joint& joint = d.joints[j];
+        const std::string owner = fmt::format("joint \"{}\"", joint.name);
+        const std::string unit = joint.kind == Joint::Kind::hinge ? "N m" : "N";
+        const std::string of = joint.kind == Joint::Kind::hinge ? "rad" : "m";
+        if (joint.law.stiffness > 0)
+            all.push_back({Kind::joint_stiffness, j, owner + ": stiffness", unit + "/" + of, joint.law.stiffness});
+        if (joint.law.damping > 0 && in_time)
+            all.push_back({Kind::joint_damping, j, owner + ": damping", unit + " s/" + of, joint.law.damping});
+    }
+}
+
+void add_masses(const Description& d, std::vector<Parameter>& all) {
+    for (std::size_t k = 0; k < d.objects.size(); ++k) {
+        const std::string owner = fmt::format("object \"{}\"", d.objects[k].name);
+        all.push_back({Kind::object_mass, k, owner + ": mass", "kg", d.objects[k].mass_kg});
+        if (d.objects[k].friction > 0)
+            all.push_back({Kind::object_friction, k, owner + ": friction", "", d.objects[k].friction});
+    }
+    for (std::size_t k = 0; k < d.masses.size(); ++k)
+        all.push_back(
+            {Kind::point_mass, k, fmt::format("mass \"{}\": mass", d.masses[k].name), "kg", d.masses[k].mass_kg});
+}
+
 }  // namespace
 
 double weighted_share(const Linearisation& at, std::size_t cable) {
@@ -131,6 +156,16 @@ std::vector<Parameter> inputs(const Linearisation& at) {
                            fmt::format("obstacle \"{}\": share of its motion", obstacle.body.name), "",
                            obstacle.share.at(time)});
     }
+    for (std::size_t j = 0; j < d.joints.size(); ++j) {
+        const bool turns = d.joints[j].kind == Joint::Kind::hinge;
+        const JointLaw::Drive drive = d.joints[j].law.drive;
+        if (drive == JointLaw::Drive::none || !at.system().joints()[j].has_coordinate()) continue;
+        const bool is_place = drive == JointLaw::Drive::place;
+        all.push_back({Kind::joint_wanted, j,
+                       fmt::format("joint \"{}\": {}", d.joints[j].name,
+                                   is_place ? (turns ? "angle" : "position") : (turns ? "torque" : "force")),
+                       is_place ? (turns ? "rad" : "m") : (turns ? "N m" : "N"), at.controls().joint_wanted[j]});
+    }
     return all;
 }
 
@@ -154,7 +189,10 @@ std::vector<Parameter> parameters(const Linearisation& at) {
             all.push_back({Kind::support_angle, s, owner + ": angle", "rad", support.turn.angle_rad});
     }
     add_contact(d, all);
-    if (const auto& inertia = at.controls().inertia) {
+    add_masses(d, all);
+    const bool in_time = at.controls().inertia && !at.controls().inertia->is_tether();
+    add_joints(d, in_time, all);
+    if (const auto& inertia = at.controls().inertia; inertia && !inertia->is_tether()) {
         all.push_back({Kind::mass_damping, 0, "damping by mass", "1/s", inertia->damping().mass_per_s});
         if (inertia->damping().stiffness_s > 0)
             all.push_back({Kind::stiffness_damping, 0, "damping by stiffness", "s", inertia->damping().stiffness_s});

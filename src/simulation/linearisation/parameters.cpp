@@ -66,7 +66,8 @@ Eigen::VectorXd spread(const Linearisation& at, const Load& load, const Eigen::V
     return force;
 }
 
-/// How fast the springs of plates stiffen beside what they are, as constants of a material move along `direction`.
+/// How fast the springs of plates, and objects, stiffen beside what they are, as constants of a material move along
+/// `direction`.
 double stiffness_rate(const Description& d, std::size_t material, const std::vector<double>& direction) {
     double stiffest = 0;
     for (const Material& one : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(one.law));
@@ -76,11 +77,17 @@ double stiffness_rate(const Description& d, std::size_t material, const std::vec
     return (3 * now.bulk_Pa >= 2 * now.shear_Pa ? 3 * rate.bulk_Pa : 2 * rate.shear_Pa) / stiffest;
 }
 
-void add_plate_force(const Linearisation& at, double factor, Eigen::VectorXd& force) {
+/// Of all that follows the stiffest material.
+void add_stiff_force(const Linearisation& at, double factor, Eigen::VectorXd& force) {
     if (factor == 0) return;
-    Eigen::VectorXd plates = Eigen::VectorXd::Zero(force.size());
-    for (const Plate& plate : at.system().plates()) plate.add_gradient(view(at.state().x), view(plates));
-    force += factor * plates;
+    Eigen::VectorXd stiff = Eigen::VectorXd::Zero(force.size());
+    for (const Plate& plate : at.system().plates()) plate.add_gradient(view(at.state().x), view(stiff));
+    for (const AffineBody& object : at.system().objects()) object.add_gradient(view(at.state().x), view(stiff));
+    force += factor * stiff;
+}
+
+bool has_stiff_parts(const Equilibrium& system) {
+    return !system.plates().empty() || !system.objects().empty();
 }
 
 /// (3n) of all masses under an acceleration.
@@ -94,10 +101,11 @@ Eigen::VectorXd weight(const Linearisation& at, const Eigen::Vector3d& accelerat
 
 Derivative by_obstacle_share(const Linearisation& at, std::size_t obstacle) {
     const contact::Contact& contact = *at.system().model().contact(true);
-    Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * contact.node_count());
+    const Eigen::Index robot = at.state().x.size();
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(robot + 3 * obstacle_nodes(at.system()));
     const Vec3& move = at.system().model().description().contact->obstacles[obstacle].move_m;
     for (int node = contact.first_node(obstacle); node < contact.first_node(obstacle + 1); ++node)
-        motion.segment<3>(3 * static_cast<Eigen::Index>(node)) = linalg::vector(move);
+        motion.segment<3>(robot + 3 * Eigen::Index{node - contact.robot_node_count()}) = linalg::vector(move);
     return by_force(at, contact_stiffness_times(at.system(), at.state(), at.controls(), motion));
 }
 
@@ -107,7 +115,7 @@ Derivative by_law(const Linearisation& at, const Parameter& by) {
     const std::vector<double> direction = material::parameters(law)[by.part].direction;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
     add_law_force(at.system().model().elements(), by.index, direction, at.state().x, force);
-    add_plate_force(at, stiffness_rate(d, by.index, direction), force);
+    add_stiff_force(at, stiffness_rate(d, by.index, direction), force);
     return by_force(at, force);
 }
 
@@ -150,19 +158,62 @@ Derivative by_contact_stiffness(const Linearisation& at, double stiffness_Pa) {
     return by_force(at, (forces.pressure + forces.friction) / stiffness_Pa);
 }
 
-/// Of friction against one obstacle, or against itself (-1).
-Derivative by_friction(const Linearisation& at, int obstacle, double coefficient) {
+/// Whether the coefficient is that of a pair.
+bool is_coefficient_of(const contact::Contact& contact, const contact::FrozenPair& pair, const Parameter& p) {
+    const auto nodes = std::span(pair.nodes).first(static_cast<std::size_t>(pair.node_count));
+    const contact::FrictionOwner owner = contact.friction_owner(nodes, pair.obstacle);
+    const auto index = static_cast<int>(p.index);
+    if (p.kind == Kind::object_friction) return owner.rigid == index;
+    if (p.kind == Kind::obstacle_friction) return owner.obstacle == index;
+    return owner.obstacle < 0 && owner.rigid < 0;
+}
+
+/// Of friction against one obstacle or object, or against itself.
+Derivative by_friction(const Linearisation& at, const Parameter& by) {
     const Controls& controls = at.controls();
-    std::vector<double> x(at.state().x.begin(), at.state().x.end());
-    x.insert(x.end(), controls.obstacles.begin(), controls.obstacles.end());
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(x.size()));
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(force_size(at.system()));
     if (!controls.friction) return by_force(at, force);
-    const std::span<const contact::FrozenPair> pairs = controls.friction->pairs();
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        if (pairs[k].obstacle != obstacle) continue;
-        const Eigen::Vector3d on_first = linalg::vector(controls.friction->force(k, x)) / coefficient;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(pairs[k].node_count); ++i)
-            force.segment<3>(3 * static_cast<Eigen::Index>(pairs[k].nodes[i])) -= pairs[k].weights[i] * on_first;
+    const contact::Contact& contact = *at.system().model().contact(controls.met);
+    const std::span<const contact::FrozenPair> all = controls.friction->pairs();
+    std::vector<contact::FrozenPair> pairs(all.begin(), all.end());
+    for (contact::FrozenPair& pair : pairs) pair.limit_N *= is_coefficient_of(contact, pair, by) ? 1 / by.value : 0;
+    const std::span<const double> start = controls.friction->start();
+    Controls with_those = controls;
+    with_those.friction = std::make_shared<const contact::Friction>(
+        std::move(pairs), std::vector<double>(start.begin(), start.end()), controls.friction->slip_m());
+    return by_force(at, contact_forces(at.system(), at.state(), with_those).friction);
+}
+
+/// Of what acts along a joint's coordinate. A rate of U' is a force along the coordinate's gradient.
+Derivative by_joint(const Linearisation& at, const Parameter& by) {
+    const JointForce& joint = at.system().joints()[by.index];
+    const JointDrive drive = at.system().joint_drive(at.controls(), by.index);
+    const std::span<const double> x = view(at.state().x);
+    const double place = joint.coordinate(x, drive.start);
+    double rate = joint.slope_by_wanted();
+    if (by.kind == Kind::joint_stiffness) rate = place - at.system().model().description().joints[by.index].law.rest;
+    if (by.kind == Kind::joint_damping) rate = drive.dt > 0 ? (place - drive.start) / drive.dt : 0;
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    joint.add_coordinate_gradient(x, rate, view(force));
+    return by_force(at, force);
+}
+
+/// Of an object's mass, a quarter of which each of its nodes has, or of one at a point.
+Derivative by_lump(const Linearisation& at, const Parameter& by) {
+    const Description& d = at.system().model().description();
+    const Masses masses = masses_at(d, at.controls(), at.state().x);
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    const auto add = [&](std::span<const int> nodes, std::span<const double> weights, double mass) {
+        Eigen::Vector3d needed = masses.weight;
+        for (std::size_t a = 0; masses.acceleration.size() > 0 && a < nodes.size(); ++a)
+            needed += weights[a] * masses.acceleration.segment<3>(3 * nodes[a]);
+        for (std::size_t a = 0; a < nodes.size(); ++a) force.segment<3>(3 * nodes[a]) += mass * weights[a] * needed;
+    };
+    constexpr double all_of_it = 1;
+    if (by.kind == Kind::point_mass) {
+        add(d.masses[by.index].point.nodes, d.masses[by.index].point.weights, 1);
+    } else {
+        for (const int node : d.objects[by.index].nodes) add({&node, 1}, {&all_of_it, 1}, 0.25);
     }
     return by_force(at, force);
 }
@@ -192,7 +243,7 @@ Derivative by_gap_weight(const Linearisation& at, std::size_t growth) {
 /// What damps is in proportion to it.
 Derivative by_damping(const Linearisation& at, bool by_mass) {
     const Inertia& inertia = *at.controls().inertia;
-    const Eigen::VectorXd velocity = inertia.velocity(at.state().x);
+    const Eigen::VectorXd velocity = inertia.damped_velocity(at.state().x);
     return by_force(at, by_mass ? inertia.mass_times(velocity) : inertia.stiffness_times(velocity));
 }
 
@@ -215,10 +266,10 @@ Eigen::VectorXd support_motion(const Linearisation& at, const Parameter& by) {
     });
 }
 
-/// Of all plates, with weights of the forces.
-double plate_product(const Linearisation& at, const Adjoint& adjoint) {
+/// Of all that follows the stiffest material, with weights of the forces.
+double stiff_product(const Linearisation& at, const Adjoint& adjoint) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    add_plate_force(at, 1, force);
+    add_stiff_force(at, 1, force);
     return at.force_weights(adjoint).head(force.size()).dot(force);
 }
 
@@ -288,9 +339,16 @@ Derivative derivative(Linearisation& at, const Parameter& by) {
         case Kind::contact_stiffness:
             return by_contact_stiffness(at, by.value);
         case Kind::self_friction:
-            return by_friction(at, -1, by.value);
         case Kind::obstacle_friction:
-            return by_friction(at, static_cast<int>(by.index), by.value);
+        case Kind::object_friction:
+            return by_friction(at, by);
+        case Kind::object_mass:
+        case Kind::point_mass:
+            return by_lump(at, by);
+        case Kind::joint_wanted:
+        case Kind::joint_stiffness:
+        case Kind::joint_damping:
+            return by_joint(at, by);
         case Kind::gap_weight:
             return by_gap_weight(at, by.index);
         case Kind::mass_damping:
@@ -323,7 +381,7 @@ Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span
         std::ranges::any_of(by, moves)
             ? Eigen::VectorXd(adjoint.quantity.by_positions - at.held_motion_weights(adjoint.weights))
             : Eigen::VectorXd();
-    std::optional<double> plates;
+    std::optional<double> stiff;
     Eigen::VectorXd all(static_cast<Eigen::Index>(by.size()));
     for (std::size_t k = 0; k < by.size(); ++k) {
         double& result = all[static_cast<Eigen::Index>(k)];
@@ -341,9 +399,9 @@ Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span
             for (std::size_t c = 0; c < direction.size(); ++c)
                 result += direction[c] * of.constants(static_cast<Eigen::Index>(c), owner);
             const double stiffer = stiffness_rate(d, by[k].index, direction);
-            if (stiffer == 0 || at.system().plates().empty()) continue;
-            if (!plates) plates = plate_product(at, adjoint);
-            result += stiffer * *plates;
+            if (stiffer == 0 || !has_stiff_parts(at.system())) continue;
+            if (!stiff) stiff = stiff_product(at, adjoint);
+            result += stiffer * *stiff;
         }
     }
     return all;

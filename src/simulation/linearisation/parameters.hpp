@@ -23,6 +23,7 @@ struct Parameter {
         load_share,      ///< of a load's force
         gravity_share,   ///< of gravity
         obstacle_share,  ///< of an obstacle's motion
+        joint_wanted,    ///< of a joint that is driven: angle, place, torque or force; rad, m, N m or N
         // Of the robot and of what surrounds it.
         law,                 ///< part: of material::parameters()
         density,             ///< of a material, kg/m^3: of its weight and its inertia
@@ -38,6 +39,11 @@ struct Parameter {
         contact_stiffness,   ///< Pa
         self_friction,       ///< coefficient of the robot against itself, as it is lagged
         obstacle_friction,   ///< coefficient of the robot against an obstacle, as it is lagged
+        object_mass,         ///< kg: its inertia grows with it
+        object_friction,     ///< coefficient of an object where its own counts, as it is lagged
+        point_mass,          ///< kg
+        joint_stiffness,     ///< N m/rad or N/m, of the coordinate that it leaves
+        joint_damping,       ///< N m s/rad or N s/m
         gap_weight,          ///< of the elements of a gap that a cable passes, Pa; index: of the growth
         mass_damping,        ///< of a motion in time, 1/s
         stiffness_damping,   ///< of a motion in time, s
@@ -63,14 +69,14 @@ struct Parameter {
 
 /// How the equations change with it. The wanted length of a slack cable does nothing. What is lagged or chosen before a
 /// step stays as it is: frozen friction but for its coefficient, damping by stiffness, the history of a motion. The
-/// springs of plates follow the stiffest law, as they do where a model is built anew.
+/// springs of plates and what keeps objects rigid follow the stiffest law, as they do where a model is built anew.
 [[nodiscard]] Derivative derivative(Linearisation& at, const Parameter& by);
 
 /// dq/dp for many parameters, with one look at every tet for all laws and densities together.
 [[nodiscard]] Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by);
 
-/// dq/dp of what each tet is made of, as if each had a material of its own. What a rigid plate takes from the stiffest
-/// material is not in it.
+/// dq/dp of what each tet is made of, as if each had a material of its own. What a rigid plate or an object takes from
+/// the stiffest material is not in it.
 struct TetDerivatives {
     /// (most constants, tets) by each constant of the tet's own law, in the order of material::stress_by_constants();
     /// 0 where a law has fewer. By Young's modulus: times the direction of that number, material::parameters().

@@ -49,6 +49,11 @@ Eigen::VectorXd plate_forces(const Linearisation& at) {
     return forces;
 }
 
+template <class Visit>
+void visit_objects(const Linearisation& at, const Visit& visit) {
+    for (const AffineBody& object : at.system().objects()) visit(object);
+}
+
 /// Calls visit(dL/dx at this state times -k, dL0/dX) for each spring that pulls or presses and is free at rest.
 template <class Visit>
 void visit_free_springs(const Linearisation& at, const Visit& visit) {
@@ -141,6 +146,8 @@ Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) 
                      force);
     for (const Plate& plate : system.plates()) plate.add_rest_product(view(at.state().x), view(motion), view(force));
     if (!system.plates().empty()) force += volume_gradient(system.model().mesh()).dot(motion) / 3 * plate_forces(at);
+    visit_objects(
+        at, [&](const AffineBody& object) { object.add_rest_product(view(at.state().x), view(motion), view(force)); });
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         force += at_rest.dot(motion) * by_length;
     });
@@ -174,6 +181,8 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
                      sum);
     for (const Plate& plate : system.plates()) plate.add_rest_weights(view(at.state().x), view(weights), view(sum));
     if (!system.plates().empty()) sum += weights.dot(plate_forces(at)) / 3 * volume_gradient(system.model().mesh());
+    visit_objects(
+        at, [&](const AffineBody& object) { object.add_rest_weights(view(at.state().x), view(weights), view(sum)); });
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         sum += by_length.dot(weights) * at_rest;
     });

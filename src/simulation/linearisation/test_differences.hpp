@@ -14,6 +14,7 @@
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/solver/curvature.hpp"
 #include "simulation/solver/friction_rounds.hpp"
+#include "simulation/stepper/motion_in_time.hpp"
 
 namespace pliant::sim::testing {
 
@@ -38,6 +39,19 @@ struct Settled {
     int settled = 0;
 };
 
+/// Held by nothing, it is held loosely at equilibrium: by a step of this length, s.
+inline constexpr double tether_s = 0.5;
+
+/// What a step in time, or a tether, adds; nothing where neither is needed.
+inline std::shared_ptr<const Inertia> step_inertia(const Model& model, const History& history, double dt,
+                                                   const Damping* damping) {
+    const bool is_free = !model.free_pieces().empty() || !model.objects().empty();
+    if (damping == nullptr && !is_free) return nullptr;
+    return std::make_shared<const Inertia>(
+        model.elements(), model.free_index(), damping != nullptr ? history : MotionInTime::still(history.x),
+        damping != nullptr ? dt : tether_s, damping != nullptr ? *damping : Damping{}, nullptr);
+}
+
 /// The beginning of a program, in steps of `dt`, as far as they converge in a few iterations; with damping, in time.
 /// `settled` counts them.
 inline Settled settle(const Equilibrium& system, int steps, double dt, double tolerance,
@@ -46,13 +60,13 @@ inline Settled settle(const Equilibrium& system, int steps, double dt, double to
     SolverChain solvers = make_chain(Solver::newton, system, laplacian);
     Progress silent;
     Settled last{system.rest(), system.controls(0), 0};
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(last.state.x.size());
-    History history{last.state.x, still, last.state.x, still, 0};
+    History history = MotionInTime(system.model(), {}).at_rest(last.state.x);
+    // What nothing holds has an equilibrium, and a tangent, only in a step.
+    if (!system.model().free_pieces().empty() || !system.model().objects().empty())
+        last.controls.inertia = step_inertia(system.model(), history, dt, damping);
     for (int step = 1; step <= steps; ++step) {
         Controls controls = system.controls(step * dt);
-        if (damping != nullptr)
-            controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
-                                                               history, dt, *damping, nullptr);
+        controls.inertia = step_inertia(system.model(), history, dt, damping);
         State next = last.state;
         system.place_supports(controls, next.x);
         if (!system.evaluate(next, controls).possible() ||
@@ -64,7 +78,7 @@ inline Settled settle(const Equilibrium& system, int steps, double dt, double to
                                                controls, next, silent)
                                    .converged;
         if (!converged) return last;
-        if (damping != nullptr) history = {next.x, controls.inertia->velocity(next.x), history.x, history.v, dt};
+        history = damping != nullptr ? MotionInTime::after(*controls.inertia, next.x) : MotionInTime::still(next.x);
         last = {std::move(next), std::move(controls), step};
     }
     return last;
@@ -180,6 +194,9 @@ inline Controls with_input(const Linearisation& at, const Parameter& p, double c
                     change * linalg::vector(d.contact->obstacles[p.index].move_m);
             break;
         }
+        case Kind::joint_wanted:
+            controls.joint_wanted[p.index] += change;
+            break;
         default:
             FAIL("not an input");
     }

@@ -55,6 +55,21 @@ inline Description with_value(Description d, const Parameter& p, double value) {
         case Parameter::Kind::obstacle_friction:
             d.contact->obstacles[p.index].body.friction = value;
             break;
+        case Parameter::Kind::object_mass:
+            d.objects[p.index].mass_kg = value;
+            break;
+        case Parameter::Kind::object_friction:
+            d.objects[p.index].friction = value;
+            break;
+        case Parameter::Kind::point_mass:
+            d.masses[p.index].mass_kg = value;
+            break;
+        case Parameter::Kind::joint_stiffness:
+            d.joints[p.index].law.stiffness = value;
+            break;
+        case Parameter::Kind::joint_damping:
+            d.joints[p.index].law.damping = value;
+            break;
         case Parameter::Kind::gap_weight:
             d.growths[p.index].weight_Pa = value;
             break;

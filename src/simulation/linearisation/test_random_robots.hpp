@@ -47,7 +47,10 @@ struct RandomState {
     Controls controls;
     bool moved = false;
     RandomState(const Model& model, const test::RandomProgram& p, unsigned seed) : system(model) {
-        Settled settled = settle(system, 2, 0.03, 1e-6, p.program.dynamics ? &p.program.dynamics->damping : nullptr);
+        const bool thrown = p.program.dynamics && !model.objects().empty();  // fast: in its own steps
+        const double dt = thrown ? p.program.duration / p.program.steps : 0.03;
+        const Damping* damping = p.program.dynamics ? &p.program.dynamics->damping : nullptr;
+        Settled settled = settle(system, thrown ? 4 : 2, dt, 1e-6, damping);
         Noise noise(seed);
         State aside = settled.state;
         for (double& x : aside.x) x += 0.003 * test::side * noise();
@@ -60,15 +63,25 @@ struct RandomState {
 };
 
 /// With other coefficients of friction, or another stiffness of contact, frozen forces are in proportion.
-inline std::shared_ptr<const contact::Friction> friction_with(const contact::Friction& frozen, const Parameter& p,
-                                                              double factor) {
+inline std::vector<contact::FrozenPair> pairs_with(const contact::Contact& contact, const contact::Friction& frozen,
+                                                   const Parameter& p, double factor) {
     using Kind = Parameter::Kind;
     std::vector<contact::FrozenPair> pairs(frozen.pairs().begin(), frozen.pairs().end());
     for (contact::FrozenPair& pair : pairs) {
-        const bool its_own = (p.kind == Kind::self_friction && pair.obstacle < 0) ||
-                             (p.kind == Kind::obstacle_friction && pair.obstacle == static_cast<int>(p.index));
+        const auto owner = contact.friction_owner(
+            std::span(pair.nodes).first(static_cast<std::size_t>(pair.node_count)), pair.obstacle);
+        const auto index = static_cast<int>(p.index);
+        const bool its_own = (p.kind == Kind::self_friction && owner.obstacle < 0 && owner.rigid < 0) ||
+                             (p.kind == Kind::obstacle_friction && owner.obstacle == index) ||
+                             (p.kind == Kind::object_friction && owner.rigid == index);
         if (its_own || p.kind == Kind::contact_stiffness) pair.limit_N *= factor;
     }
+    return pairs;
+}
+inline std::shared_ptr<const contact::Friction> friction_with(const contact::Contact& contact,
+                                                              const contact::Friction& frozen, const Parameter& p,
+                                                              double factor) {
+    std::vector<contact::FrozenPair> pairs = pairs_with(contact, frozen, p, factor);
     const std::vector<double> start(frozen.start().begin(), frozen.start().end());
     return std::make_shared<const contact::Friction>(std::move(pairs), start, frozen.slip_m());
 }
@@ -83,8 +96,11 @@ inline Controls controls_with(const Linearisation& at, const Equilibrium& other,
     for (std::size_t a = 0; a < steered; ++a) controls.drives[a] = now.drives[a];
     controls.shares = now.shares;
     controls.met = now.met;
+    controls.joint_wanted = now.joint_wanted;
+    controls.joint_start = now.joint_start;
     const double factor = p.value != 0 ? 1 + change / p.value : 1;
-    if (now.friction) controls.friction = friction_with(*now.friction, p, factor);
+    if (now.friction)
+        controls.friction = friction_with(*at.system().model().contact(now.met), *now.friction, p, factor);
     if (p.kind == Kind::cable_friction && !now.shares[p.index].empty()) {
         const Actuator& cable = at.system().actuators()[p.index];
         for (double& share : controls.shares[p.index]) share = std::pow(share, factor);

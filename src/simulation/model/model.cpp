@@ -164,6 +164,13 @@ Status check_loads(const Description& d, int nodes) {
         if (Status status = check_attachment(spread, nodes, "load \"" + load.name + "\""); !status) return status;
         if (!is_finite(load.force_N)) return input_error("load \"{}\": the force is not finite", load.name);
     }
+    for (const TorqueLoad& load : d.torques) {
+        if (load.nodes.size() < 3) return input_error("load \"{}\": a torque needs three nodes", load.name);
+        for (const int node : load.nodes) {
+            if (node < 0 || node >= nodes) return input_error("load \"{}\": node {} does not exist", load.name, node);
+        }
+        if (!is_finite(load.torque_Nm)) return input_error("load \"{}\": the torque is not finite", load.name);
+    }
     for (const PressureLoad& load : d.pressures) {
         const std::string owner = "load \"" + load.name + "\"";
         if (Status status = check_wall(load.wall, false, nodes, owner); !status) return status;
@@ -205,6 +212,26 @@ Status check_objects(const Description& d, int nodes) {
         if (mass.point.nodes.empty()) return input_error("{}: must be carried by nodes", owner);
         if (!(mass.mass_kg > 0) || !std::isfinite(mass.mass_kg)) return input_error("{}: must be above zero", owner);
     }
+    return {};
+}
+
+Status check_joint(const Joint& joint, const Description& d, int nodes) {
+    const std::string owner = "joint \"" + joint.name + "\"";
+    for (const auto* end : {&joint.first, &joint.second}) {
+        for (const Attachment& point : *end) {
+            if (Status status = check_attachment(point, nodes, owner); !status) return status;
+        }
+    }
+    const auto is_there = [&](int object) { return object >= -2 && object < static_cast<int>(d.objects.size()); };
+    if (!is_there(joint.objects[0]) || !is_there(joint.objects[1]))
+        return input_error("{}: names an object that does not exist", owner);
+    if (joint.objects == std::array{-2, -2}) return input_error("{}: joins the world to itself", owner);
+    if (!(joint.stiffness_N_m > 0) || !std::isfinite(joint.stiffness_N_m) || !(joint.arm_m > 0) ||
+        !std::isfinite(joint.arm_m))
+        return input_error("{}: its stiffness and its arm must be above zero", owner);
+    if (!(joint.law.stiffness >= 0) || !(joint.law.damping >= 0))
+        return input_error("{}: stiffness and damping must not be negative", owner);
+    if (!(joint.law.low <= joint.law.high)) return input_error("{}: its limits leave no way", owner);
     return {};
 }
 
@@ -307,8 +334,13 @@ Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, c
     for (const Obstacle& obstacle : d.contact->obstacles) obstacles.push_back(obstacle.body);
     contact::Settings settings = d.contact->settings;
     settings.self = self;
+    std::vector<contact::Joined> joined;
+    for (const Joint& joint : d.joints) {
+        if (joint.objects[0] < -1 || joint.objects[1] < -1) continue;  // to the world
+        joined.push_back({joint.objects[0], joint.objects[1], position(joint.first[0], nodes), joint.clear_m});
+    }
     auto contact = contact::Contact::create(points.with_objects(d.contact->surface, d.objects), std::move(obstacles),
-                                            settings, rest, points.parts());
+                                            settings, rest, points.parts(), std::move(joined));
     if (!contact) return tl::unexpected(contact.error());
     return std::make_unique<contact::Contact>(std::move(*contact));
 }
@@ -335,6 +367,8 @@ Result<Model> Model::create(Description description) {
         status = check_spring(description.springs[s], nodes);
     if (!status) return tl::unexpected(status.error());
     if (status = check_objects(description, nodes); !status) return tl::unexpected(status.error());
+    for (const Joint& joint : description.joints)
+        if (status = check_joint(joint, description, nodes); !status) return tl::unexpected(status.error());
     Result<HeldNodes> held = HeldNodes::create(description.supports, nodes);
     if (!held) return tl::unexpected(held.error());
     if (status = check_held(description, model.free_pieces_); !status) return tl::unexpected(status.error());

@@ -32,4 +32,10 @@ Vec3 position(const Attachment& point, std::span<const double> x) {
     return sum;
 }
 
+Attachment AttachedFrame::at(const Vec3& arm) const {
+    Attachment point{nodes, weights, {}};
+    for (std::size_t i = 0; i < nodes.size(); ++i) point.weights[i] += dot(gradients[i], arm);
+    return point;
+}
+
 }  // namespace pliant::sim

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/core/error.hpp"
@@ -23,6 +25,16 @@ struct Attachment {
     std::vector<int> nodes;
     std::vector<double> weights;  ///< sum 1
     Vec3 fixed;                   ///< metres
+};
+
+/// The affine motion of the material near a point: of each node the share in the motion of the point, and how that
+/// share changes with a way from there.
+struct AttachedFrame {
+    std::vector<int> nodes;
+    std::vector<double> weights;  ///< sum 1
+    std::vector<Vec3> gradients;  ///< 1/m, sum 0
+    /// A point that moves with the frame, `arm` from its own at rest.
+    [[nodiscard]] Attachment at(const Vec3& arm) const;
 };
 
 struct Material {
@@ -63,6 +75,15 @@ struct Load {
     std::vector<int> nodes;
     std::vector<double> shares;  ///< of the total force, sum 1
     Vec3 force_N;
+    Curve share = ramp(0, 1);
+};
+
+/// A torque that keeps its direction, share * torque, on nodes that move as one: of a plate or of an object. Together
+/// with its forces, see torque.hpp.
+struct TorqueLoad {
+    std::string name;
+    std::vector<int> nodes;  ///< at least three, not on one line
+    Vec3 torque_Nm;
     Curve share = ramp(0, 1);
 };
 
@@ -149,11 +170,38 @@ struct FreeObject {
     double friction = 0;  ///< coefficient against all that it touches; where that has one too, the larger counts
 };
 
-/// A mass at a point of the robot: without extent, so that it turns without inertia.
+/// A mass at a point of the robot: without extent, so that it turns without inertia. One with inertia is four of them.
 struct PointMass {
     std::string name;
     Attachment point;
     double mass_kg = 0;
+};
+
+/// What acts along the coordinate that a hinge (its angle, rad) or a slider (its place, m) leaves open: zero at rest.
+struct JointLaw {
+    double stiffness = 0;  ///< N m/rad or N/m, about `rest`
+    double rest = 0;
+    double damping = 0;  ///< N m s/rad or N s/m, in time
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+    enum class Drive { none, place, force };
+    Drive drive = Drive::none;
+    Curve wanted = ramp(0, 0);  ///< of the place, or the force: N m or N
+};
+
+/// Two things that are joined: the same four points of each, where they are at rest (centre, and from there an arm
+/// along three axes that are normal to each other, right-handed; the first of them is that of a hinge or a slider).
+/// Points of the fixed world have no nodes.
+struct Joint {
+    enum class Kind { glue, hinge, slider, ball };
+    std::string name;
+    Kind kind = Kind::glue;
+    std::array<Attachment, 4> first, second;
+    double arm_m = 0;          ///< of the points
+    double stiffness_N_m = 0;  ///< of what joins them: see joint_force.hpp
+    JointLaw law{};
+    /// The things: an object, or -1 for the robot's bodies and -2 for the world.
+    std::array<int, 2> objects{-2, -2};
+    double clear_m = 0;  ///< the two do not touch each other this near to the joint at rest; infinite: nowhere
 };
 
 /// What can touch what.
@@ -166,10 +214,51 @@ struct ContactRules {
     bool self_when_met = false;
 };
 
+/// What robot and objects are in: it carries what it is displaced by, and drags at what moves through it.
+struct Fluid {
+    double density_kg_m3 = 0;
+    double drag_normal = 0, drag_tangential = 0;
+    std::optional<double> level_m{};  ///< of its surface, against gravity; none: it is everywhere
+    Vec3 current_m_s;
+    std::vector<std::array<int, 3>> skin;  ///< of the bodies, seen from outside counter-clockwise: without chambers
+};
+
 /// A point of the material whose position is reported.
 struct Marker {
     std::string name;
     Attachment point;
+};
+
+// What a sensor of a [[sensor]] measures; each gives the readings that sensors.hpp names.
+struct StrainSensor {
+    std::vector<Attachment> points;  ///< at least two: a path
+};
+/// Sections along a line of points, by the motion of the material about each.
+struct BackboneSensor {
+    std::vector<AttachedFrame> sections;    ///< at least three
+    std::vector<std::array<Vec3, 3>> axes;  ///< (sections) at rest: right-handed, the third along the line
+};
+struct ContactSensor {
+    std::vector<int> nodes;        ///< of the surface
+    std::vector<double> areas_m2;  ///< of the patch, at rest: each node a third of the triangles beside it
+    std::vector<double> owned_m2;  ///< the same of the whole surface, beside the patch too
+};
+struct ActuatorSensor {
+    enum class Kind { tension, volume, pressure };
+    Kind kind = Kind::tension;
+    std::size_t index = 0;  ///< of the cable or chamber
+};
+struct DistanceSensor {
+    std::array<Attachment, 2> points;
+};
+/// Accelerometer and gyroscope.
+struct MotionSensor {
+    AttachedFrame frame;
+    std::array<Vec3, 3> axes;  ///< of the sensor at rest, right-handed
+};
+struct Sensor {
+    std::string name;
+    std::variant<StrainSensor, BackboneSensor, ContactSensor, ActuatorSensor, DistanceSensor, MotionSensor> what;
 };
 
 struct Description {
@@ -186,9 +275,14 @@ struct Description {
     std::vector<RigidPlate> plates;
     std::vector<FreeObject> objects{};  ///< they need contact
     std::vector<PointMass> masses{};
+    std::vector<Joint> joints{};
+    std::vector<TorqueLoad> torques{};
+    std::vector<Sensor> sensors{};
     /// Pieces that no support holds are no mistake: they move in time, or touch what holds them.
     bool may_be_free = false;
+    bool moves_in_time = false;  ///< so that a fluid drags at it
     std::optional<ContactRules> contact = std::nullopt;
+    std::optional<Fluid> fluid = std::nullopt;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);

@@ -16,6 +16,7 @@ using robot::Damping;
 using robot::default_air_weight;
 using robot::default_gap_weight;
 using robot::Dynamics;
+using robot::Integrator;
 using robot::largest_space_weight;
 using robot::name;
 using robot::Program;

@@ -119,6 +119,8 @@ private:
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
         if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs");
+        if (!d_.torques.empty()) return input_error("CalculiX: the deck has no torques");
+        if (d_.fluid) return input_error("CalculiX: the deck has no fluid");
         if (!d_.material_of_tet.empty())
             return input_error(
                 "CalculiX: the deck has no bodies that change from one material to another; leave blend out");

@@ -20,7 +20,7 @@ using cbor::Reader;
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "pliant checkpoint";
-constexpr int version = 2;  // 2: friction with memory, objects
+constexpr int version = 3;  // 2: friction with memory, objects; 3: joints
 constexpr const char* steps_name = "steps";
 constexpr const char* state_name = "state";
 

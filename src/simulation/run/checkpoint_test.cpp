@@ -83,6 +83,15 @@ std::vector<Problem> problems_with_a_memory() {
     in_time.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.3, {}};
     problems.push_back({model_of(std::move(in_time)), {.steps = 8, .duration = 0.2, .dynamics = Dynamics{{2, 1e-3}}}});
 
+    // Every formula of steps in time, and lengths that their error decides.
+    for (const Dynamics& dynamics :
+         {Dynamics{{2, 1e-3}, Integrator::energy_conserving, 0},
+          Dynamics{{2, 1e-3}, Integrator::energy_conserving, 2e-5}, Dynamics{{2, 0}, Integrator::bdf2, 2e-5}}) {
+        Description blown = testing::hollow_block(1);
+        blown.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, 2000, {}};
+        problems.push_back({model_of(std::move(blown)), {.steps = 8, .duration = 0.2, .dynamics = dynamics}});
+    }
+
     Description rubbed = testing::hollow_block(1);
     ContactRules rules;
     rules.surface = contact::robot_surface(rubbed.mesh);

@@ -9,16 +9,6 @@
 namespace pliant::sim {
 namespace {
 
-/// Pressure with which the elements of a chamber's air resist its volume: what they press with beyond that is left for
-/// the walls. 0 where the air is not meshed.
-double air_resistance(const Description& d, std::size_t actuator, double volume_ratio) {
-    for (const Growth& growth : d.growths) {
-        if (actuator >= d.cables.size() && growth.actuator == static_cast<int>(actuator))
-            return growth.weight_Pa * (volume_ratio - 1);
-    }
-    return 0;
-}
-
 void describe_actuators(const Model& model, const Equilibrium& system, const State& state, std::span<const double> x,
                         Step& step) {
     const auto& d = model.description();
@@ -26,9 +16,7 @@ void describe_actuators(const Model& model, const Equilibrium& system, const Sta
         const Actuator& actuator = system.actuators()[a];
         const double measure = actuator.measure(x);
         const double ratio = measure / actuator.rest_measure();
-        double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
-        if (actuator.gaps() != nullptr) multiplier = actuator.gaps()->tension(x, multiplier);
-        multiplier += air_resistance(d, a, ratio);
+        const double multiplier = acting_multiplier(system, state, a);
         if (a < d.cables.size())
             step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
         else  // 0 - 0 is 0, where -0 would be a minus zero in every report
@@ -52,6 +40,21 @@ void describe_contact(const Model& model, const Equilibrium& system, const State
 
 }  // namespace
 
+JointState joint_state(const Equilibrium& system, std::size_t j, const State& state, const Controls& controls) {
+    const JointForce& joint = system.joints()[j];
+    const JointDrive drive = system.joint_drive(controls, j);
+    const std::span<const double> x = linalg::view(state.x);
+    const JointForce::Load load = joint.load(x, drive);
+    const Joint& d = system.model().description().joints[j];
+    return {d.name,
+            {load.force[0], load.force[1], load.force[2]},
+            {load.torque[0], load.torque[1], load.torque[2]},
+            d.kind == Joint::Kind::hinge,
+            d.kind == Joint::Kind::slider,
+            joint.coordinate(x, drive.start),
+            joint.effort(x, drive)};
+}
+
 ObjectState object_state(const Model& model, std::size_t k, std::span<const double> x) {
     const AffineBody& body = model.objects()[k];
     const linalg::Vector3 centre = body.centre(x);
@@ -64,7 +67,7 @@ ObjectState object_state(const Model& model, std::size_t k, std::span<const doub
 }
 
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
-              const Evaluation& evaluation, Step& step) {
+              const Evaluation& evaluation, bool in_time, Step& step) {
     const auto& d = model.description();
     const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
     step.residual = evaluation.residual;
@@ -77,9 +80,12 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
         const SpringPath& spring = system.springs()[s];
         step.springs.push_back({d.springs[s].name, spring.length(x), spring.force(x)});
     }
+    for (std::size_t j = 0; j < d.joints.size(); ++j) step.joints.push_back(joint_state(system, j, state, controls));
     const std::vector<Vec3> reactions = model.held().reactions(d.supports, evaluation.out_of_balance);
     for (std::size_t s = 0; s < reactions.size(); ++s) step.supports.push_back({d.supports[s].name, reactions[s]});
     for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
+    for (const Sensor& sensor : d.sensors)
+        step.sensors.push_back({sensor.name, read_sensor(sensor, system, state, controls, in_time)});
     step.positions = linalg::points_of(state.x);
 }
 

@@ -92,6 +92,7 @@ private:
         }
         step.iterations = report.iterations;
         step.substeps = report.pieces;
+        step.refused = stepper_.is_adaptive() ? report.refused : 0;
         step.solver = report.solver;
         step.converged = !report.loose;
         if (report.loose) step.reason = report.reason;
@@ -106,7 +107,8 @@ private:
 
     void describe(Step& step) const {
         const RobotState& robot = now_.robot;
-        sim::describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation, step);
+        sim::describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation,
+                      program_.dynamics.has_value(), step);
         if (program_.dynamics) step.kinetic_energy_J = stepper_.kinetic_energy_J(robot);
     }
 
@@ -159,7 +161,7 @@ StepperOptions stepper_options(const Program& program) {
 Way program_way(const Stepper& stepper, const Program& program, const RobotState& robot, int k) {
     return {program.duration * static_cast<double>(k) / program.steps,
             [&](double time) { return stepper.controls(robot, time); },
-            smallest_share * program.duration / program.steps};
+            (stepper.is_adaptive() ? smallest_adaptive_share : smallest_share) * program.duration / program.steps};
 }
 
 Trajectory run(const Model& model, const Program& program, Progress& progress, RunOptions options) {

@@ -51,6 +51,7 @@ public:
         step.reason = in_.text("reason");
         step.iterations = in_.integer("iterations", 0, most);
         step.substeps = in_.integer("substeps", 0, most);
+        if (in_.has("refused")) step.refused = in_.integer("refused", 0, most);
         step.residual = in_.number("residual");
         step.solver = static_cast<Solver>(in_.integer("solver", 0, last_solver));
         step.wall_s = in_.number("wall_s");
@@ -66,6 +67,10 @@ public:
         each("objects", 10, [&](auto& n, auto& v) {
             step.objects.push_back({n, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, {v[7], v[8], v[9]}});
         });
+        each("joints", 10, [&](auto& n, auto& v) {
+            step.joints.push_back({n, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6] != 0, v[7] != 0, v[8], v[9]});
+        });
+        if (in_.has("sensors")) sensors(step);
         step.self_contact_N = in_.number("self_contact_N");
         step.smallest_distance_m = in_.number("smallest_distance_m");
         step.met = in_.boolean("met");
@@ -91,6 +96,26 @@ private:
                 numbers.push_back(value.get<double>());
             }
             take(one[0].get_ref<const std::string&>(), numbers);
+        }
+    }
+
+    /// Each a name and its readings: name, measure, value.
+    void sensors(Step& step) {
+        const Json& list = in_.at("sensors");
+        if (!list.is_array()) return in_.fail("sensors is no list");
+        for (const Json& one : list) {
+            if (!one.is_array() || one.size() != 2 || !one[0].is_string() || !one[1].is_array())
+                return in_.fail("sensors has an entry of another kind");
+            SensorState sensor{one[0].get<std::string>(), {}};
+            for (const Json& r : one[1]) {
+                const bool is_reading = r.is_array() && r.size() == 3 && r[0].is_string() && r[1].is_number_integer() &&
+                                        r[2].is_number() && r[1].get<int>() >= 0 &&
+                                        r[1].get<int>() <= static_cast<int>(SensedQuantity::angular_velocity);
+                if (!is_reading) return in_.fail("sensors has a reading of another kind");
+                sensor.readings.push_back(
+                    {r[0].get<std::string>(), static_cast<SensedQuantity>(r[1].get<int>()), r[2].get<double>()});
+            }
+            step.sensors.push_back(std::move(sensor));
         }
     }
 
@@ -156,6 +181,19 @@ std::string step_bytes(const Step& step, std::span<const IterationRecord> iterat
         return {o.position_m.x, o.position_m.y, o.position_m.z, q[0],        q[1],
                 q[2],           q[3],           o.force_N.x,    o.force_N.y, o.force_N.z};
     });
+    json["joints"] = named(step.joints, [](const JointState& j) -> Json {
+        return {j.force_N.x,   j.force_N.y,       j.force_N.z,        j.torque_Nm.x, j.torque_Nm.y,
+                j.torque_Nm.z, j.turns ? 1.0 : 0, j.slides ? 1.0 : 0, j.coordinate,  j.effort};
+    });
+    if (step.refused > 0) json["refused"] = step.refused;
+    if (!step.sensors.empty()) {
+        json["sensors"] = named(step.sensors, [](const SensorState& sensor) {
+            Json readings = Json::array();
+            for (const Reading& r : sensor.readings)
+                readings.push_back(Json::array({r.name, static_cast<int>(r.quantity), r.value}));
+            return readings;
+        });
+    }
     for (const IterationRecord& record : iterations) json["history"].push_back(json_of(record));
     std::string bytes;
     Json::to_cbor(json, bytes);

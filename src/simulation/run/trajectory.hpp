@@ -9,6 +9,7 @@
 
 #include "base/core/vec3.hpp"
 #include "simulation/run/node_positions.hpp"
+#include "simulation/run/sensors.hpp"
 #include "simulation/solver/iteration_record.hpp"
 
 namespace pliant::sim {
@@ -55,6 +56,19 @@ struct ObjectState {
     Vec3 force_N;                                ///< pressure and friction of all that touches it
 };
 
+struct JointState {
+    std::string name;
+    Vec3 force_N, torque_Nm;  ///< of the first thing on the second, about the joint's point there
+    bool turns = false, slides = false;
+    double coordinate = 0;  ///< angle of a hinge, rad, with whole turns, or place of a slider, m; 0 at rest
+    double effort = 0;      ///< what drives, holds and damps along it, N m or N
+};
+
+struct SensorState {
+    std::string name;
+    std::vector<Reading> readings;
+};
+
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
@@ -63,6 +77,7 @@ struct Step {
     std::string reason;
     int iterations = 0;
     int substeps = 1;                   ///< more than one where the step had to be halved
+    int refused = 0;                    ///< pieces that were taken again, for their error in time or their solver
     double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
     Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
     double wall_s = 0;
@@ -81,6 +96,8 @@ struct Step {
     std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
     std::vector<MarkerState> markers;
     std::vector<ObjectState> objects;
+    std::vector<JointState> joints;
+    std::vector<SensorState> sensors;
     NodePositions positions;  ///< (n, 3)
 };
 

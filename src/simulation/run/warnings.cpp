@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "base/core/counted.hpp"
 
@@ -19,6 +21,33 @@ std::string crossing_text(const Vec3& place_m) {
         "the robot passes through itself {}, and its shape and forces are wrong: self-contact is off; [contact] with "
         "self = true keeps surfaces apart",
         near(place_m));
+}
+
+/// Of the robot's free pieces and then of the objects: whether joints lead from it to the world or to what a support
+/// holds.
+std::vector<bool> held_by_joints(const Model& model) {
+    const auto& pieces = model.free_pieces();
+    std::vector<bool> held(pieces.size() + model.description().objects.size(), false);
+    constexpr std::size_t held_anyway = std::numeric_limits<std::size_t>::max();
+    const auto thing = [&](int object, const Attachment& point) {
+        if (object >= 0) return pieces.size() + static_cast<std::size_t>(object);
+        for (std::size_t k = 0; k < pieces.size() && !point.nodes.empty(); ++k)
+            if (std::ranges::binary_search(pieces[k], point.nodes[0])) return k;
+        return held_anyway;
+    };
+    for (bool more = true; more;) {
+        more = false;
+        for (const Joint& joint : model.description().joints) {
+            const std::array<std::size_t, 2> ends = {thing(joint.objects[0], joint.first[0]),
+                                                     thing(joint.objects[1], joint.second[0])};
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::size_t here = ends[k], there = ends[1 - k];
+                if (here == held_anyway || held[here] || (there != held_anyway && !held[there])) continue;
+                held[here] = more = true;
+            }
+        }
+    }
+    return held;
 }
 
 }  // namespace
@@ -41,10 +70,13 @@ std::vector<std::string> warnings_at_rest(const Model& model) {
 }
 
 std::string held_by_nothing(const Model& model) {
+    const std::vector<bool> held = held_by_joints(model);
+    const std::size_t pieces = model.free_pieces().size();
+    const auto open_pieces = std::count(held.begin(), held.begin() + static_cast<std::ptrdiff_t>(pieces), false);
     std::vector<std::string> who;
-    if (const std::size_t pieces = model.free_pieces().size(); pieces > 0)
-        who.push_back(counted(pieces, "piece") + " of the robot");
-    for (const FreeObject& object : model.description().objects) who.push_back("object \"" + object.name + "\"");
+    if (open_pieces > 0) who.push_back(counted(static_cast<std::size_t>(open_pieces), "piece") + " of the robot");
+    for (std::size_t k = pieces; k < held.size(); ++k)
+        if (!held[k]) who.push_back("object \"" + model.description().objects[k - pieces].name + "\"");
     if (who.empty()) return {};
     return fmt::format(
         "no support holds {}: where contact and friction leave their places open, they stay near where the "

@@ -15,7 +15,7 @@ namespace pliant::sim {
 
 /// What is odd about the robot before anything moves: its notes, and whether it passes through itself already.
 [[nodiscard]] std::vector<std::string> warnings_at_rest(const Model& model);
-/// Of a robot at rest at every instant: what nothing holds but what it touches, in a sentence; empty if there is none.
+/// Of a robot at rest at every instant: what neither supports nor joints hold, in a sentence; empty if there is none.
 [[nodiscard]] std::string held_by_nothing(const Model& model);
 
 /// The guide points at both ends of `segment` of a cable have met.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "robot/bodies/passage.hpp"
+#include "simulation/scene/object_points.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -94,6 +95,10 @@ std::vector<sim::Attachment> attach_path(ModelDraft& draft, const sim::Attacher&
             (k == 0 && spec.anchor == Anchor::first) || (k + 1 == points.size() && spec.anchor == Anchor::last);
         if (anchored) {
             attached.push_back({{}, {}, points[k]});
+            continue;
+        }
+        if (auto on_object = carried_by_object(draft, attacher, points[k])) {
+            attached.push_back(*std::move(on_object));
             continue;
         }
         Result<sim::Attachment> attachment =

@@ -1,6 +1,9 @@
 // Ties what the robot file names by place (boxes, points, paths) to nodes of the mesh.
 #include "simulation/scene/build_model.hpp"
 
+#include <algorithm>
+#include <array>
+#include <set>
 #include <utility>
 
 #include "simulation/elements/actuated_space.hpp"
@@ -9,7 +12,9 @@
 #include "simulation/scene/build_chambers.hpp"
 #include "simulation/scene/build_contact.hpp"
 #include "simulation/scene/build_grades.hpp"
+#include "simulation/scene/build_joints.hpp"
 #include "simulation/scene/build_places.hpp"
+#include "simulation/scene/build_sensors.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -35,13 +40,50 @@ void add_materials(ModelDraft& draft) {
     }
 }
 
+/// The surface of the bodies without the walls of chambers.
+std::vector<std::array<int, 3>> skin_of(const ModelDraft& draft) {
+    std::set<std::array<int, 3>> inside;  // corners of walls, ascending
+    for (const sim::Chamber& chamber : draft.description.chambers) {
+        for (const sim::WallFace& face : chamber.wall.faces) {
+            std::array<int, 3> corners{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto& nodes = chamber.wall.points[static_cast<std::size_t>(face[i])].nodes;
+                corners[i] = nodes.size() == 1 ? nodes[0] : -1;
+            }
+            std::ranges::sort(corners);
+            inside.insert(corners);
+        }
+    }
+    std::vector<std::array<int, 3>> skin;
+    for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
+        std::array<int, 3> corners{face.nodes[0], face.nodes[1], face.nodes[2]};
+        std::ranges::sort(corners);
+        if (inside.contains(corners)) continue;
+        const auto& n = face.nodes;
+        if (draft.bodies.order == 1)
+            skin.push_back({n[0], n[1], n[2]});
+        else
+            skin.insert(skin.end(), {{n[0], n[3], n[5]}, {n[3], n[1], n[4]}, {n[5], n[4], n[2]}, {n[3], n[4], n[5]}});
+    }
+    return skin;
+}
+
+std::optional<sim::Fluid> fluid_of(const ModelDraft& draft) {
+    const auto& spec = draft.robot.fluid;
+    if (!spec) return std::nullopt;
+    sim::Fluid fluid{spec->density_kg_m3, spec->drag_normal, spec->drag_tangential, {},
+                     spec->current_m_s,   skin_of(draft)};
+    if (spec->level) fluid.level_m = draft.robot.unit_m * *spec->level;
+    return fluid;
+}
+
 /// At rest the supports alone hold a robot. Contact may do what they leave, so that then it is only said; and a robot
 /// that moves in time may be free.
 Status check_free_motion(const Robot& robot, sim::Description& description) {
-    if (robot.program.dynamics) return {};
+    if (robot.program.dynamics || !robot.joints.empty()) return {};  // what joints hold is held loosely, if at all
     const auto motion = sim::free_motion(description);
     if (!motion) return {};
-    if (!robot.contact)
+    if (!robot.contact && !robot.fluid)
         return input_error("{}: {}; cables, chambers, loads and gravity do not count as supports", robot.file.string(),
                            *motion);
     description.notes.push_back(*motion + "; at rest only contact can hold it");
@@ -61,18 +103,30 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     add_grades(draft);
     add_supports(draft);
     add_plates(draft);
-    add_loads(draft);
+    add_loads(draft, attacher);
+    // Objects have nodes of their own, which cables, springs, markers and joints may be tied to, but no place selects.
+    Result<std::optional<sim::ContactRules>> contact = build_contact(robot, draft.bodies);
+    Status objects = contact ? Status{} : Status(tl::unexpected(contact.error()));
+    if (objects) {
+        description.contact = std::move(*contact);
+        objects = add_objects(robot, description);
+    }
+    if (objects) {
+        add_loads_on_objects(draft);
+        add_joints(draft);
+    }
     add_cables(draft, attacher);
     add_springs(draft, attacher);
     add_chambers(draft, attacher);
     add_markers(draft, attacher);
     add_masses(draft, attacher);
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
-    Result<std::optional<sim::ContactRules>> contact = build_contact(robot, draft.bodies);
-    if (!contact) return tl::unexpected(contact.error());
-    description.contact = std::move(*contact);
+    if (!objects) return tl::unexpected(objects.error());
     description.may_be_free = may_be_free(robot);
-    if (Status status = add_objects(robot, description); !status) return tl::unexpected(status.error());
+    description.moves_in_time = robot.program.dynamics.has_value();
+    description.fluid = fluid_of(draft);
+    add_sensors(draft, attacher);
+    if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     description.notes = draft.notes_on_points();
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
     Result<sim::Model> model = sim::Model::create(std::move(description));

@@ -2,13 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
+#include "base/core/text.hpp"
+#include "base/linalg/vectors.hpp"
 #include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/mass_properties.hpp"
 #include "simulation/actuators/loads.hpp"
+#include "simulation/scene/object_points.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -112,10 +118,10 @@ void add_plate(ModelDraft& draft, const PlateSpec& plate) {
     if (!nodes.empty()) draft.description.plates.push_back({plate.name, std::move(nodes)});
 }
 
-void add_load(ModelDraft& draft, const LoadSpec& load) {
+void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
     const std::size_t before = draft.problems.size();
     std::vector<bool> caught(draft.description.mesh.points.size(), false);
-    for (const int node : select(draft, load.selector, "load", load.name, load.line))
+    for (const int node : select(draft, selector, "load", load.name, load.line))
         caught[static_cast<std::size_t>(node)] = true;
     std::vector<mesh::Face> faces;
     for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
@@ -124,7 +130,7 @@ void add_load(ModelDraft& draft, const LoadSpec& load) {
     }
     if (draft.problems.size() > before) return;
     if (faces.empty()) {
-        const bool box = std::holds_alternative<BoxSelector>(load.selector);
+        const bool box = std::holds_alternative<BoxSelector>(selector);
         draft.problem(
             load.line, "load", load.name,
             fmt::format("no face of the outer surface lies {}; {}",
@@ -140,31 +146,145 @@ void add_load(ModelDraft& draft, const LoadSpec& load) {
         {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
 }
 
-/// What a point rides on; nothing where it lies outside every body, which is then said. `kinds`: plural of `kind`.
-std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher, const Vec3& point,
-                                       std::string_view kind, std::string_view kinds, const std::string& name,
-                                       int line) {
-    const Vec3 place = draft.robot.unit_m * point;
-    Result<sim::Attachment> attachment = attacher.carried_by_tet(place, draft.point_reach);
-    const double distance = attacher.distance_outside(place);
-    if (!attachment) {
-        draft.problem(line, kind, name,
-                      fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
-                                  1e3 * distance, draft.show_bounds()));
-        return std::nullopt;
+/// Each of the nodes takes an equal part.
+void add_evenly(ModelDraft& draft, const LoadSpec& load, const std::vector<int>& nodes) {
+    draft.description.loads.push_back({load.name, nodes,
+                                       std::vector<double>(nodes.size(), 1.0 / static_cast<double>(nodes.size())),
+                                       load.force_N, load.share});
+}
+
+/// Of a mesh, the nodes that have tets: others are of nothing.
+void add_load_on_nodes(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
+    const std::size_t before = draft.problems.size();
+    const std::vector<int> nodes = select(draft, selector, "load", load.name, load.line);
+    if (nodes.empty() && draft.problems.size() == before)
+        draft.problem(load.line, "load", load.name, "catches no node of the mesh; " + draft.show_bounds());
+    if (!nodes.empty()) add_evenly(draft, load, nodes);
+}
+
+/// The sum of `shares[i]` times what the points ride on.
+void add_load_at(ModelDraft& draft, const LoadSpec& load, const std::vector<sim::Attachment>& points,
+                 const std::vector<double>& shares) {
+    std::map<int, double> sum;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (std::size_t a = 0; a < points[i].nodes.size(); ++a)
+            sum[points[i].nodes[a]] += shares[i] * points[i].weights[a];
     }
-    draft.count_point(kinds, distance);
-    return std::move(*attachment);
+    sim::Load made{load.name, {}, {}, load.force_N, load.share};
+    for (const auto& [node, share] : sum) {
+        made.nodes.push_back(node);
+        made.shares.push_back(share);
+    }
+    draft.description.loads.push_back(std::move(made));
+}
+
+void add_load_at_points(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load,
+                        const LoadPoints& place) {
+    std::vector<sim::Attachment> points;
+    for (const Vec3& point : place.points) {
+        const Place where{"load", "loads", load.name, load.line, place.radius * draft.robot.unit_m};
+        auto on = carried(draft, attacher, point, where);
+        if (!on) return;
+        points.push_back(*std::move(on));
+    }
+    add_load_at(draft, load, points, std::vector<double>(points.size(), 1.0 / static_cast<double>(points.size())));
+}
+
+/// By Gauss' rule of two points on pieces that are short beside a tet: exact for what is linear along the line, so that
+/// force and moment are.
+void add_load_on_line(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load, const LoadLine& line) {
+    const double edge =
+        std::cbrt(mesh::volume(draft.bodies) / static_cast<double>(draft.bodies.tet_count())) / draft.robot.unit_m;
+    double length = 0;
+    for (std::size_t i = 1; i < line.points.size(); ++i) length += norm(line.points[i] - line.points[i - 1]);
+    std::vector<sim::Attachment> points;
+    std::vector<double> shares;
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+        const Vec3 way = line.points[i] - line.points[i - 1];
+        const int pieces = static_cast<int>(std::clamp(std::ceil(4 * norm(way) / edge), 1.0, 1e4));
+        for (int k = 0; k < 2 * pieces; ++k) {
+            const double at = k / 2 + 0.5 + (k % 2 == 0 ? -0.5 : 0.5) / std::numbers::sqrt3;
+            const Place where{"load", "loads", load.name, load.line, 0};
+            auto on = carried(draft, attacher, line.points[i - 1] + at / pieces * way, where);
+            if (!on) return;
+            points.push_back(*std::move(on));
+            shares.push_back(norm(way) / length / (2 * pieces));
+        }
+    }
+    add_load_at(draft, load, points, shares);
+}
+
+/// On nodes that move as one.
+void add_load_on_rigid(ModelDraft& draft, const LoadSpec& load, const std::vector<int>& nodes) {
+    if (!(load.force_N == Vec3{})) add_evenly(draft, load, nodes);
+    if (!(load.torque_Nm == Vec3{}))
+        draft.description.torques.push_back({load.name, nodes, load.torque_Nm, load.share});
+}
+
+/// By the name that the load gives; a problem names those that there are.
+template <class Thing>
+const Thing* find_rigid(ModelDraft& draft, const LoadSpec& load, std::string_view kind,
+                        const std::vector<Thing>& things) {
+    const std::string& name = std::get<LoadOnRigid>(load.place).name;
+    std::vector<std::string> names;
+    for (const Thing& thing : things) {
+        if (thing.name == name) return &thing;
+        names.push_back(thing.name);
+    }
+    draft.problem(
+        load.line, "load", load.name,
+        fmt::format("there is no {} \"{}\"{}", kind, name, names.empty() ? "" : "; there is " + join_names(names)));
+    return nullptr;
+}
+
+void add_load(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load) {
+    if (const auto* selector = std::get_if<Selector>(&load.place)) return add_load_on_faces(draft, load, *selector);
+    if (const auto* nodes = std::get_if<LoadOnNodes>(&load.place))
+        return add_load_on_nodes(draft, load, nodes->selector);
+    if (const auto* points = std::get_if<LoadPoints>(&load.place))
+        return add_load_at_points(draft, attacher, load, *points);
+    if (const auto* line = std::get_if<LoadLine>(&load.place)) return add_load_on_line(draft, attacher, load, *line);
+    if (std::get<LoadOnRigid>(load.place).object) return;
+    if (const auto* plate = find_rigid(draft, load, "plate", draft.description.plates))
+        add_load_on_rigid(draft, load, plate->nodes);
+}
+
+/// Four masses that together have its center and inertia (mesh::equal_mass_points), on a frame of the material.
+void add_rigid_mass(ModelDraft& draft, const sim::AttachedFrame& frame, const MassSpec& spec) {
+    mesh::MassProperties body;
+    body.volume = spec.mass_kg;
+    const Vec3 arm = draft.robot.unit_m * (spec.center.value_or(spec.point) - spec.point);
+    body.centre = arm;
+    Eigen::Matrix3d axes;
+    axes.col(0) = linalg::vector(spec.axes[0]);
+    axes.col(1) = linalg::vector(spec.axes[1]);
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    const Eigen::Vector3d I = linalg::vector(spec.inertia_kg_m2);
+    const Eigen::Vector3d second = (0.5 * I.sum() - I.array()).max(0.0);  // of x^2, y^2, z^2 along the axes
+    body.second_moment = axes * second.asDiagonal() * axes.transpose();
+    for (const Vec3& at : mesh::equal_mass_points(body))
+        draft.description.masses.push_back({spec.name, frame.at(at), spec.mass_kg / 4});
 }
 
 void add_mass(ModelDraft& draft, const sim::Attacher& attacher, const MassSpec& spec) {
-    if (auto point = carried(draft, attacher, spec.point, "mass", "masses", spec.name, spec.line))
+    const double radius = spec.radius * draft.robot.unit_m;
+    const Place where{"mass", "masses", spec.name, spec.line, radius};
+    auto point = carried(draft, attacher, spec.point, where);
+    if (!point) return;
+    if (spec.inertia_kg_m2 == Vec3{} && !spec.center) {
         draft.description.masses.push_back({spec.name, *std::move(point), spec.mass_kg});
+        return;
+    }
+    const auto frame = attacher.frame(draft.robot.unit_m * spec.point, radius, draft.point_reach);
+    if (frame) return add_rigid_mass(draft, *frame, spec);
+    draft.problem(spec.line, "mass", spec.name,
+                  "something with a center or inertia of its own is glued to a body, not to an object: give the object "
+                  "its mass and shape");
 }
 
 void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSpec& spec) {
     if (const auto* point = std::get_if<Vec3>(&spec.place)) {
-        if (auto place = carried(draft, attacher, *point, "marker", "markers", spec.name, spec.line))
+        if (auto place = carried(draft, attacher, *point, {"marker", "markers", spec.name, spec.line, 0}))
             draft.description.markers.push_back({spec.name, *std::move(place)});
         return;
     }
@@ -189,6 +309,27 @@ void add_marker(ModelDraft& draft, const sim::Attacher& attacher, const MarkerSp
 
 }  // namespace
 
+std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher, const Vec3& point,
+                                       const Place& what) {
+    const Vec3 place = draft.robot.unit_m * point;
+    if (auto on_object = carried_by_object(draft, attacher, place)) return on_object;
+    Result<sim::Attachment> attachment = attacher.spread(place, what.radius_m, draft.point_reach);
+    const double distance = attacher.distance_outside(place);
+    if (!attachment) {
+        draft.problem(what.line, what.kind, what.name,
+                      fmt::format("the point {} lies outside every body, by {:.3g} mm; {}", draft.show(place),
+                                  1e3 * distance, draft.show_bounds()));
+        return std::nullopt;
+    }
+    draft.count_point(what.kinds, distance);
+    return std::move(*attachment);
+}
+
+std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
+                              const std::string& name, int line) {
+    return select(draft, selector, kind, name, line);
+}
+
 sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces) {
     for (mesh::Face& face : faces) {
         std::swap(face.nodes[1], face.nodes[2]);
@@ -207,8 +348,17 @@ void add_plates(ModelDraft& draft) {
     for (const PlateSpec& plate : draft.robot.plates) add_plate(draft, plate);
 }
 
-void add_loads(ModelDraft& draft) {
-    for (const LoadSpec& load : draft.robot.loads) add_load(draft, load);
+void add_loads(ModelDraft& draft, const sim::Attacher& attacher) {
+    for (const LoadSpec& load : draft.robot.loads) add_load(draft, attacher, load);
+}
+
+void add_loads_on_objects(ModelDraft& draft) {
+    for (const LoadSpec& load : draft.robot.loads) {
+        const auto* rigid = std::get_if<LoadOnRigid>(&load.place);
+        if (rigid == nullptr || !rigid->object) continue;
+        if (const auto* object = find_rigid(draft, load, "object", draft.description.objects))
+            add_load_on_rigid(draft, load, {object->nodes.begin(), object->nodes.end()});
+    }
 }
 
 void add_masses(ModelDraft& draft, const sim::Attacher& attacher) {

@@ -3,25 +3,39 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "simulation/scene/model_draft.hpp"
+#include "simulation/scene/object_points.hpp"
 
 namespace pliant::robot {
 namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity();  // the model has been built: nothing is too far
 
+/// The object that a point rides on, if it does.
+std::optional<std::size_t> object_of(const sim::Description& d, const sim::Attachment& point) {
+    for (std::size_t k = 0; k < d.objects.size(); ++k) {
+        if (!point.nodes.empty() && point.nodes[0] == d.objects[k].nodes[0]) return k;
+    }
+    return std::nullopt;
+}
+
 /// Adds the guide points of one cable or spring, which `from` names.
-Status add_path(const sim::Attacher& attacher, std::span<const double> rest, std::span<const sim::Attachment> points,
-                double radius_m, const GuideSlope& from, std::vector<GuideSlope>& sum) {
+Status add_path(const sim::Description& d, const sim::Attacher& attacher, std::span<const double> rest,
+                std::span<const sim::Attachment> points, double radius_m, const GuideSlope& from,
+                std::vector<GuideSlope>& sum) {
     for (std::size_t k = 0; k < points.size(); ++k) {
         GuideSlope guide = from;
         guide.name = fmt::format("{}: point {}", from.name, k + 1);
         guide.point = k;
         guide.rest_m = position(points[k], rest);
-        if (!points[k].nodes.empty()) {
+        if (const auto object = object_of(d, points[k])) {
+            sim::AffinePatch patch = patch_of_object(d, *object, guide.rest_m);
+            guide.slope = {std::move(patch.nodes), std::move(patch.slopes)};
+        } else if (!points[k].nodes.empty()) {
             Result<sim::AttachmentSlope> slope = attacher.slope(guide.rest_m, radius_m, anywhere);
             if (!slope) return tl::unexpected(slope.error());
             guide.slope = std::move(*slope);
@@ -43,13 +57,13 @@ Result<std::vector<GuideSlope>> guide_slopes(const Robot& robot, const sim::Mode
     for (std::size_t c = 0; c < d.cables.size(); ++c) {
         const GuideSlope from{fmt::format("cable \"{}\"", d.cables[c].name), false, c, 0, {}, {}};
         const double radius_m = robot.unit_m * robot.cables[c].eyelet_radius;
-        if (Status added = add_path(attacher, rest, d.cables[c].points, radius_m, from, all); !added)
+        if (Status added = add_path(d, attacher, rest, d.cables[c].points, radius_m, from, all); !added)
             return tl::unexpected(added.error());
     }
     for (std::size_t s = 0; s < d.springs.size(); ++s) {
         const GuideSlope from{fmt::format("spring \"{}\"", d.springs[s].name), true, s, 0, {}, {}};
         const double radius_m = robot.unit_m * robot.springs[s].eyelet_radius;
-        if (Status added = add_path(attacher, rest, d.springs[s].points, radius_m, from, all); !added)
+        if (Status added = add_path(d, attacher, rest, d.springs[s].points, radius_m, from, all); !added)
             return tl::unexpected(added.error());
     }
     return all;

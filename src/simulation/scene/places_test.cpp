@@ -99,7 +99,8 @@ TEST_CASE("a load acts on the outer faces that any selector catches") {
     CHECK(nodes("sphere = { center = [17, 5, 5], radius = 9.95 }\n") == box);
     CHECK(nodes("sphere = { center = [0, 0, 0], radius = 100 }\n").size() > box.size());
     check_problem(eighth + pull + "sphere = { center = [5, 5, 5], radius = 1 }\n", "no face of the outer surface");
-    check_problem(eighth + pull, "names no place; add box, plane, sphere, surface or nodes");
+    check_problem(eighth + pull,
+                  "names no place; add box, plane, sphere, surface, nodes, point, points, line, plate or object");
     check_problem(eighth + pull + "surface = \"nowhere.stl\"\n", "there is no file");
 }
 

@@ -94,6 +94,7 @@ public:
 private:
     void hold_free_pieces(const Equilibrium& system, const linalg::SymmetricPattern& scalar, std::span<double> values);
     [[nodiscard]] Eigen::VectorXd follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const;
+    void keep_joined(const Equilibrium& system, const RotatingStep& rotating, Eigen::VectorXd& end) const;
     struct State;
     std::unique_ptr<State> state_;
 };

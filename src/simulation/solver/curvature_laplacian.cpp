@@ -16,6 +16,13 @@ struct FactoredLaplacian::State {
     std::shared_ptr<const TangentLayout> layout;
     linalg::Cholesky factor;
     std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, N/m
+    /// Which object follows its joint, from what is held on outwards.
+    struct Follower {
+        std::size_t joint = 0;
+        int object = 0;
+        double sign = 1;  ///< of the joint's second thing; -1: of its first
+    };
+    std::vector<Follower> followers;
 };
 
 namespace {
@@ -64,6 +71,31 @@ void carry_free_pieces(const Model& model, const RotatingStep& rotating, Eigen::
     }
 }
 
+/// Every object once, after what it hangs on; of objects that hang on each other alone one is left where it is.
+template <class Follower>
+std::vector<Follower> order_of_joints(const Description& d) {
+    std::vector<bool> known(d.objects.size(), false);
+    const auto is_known = [&](int object) { return object < 0 || known[static_cast<std::size_t>(object)]; };
+    std::vector<Follower> order;
+    const auto follow = [&] {
+        const std::size_t before = order.size();
+        for (std::size_t j = 0; j < d.joints.size(); ++j) {
+            const auto [first, second] = d.joints[j].objects;
+            if (is_known(first) == is_known(second)) continue;
+            const int object = is_known(first) ? second : first;
+            order.push_back({j, object, is_known(first) ? 1.0 : -1.0});
+            known[static_cast<std::size_t>(object)] = true;
+        }
+        return order.size() > before;
+    };
+    for (std::size_t root = 0; root <= known.size(); ++root) {
+        while (follow()) {
+        }
+        if (root < known.size()) known[root] = true;
+    }
+    return order;
+}
+
 /// The thesis' iteration: every tet's target shape against the current one, reconciled by the constant matrix.
 class LocalGlobal final : public Curvature {
 public:
@@ -96,7 +128,8 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
     }
-    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}});
+    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}, {}});
+    state_->followers = order_of_joints<State::Follower>(model.description());
     hold_free_pieces(system, scalar, values);
     // Positive definite by construction: every piece is held, by supports or here, and every weight is positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
@@ -208,7 +241,23 @@ Eigen::VectorXd FactoredLaplacian::rotate(const Equilibrium& system, const Rotat
     system.add_free(correction, 1, end);
     carry_free_pieces(*state_->model, rotating, end);
     for (const AffineBody& object : state_->model->objects()) turn_object(object, rotating, end);
+    if (!state_->followers.empty()) keep_joined(system, rotating, end);
     return end;
+}
+
+/// A turn about its own centre takes an object off its joints, which a straight step keeps: it is shifted back.
+void FactoredLaplacian::keep_joined(const Equilibrium& system, const RotatingStep& rotating,
+                                    Eigen::VectorXd& end) const {
+    Eigen::VectorXd straight(end.size());
+    for (int node = 0; node < state_->model->node_count(); ++node)
+        straight.segment<3>(3 * Eigen::Index{node}) = straight_end(rotating, node);
+    for (const State::Follower& f : state_->followers) {
+        const JointForce& joint = system.joints()[f.joint];
+        const linalg::Vector3 shift =
+            f.sign * (joint.gap(linalg::view(std::as_const(straight))) - joint.gap(linalg::view(std::as_const(end))));
+        for (const int node : system.objects()[static_cast<std::size_t>(f.object)].nodes())
+            end.segment<3>(3 * Eigen::Index{node}) += shift;
+    }
 }
 
 std::unique_ptr<Curvature> make_local_global(const FactoredLaplacian& laplacian) {

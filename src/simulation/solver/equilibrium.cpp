@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -38,6 +39,11 @@ bool is_nearest(const Description& d, std::size_t tet, const Growth& growth) {
         if (distance < own || (distance == own && other.actuator < growth.actuator)) return false;
     }
     return true;
+}
+
+/// On the straight way from where a step begins.
+State on_the_way(const State& state, const Inertia& inertia, double share) {
+    return {inertia.start().x + share * (state.x - inertia.start().x), state.multiplier};
 }
 
 Evaluation impossible(double min_J, Flaw flaw) {
@@ -85,8 +91,8 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
         if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
     }
     const auto by_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
-    conservative_ =
-        model.elements().has_energy() && skew_.empty() && std::none_of(actuators_.begin(), actuators_.end(), by_gaps);
+    conservative_ = model.elements().has_energy() && skew_.empty() && torques_.empty() &&
+                    std::none_of(actuators_.begin(), actuators_.end(), by_gaps);
     double stiffest = 0;
     for (const Material& material : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(material.law));
     const double volume = mesh::volume(d.mesh);
@@ -99,9 +105,17 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
                                 .norm();
         energy_rounding_ += 1e-16 * object.node_stiffness() * edge * edge;
     }
+    for (const Joint& joint : d.joints) {
+        joints_.emplace_back(joint);
+        energy_rounding_ += 1e-16 * joint.stiffness_N_m * joint.arm_m * joint.arm_m;
+    }
     // A node is a share of where it is off its place, and pulls at that with the stiffness of a tet, times its size.
     const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
-    force_rounding_ = 1e-16 * stiffest * rest_.cwiseAbs().maxCoeff() * size * std::sqrt(static_cast<double>(n));
+    const double farthest = rest_.cwiseAbs().maxCoeff();
+    force_rounding_ = 1e-16 * stiffest * farthest * size * std::sqrt(static_cast<double>(n));
+    // What is rigid is stiffer: objects by their nodes, of which each has four.
+    for (const AffineBody& object : objects()) force_rounding_ += 2e-16 * object.node_stiffness() * farthest;
+    for (const JointForce& joint : joints_) force_rounding_ += 2e-16 * joint.stiffness_N_m() * farthest;
 }
 
 void Equilibrium::add_actuators() {
@@ -110,8 +124,23 @@ void Equilibrium::add_actuators() {
     for (std::size_t c = 0; c < d.cables.size(); ++c)
         actuators_.emplace_back(CablePath(d.cables[c].points, rest), rest, gap_elements_of(c));
     for (const Spring& spring : d.springs) springs_.emplace_back(spring, rest);
+    for (const TorqueLoad& load : d.torques) torques_.emplace_back(load.nodes);
+    add_fluid();
     for (const Chamber& chamber : d.chambers) actuators_.emplace_back(ChamberSurface(chamber.wall, rest), rest);
     for (const PressureLoad& load : d.pressures) actuators_.emplace_back(ChamberSurface(load.wall, rest), rest);
+}
+
+void Equilibrium::add_fluid() {
+    const Description& d = model_->description();
+    if (!d.fluid) return;
+    contact::Surface skin;
+    skin.triangles = d.fluid->skin;
+    fluid_.emplace(*d.fluid, model_->object_points().with_objects(std::move(skin), d.objects).triangles);
+}
+
+Eigen::Vector3d Equilibrium::gravity_at(double time) const {
+    const Description& d = model_->description();
+    return d.gravity_share.at(time) * linalg::vector(d.gravity_m_s2);
 }
 
 /// Of the tets of a gap that several cables pass, each one has those that are nearest to it.
@@ -208,10 +237,13 @@ Controls Equilibrium::controls(double time) const {
     Controls controls;
     controls.time = time;
     controls.external_N = external_at(time);
+    for (const TorqueLoad& load : model_->description().torques)
+        controls.torque_Nm.emplace_back(load.share.at(time) * linalg::vector(load.torque_Nm));
     controls.shares.resize(actuators_.size());
     controls.obstacles = obstacles_at(time);
     for (const Support& support : model_->description().supports)
         controls.support_share.push_back(support.share.at(time));
+    for (const Joint& joint : model_->description().joints) controls.joint_wanted.push_back(joint.law.wanted.at(time));
     for (std::size_t a = 0; a < actuators_.size(); ++a) controls.drives.push_back(drive_at(a, time));
     return controls;
 }
@@ -282,8 +314,41 @@ double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const 
 }
 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
+    Balance balance;
+    const bool of_mean = controls.inertia && !controls.inertia->means().empty();
+    Evaluation e = of_mean ? evaluate_mean(state, controls, balance)
+                           : evaluate_at(state, controls, controls.inertia.get(), balance);
+    if (e.possible()) fill_residual(balance, e);
+    return e;
+}
+
+Evaluation Equilibrium::evaluate_mean(const State& state, const Controls& controls, Balance& balance) const {
+    const Inertia& inertia = *controls.inertia;
+    Evaluation mean;
+    mean.min_J = std::numeric_limits<double>::infinity();
+    balance = {Eigen::VectorXd::Zero(state.x.size()), Eigen::VectorXd::Zero(state.x.size())};
+    mean.multiplier = mean.constraint_violation = Eigen::VectorXd::Zero(state.multiplier.size());
+    for (const Inertia::Mean& at : inertia.means()) {
+        Balance here;
+        const Evaluation e = evaluate_at(on_the_way(state, inertia, at.share), controls, nullptr, here);
+        if (!e.possible()) return e;
+        mean.min_J = std::min(mean.min_J, e.min_J);
+        mean.energy_J += at.weight / at.share * e.energy_J;
+        mean.multiplier += at.weight * e.multiplier;
+        balance.internal += at.weight * here.internal;
+        balance.driving += at.weight * here.driving;
+    }
+    mean.energy_J += inertia.energy(state.x);
+    inertia.add_gradient(state.x, balance.internal);
+    if (fluid_) add_drag(state.x, controls, inertia, balance.internal, mean.energy_J);
+    return mean;
+}
+
+Evaluation Equilibrium::evaluate_at(const State& state, const Controls& controls, const Inertia* inertia,
+                                    Balance& balance) const {
     Evaluation e;
-    Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
+    Eigen::VectorXd& internal = balance.internal;
+    internal = Eigen::VectorXd::Zero(state.x.size());
     const Elements::Evaluation elastic = model_->elements().evaluate(view(state.x), view(internal));
     e.min_J = elastic.min_J;
     for (const AffineBody& object : objects())
@@ -301,6 +366,10 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
         e.energy_J += object.energy(view(state.x));
         object.add_gradient(view(state.x), view(internal));
     }
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        e.energy_J += joints_[j].energy(view(state.x), joint_drive(controls, j));
+        joints_[j].add_gradient(view(state.x), joint_drive(controls, j), view(internal));
+    }
     for (const SpringPath& spring : springs_) {
         e.energy_J += spring.energy(view(state.x));
         spring.add_gradient(view(state.x), view(internal));
@@ -310,12 +379,14 @@ Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) c
         e.energy_J += actuator.gaps()->energy(view(state.x));
         actuator.gaps()->add_gradient(view(state.x), view(internal));
     }
-    if (controls.inertia) {
-        e.energy_J += controls.inertia->energy(state.x);
-        controls.inertia->add_gradient(state.x, internal);
+    if (fluid_) add_buoyancy(state.x, controls, internal, e.energy_J);
+    if (inertia != nullptr) {
+        e.energy_J += inertia->energy(state.x);
+        inertia->add_gradient(state.x, internal);
+        if (fluid_) add_drag(state.x, controls, *inertia, internal, e.energy_J);
     }
     fill_actuators(state, controls, e);
-    fill_residual(state, controls, internal, e);
+    balance.driving = driving_forces(state, controls, e);
     return e;
 }
 
@@ -346,15 +417,20 @@ void Equilibrium::fill_actuators(const State& state, const Controls& controls, E
     }
 }
 
-void Equilibrium::fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
-                                Evaluation& e) const {
+Eigen::VectorXd Equilibrium::driving_forces(const State& state, const Controls& controls, const Evaluation& e) const {
     Eigen::VectorXd driving = -controls.external_N;
+    for (std::size_t k = 0; k < torques_.size(); ++k)
+        torques_[k].subtract_from(view(state.x), controls.torque_Nm[k], view(driving));
     for (std::size_t a = 0; a < actuators_.size(); ++a)
         actuators_[a].add_gradient(view(state.x), e.multiplier[static_cast<Eigen::Index>(a)], view(driving),
                                    controls.shares[a]);
-    e.out_of_balance = internal + driving;
+    return driving;
+}
+
+void Equilibrium::fill_residual(const Balance& balance, Evaluation& e) const {
+    e.out_of_balance = balance.internal + balance.driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
-    const double balancing = std::max({internal.norm(), driving.norm(), force_floor_});
+    const double balancing = std::max({balance.internal.norm(), balance.driving.norm(), force_floor_});
     e.residual = balancing > 0 && unbalanced > force_rounding_ ? unbalanced / balancing : 0;
 }
 
@@ -364,11 +440,34 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
     double springs = 0;
     for (const SpringPath& spring : springs_) springs += spring.energy(view(state.x));
     for (const AffineBody& object : objects()) springs += object.energy(view(state.x));
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+        JointDrive drive = joint_drive(controls, j);
+        drive.dt = 0;  // what damps stores nothing
+        springs += joints_[j].energy(view(state.x), drive);
+    }
     for (const Actuator& actuator : actuators_) {
         if (actuator.gaps() != nullptr) springs += actuator.gaps()->energy(view(state.x));
     }
+    if (fluid_) {
+        const Eigen::Vector3d gravity = gravity_at(controls.time);
+        springs += fluid_->buoyancy_energy(with_obstacles(state.x, {}), gravity) -
+                   fluid_->buoyancy_energy(with_obstacles(rest_, {}), gravity);
+    }
     return model_->elements().evaluate(view(state.x), {}).energy_J + springs -
            controls.external_N.dot(state.x - rest_) + contact_energy(state.x, still);
+}
+
+JointDrive Equilibrium::joint_drive(const Controls& controls, std::size_t joint) const {
+    const bool in_time = controls.inertia && !controls.inertia->is_tether();
+    return {controls.joint_wanted[joint], controls.joint_start.empty() ? 0 : controls.joint_start[joint],
+            in_time ? controls.inertia->dt() : 0};
+}
+
+std::vector<double> Equilibrium::joint_coordinates(const Eigen::VectorXd& x, const Controls& controls) const {
+    std::vector<double> all;
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+        all.push_back(joints_[j].coordinate(view(x), joint_drive(controls, j).start));
+    return all;
 }
 
 std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
@@ -420,6 +519,58 @@ void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls
             std::span(gradient).subspan(static_cast<std::size_t>(forces.size()), 3 * count), view(forces));
 }
 
+void Equilibrium::add_carried(const std::vector<double>& on_all, Eigen::VectorXd& forces) const {
+    forces += Eigen::Map<const Eigen::VectorXd>(on_all.data(), forces.size());
+    if (const auto count = static_cast<std::size_t>(model_->object_points().count()); count > 0)
+        model_->object_points().add_forces(
+            std::span(on_all).subspan(static_cast<std::size_t>(forces.size()), 3 * count), view(forces));
+}
+
+void Equilibrium::add_buoyancy(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
+                               double& energy) const {
+    const std::vector<double> all = with_obstacles(x, {});
+    const Eigen::Vector3d gravity = gravity_at(controls.time);
+    std::vector<double> on_all(all.size(), 0.0);
+    fluid_->add_buoyancy(all, gravity, on_all);
+    energy += fluid_->buoyancy_energy(all, gravity);
+    add_carried(on_all, forces);
+}
+
+Equilibrium::Stream Equilibrium::stream(const Eigen::VectorXd& x, const Inertia& inertia) const {
+    return {with_obstacles(inertia.start().x, {}), with_obstacles(inertia.damped_velocity(x), {})};
+}
+
+void Equilibrium::add_drag(const Eigen::VectorXd& x, const Controls& controls, const Inertia& inertia,
+                           Eigen::VectorXd& forces, double& energy) const {
+    if (!fluid_->drags() || !model_->description().moves_in_time) return;
+    const Stream s = stream(x, inertia);
+    const FluidForces::Motion motion{s.start, s.v, inertia.rate(), gravity_at(controls.time)};
+    std::vector<double> on_all(s.v.size(), 0.0);
+    fluid_->add_drag(motion, on_all);
+    energy += fluid_->drag_energy(motion);
+    add_carried(on_all, forces);
+}
+
+void Equilibrium::add_drag_tangent(const Eigen::VectorXd& x, const Controls& controls, const Inertia& inertia,
+                                   const TangentLayout& layout, std::span<double> values) const {
+    if (!fluid_->drags() || !model_->description().moves_in_time) return;
+    const Stream s = stream(x, inertia);
+    const FluidForces::Motion motion{s.start, s.v, inertia.rate(), gravity_at(controls.time)};
+    visit_carried(layout, values, [&](const contact::BlockVisitor& visit) { fluid_->visit_drag(motion, visit); });
+}
+
+/// Blocks between contact's nodes, of which the mesh's nodes carry some.
+void Equilibrium::visit_carried(const TangentLayout& layout, std::span<double> values,
+                                const std::function<void(const contact::BlockVisitor&)>& blocks) const {
+    const std::vector<int>& index = index_of(layout.nodes);
+    const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
+        const int i = index[static_cast<std::size_t>(a)];
+        const int j = index[static_cast<std::size_t>(b)];
+        if (j >= 0 && i >= j) layout.pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+    };
+    blocks([&](int a, int b, const linalg::Matrix3& block) { model_->object_points().visit_block(a, b, block, add); });
+}
+
 double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
                                  const Eigen::VectorXd& obstacle_motion) const {
     const contact::Contact* contact = this->contact(controls);
@@ -448,6 +599,11 @@ bool Equilibrium::has_friction() const {
     return rules->settings.friction > 0 ||
            std::any_of(rules->obstacles.begin(), rules->obstacles.end(),
                        [](const Obstacle& obstacle) { return obstacle.body.friction > 0; });
+}
+
+bool Equilibrium::touches(const State& state, const Controls& controls) const {
+    const contact::Contact* contact = this->contact(controls);
+    return contact != nullptr && !contact->find(with_obstacles(state.x, controls.obstacles)).empty();
 }
 
 bool Equilibrium::meets_itself(const State& state, const Controls& now, const State& next, const Controls& then) const {
@@ -500,8 +656,16 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
         }
         cliques.push_back(std::move(clique));
     };
-    const contact::Pairs pairs = contact->find(with_obstacles(state.x, controls.obstacles));
-    for (const contact::Pair& pair : pairs) add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count())});
+    const auto add_pairs_at = [&](const Eigen::VectorXd& x) {
+        const contact::Pairs pairs = contact->find(with_obstacles(x, controls.obstacles));
+        for (const contact::Pair& pair : pairs) add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count())});
+    };
+    if (!controls.inertia || controls.inertia->means().empty()) {
+        add_pairs_at(state.x);
+    } else {
+        for (const Inertia::Mean& at : controls.inertia->means())
+            add_pairs_at(on_the_way(state, *controls.inertia, at.share).x);
+    }
     if (controls.friction) {
         for (const contact::FrozenPair& pair : controls.friction->pairs())
             add({pair.nodes.data(), static_cast<std::size_t>(pair.node_count)});
@@ -530,6 +694,20 @@ void Equilibrium::append_cliques_beside_tets(const std::vector<int>& index,
     for (const Plate& plate : plates_) plate.append_clique(index, cliques);
     for (const AffineBody& object : objects()) object.append_clique(index, cliques);
     for (const SpringPath& spring : springs_) spring.append_clique(index, cliques);
+    for (const JointForce& joint : joints_) joint.append_clique(index, cliques);
+    for (const TorqueForces& torque : torques_) torque.append_clique(index, cliques);
+    if (fluid_) {
+        for (const auto& triangle : fluid_->skin()) {
+            std::vector<int> clique;
+            for (const int& corner : triangle) {
+                for (const int node : model_->object_points().carriers(corner))
+                    clique.push_back(index[static_cast<std::size_t>(node)]);
+            }
+            std::ranges::sort(clique);
+            clique.erase(std::ranges::unique(clique).begin(), clique.end());
+            cliques.push_back(clique);
+        }
+    }
     for (const std::vector<int>& clique : touching) cliques.push_back(clique);
 }
 
@@ -539,10 +717,28 @@ TangentLayout Equilibrium::lay_out_tangent_beside_tets(const std::vector<std::ve
     return {linalg::make_pattern(model_->node_count(), 3, cliques), {}, TangentNodes::all};
 }
 
-void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
-                              std::span<double> values, bool project) const {
+void Equilibrium::add_tangent_at(const State& state, const Controls& controls, const TangentLayout& layout,
+                                 std::span<double> values, bool project) const {
     model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
     add_tangent_beside_tets(state, controls, layout, values, project);
+}
+
+/// The force at a share s of the way changes with the end by s times its tangent there.
+void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
+                              std::span<double> values, bool project) const {
+    if (controls.inertia && !controls.inertia->means().empty()) {
+        Controls still = controls;
+        still.inertia = nullptr;
+        for (const Inertia::Mean& at : controls.inertia->means()) {
+            std::vector<double> there(values.size(), 0.0);
+            add_tangent_at(on_the_way(state, *controls.inertia, at.share), still, layout, there, project);
+            for (std::size_t k = 0; k < values.size(); ++k) values[k] += at.weight * at.share * there[k];
+        }
+        controls.inertia->add_hessian(index_of(layout.nodes), layout.pattern, values);
+        if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
+    } else {
+        add_tangent_at(state, controls, layout, values, project);
+    }
     if (layout.nodes == TangentNodes::free) decouple_rollers(layout.pattern, values);
 }
 
@@ -553,7 +749,21 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
     for (const AffineBody& object : objects()) object.add_hessian(view(state.x), index, pattern, values, project);
     for (const SpringPath& spring : springs_) spring.add_hessian(view(state.x), index, pattern, values, project);
-    if (controls.inertia) controls.inertia->add_hessian(index, pattern, values);
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+        joints_[j].add_hessian(view(state.x), joint_drive(controls, j), index, pattern, values, project);
+    for (std::size_t k = 0; k < torques_.size(); ++k)
+        torques_[k].add_tangent(view(state.x), controls.torque_Nm[k], TorqueForces::Part::symmetric, index, pattern,
+                                values);
+    if (fluid_) {
+        const std::vector<double> all = with_obstacles(state.x, {});
+        visit_carried(layout, values, [&](const contact::BlockVisitor& visit) {
+            fluid_->visit_buoyancy(all, gravity_at(controls.time), project, visit);
+        });
+    }
+    if (controls.inertia) {
+        controls.inertia->add_hessian(index, pattern, values);
+        if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
+    }
     if (const contact::Contact* contact = this->contact(controls)) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
         const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
@@ -574,8 +784,12 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
     }
 }
 
-void Equilibrium::add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const {
+void Equilibrium::add_skew(const State& state, const Controls& controls, const TangentLayout& layout,
+                           std::span<double> values) const {
     const std::vector<int>& index = index_of(layout.nodes);
+    for (std::size_t k = 0; k < torques_.size(); ++k)
+        torques_[k].add_tangent(view(state.x), controls.torque_Nm[k], TorqueForces::Part::skew, index, layout.pattern,
+                                values);
     model_->elements().add_skew(view(state.x), index, layout.pattern, values);
     std::vector<std::size_t> patches = skew_;
     if (layout.nodes == TangentNodes::all) {  // where its rim is held, it takes part in the force on the other nodes

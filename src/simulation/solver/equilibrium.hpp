@@ -2,15 +2,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "simulation/actuators/actuator.hpp"
+#include "simulation/actuators/fluid_forces.hpp"
 #include "simulation/actuators/spring.hpp"
+#include "simulation/actuators/torque.hpp"
 #include "simulation/elements/block_sums.hpp"
 #include "simulation/elements/inertia.hpp"
+#include "simulation/elements/joint_force.hpp"
 #include "simulation/elements/plate.hpp"
 #include "simulation/model/model.hpp"
 
@@ -19,15 +23,18 @@ namespace pliant::sim {
 /// Where the program wants the robot at one instant.
 struct Controls {
     double time = 0;
-    Eigen::VectorXd external_N;         ///< (3n) dead loads and gravity
-    std::vector<double> support_share;  ///< (supports) of their prescribed motion
-    std::vector<Drive> drives;          ///< (actuators)
+    Eigen::VectorXd external_N;              ///< (3n) dead loads and gravity
+    std::vector<Eigen::Vector3d> torque_Nm;  ///< (torques)
+    std::vector<double> support_share;       ///< (supports) of their prescribed motion
+    std::vector<Drive> drives;               ///< (actuators)
     /// (actuators) how the tension of a cable with friction drops along it, frozen at some state of this step; empty
     /// lists where there is no friction.
     std::vector<std::vector<double>> shares;
     Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) where the obstacles are
     /// Friction as frozen at some state of this step; none before contact.
     std::shared_ptr<const contact::Friction> friction = nullptr;
+    std::vector<double> joint_wanted;  ///< (joints) what drives them: JointDrive::wanted
+    std::vector<double> joint_start;   ///< (joints) their coordinates where the step begins; empty: all zero
     bool met = false;  ///< the robot has met itself: where its contact with itself waits for that, it acts
     std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
 };
@@ -122,10 +129,11 @@ public:
     /// The same without that of the tets: of plates, springs, inertia, contact and actuators alone.
     void add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
                                  std::span<double> values, bool project) const;
-    /// Adds what add_tangent leaves out, of a law without an energy and of pressure on patches with a free rim (over
-    /// all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below the
-    /// diagonal.
-    void add_skew(const State& state, const TangentLayout& layout, std::span<double> values) const;
+    /// Adds what add_tangent leaves out, of a law without an energy, of torques and of pressure on patches with a free
+    /// rim (over all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below
+    /// the diagonal.
+    void add_skew(const State& state, const Controls& controls, const TangentLayout& layout,
+                  std::span<double> values) const;
     /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
     /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
     [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
@@ -137,6 +145,8 @@ public:
                                                                            const Controls& start_controls) const;
     /// True if something rubs.
     [[nodiscard]] bool has_friction() const;
+    /// True if surfaces are near enough to each other to act.
+    [[nodiscard]] bool touches(const State& state, const Controls& controls) const;
     /// Where contact of the robot with itself waits until it is needed: true if on the straight way between two states
     /// its surfaces come so near each other that it is. `now`: the controls of `state`.
     [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,
@@ -144,6 +154,9 @@ public:
     /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
     /// looked for.
     [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
+    /// Robot nodes, then the points of objects, then the nodes of the obstacles: what contact knows as x, or as a
+    /// motion.
+    [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     /// Contact forces of a state, for results. Precondition: the model has contact.
     [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
     /// (3n) N, pressure and friction of everything that touches a node; zero without contact.
@@ -152,6 +165,8 @@ public:
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.
     [[nodiscard]] bool has_skew() const { return !skew_.empty(); }
+    /// Torques have a skew part, too, but of little weight where their nodes are stiff: Newton does without it.
+    [[nodiscard]] bool has_torques() const { return !torques_.empty(); }
     /// (3 free) -> (3 free): the skew part of the tangent times v.
     [[nodiscard]] Eigen::VectorXd apply_skew(const State& state, const Eigen::VectorXd& v) const;
 
@@ -160,6 +175,10 @@ public:
     [[nodiscard]] const std::vector<SpringPath>& springs() const { return springs_; }
     [[nodiscard]] const std::vector<Plate>& plates() const { return plates_; }
     [[nodiscard]] const std::vector<AffineBody>& objects() const { return model_->objects(); }
+    [[nodiscard]] const std::vector<JointForce>& joints() const { return joints_; }
+    [[nodiscard]] JointDrive joint_drive(const Controls& controls, std::size_t joint) const;
+    /// (joints) angles and places at x, on from where a step has begun; none without joints.
+    [[nodiscard]] std::vector<double> joint_coordinates(const Eigen::VectorXd& x, const Controls& controls) const;
     [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
     [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
     /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
@@ -198,21 +217,51 @@ private:
     [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
         return model_->contact(controls.met);
     }
-    /// Robot nodes, then the points of objects, then the nodes of the obstacles: what contact knows as x.
-    [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     [[nodiscard]] double contact_energy(const Eigen::VectorXd& x, const Controls& controls) const;
     void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;
     [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
+    void add_fluid();
+    [[nodiscard]] Eigen::Vector3d gravity_at(double time) const;
+    /// Adds forces on the mesh's nodes of what acts on all of contact's nodes.
+    void add_carried(const std::vector<double>& on_all, Eigen::VectorXd& forces) const;
+    void add_buoyancy(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
+                      double& energy) const;
+    /// In a step in time.
+    struct Stream {
+        std::vector<double> start, v;
+    };
+    [[nodiscard]] Stream stream(const Eigen::VectorXd& x, const Inertia& inertia) const;
+    void add_drag(const Eigen::VectorXd& x, const Controls& controls, const Inertia& inertia, Eigen::VectorXd& forces,
+                  double& energy) const;
+    void add_drag_tangent(const Eigen::VectorXd& x, const Controls& controls, const Inertia& inertia,
+                          const TangentLayout& layout, std::span<double> values) const;
+    void visit_carried(const TangentLayout& layout, std::span<double> values,
+                       const std::function<void(const contact::BlockVisitor&)>& blocks) const;
     [[nodiscard]] bool has_collapsed_chamber(const Eigen::VectorXd& x) const;
     void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
-    void fill_residual(const State& state, const Controls& controls, const Eigen::VectorXd& internal,
-                       Evaluation& e) const;
+    /// Forces that balance, (3n) each.
+    struct Balance {
+        Eigen::VectorXd internal, driving;
+    };
+    /// All but the residual, of a state at rest or, with `inertia`, at the end of a step.
+    [[nodiscard]] Evaluation evaluate_at(const State& state, const Controls& controls, const Inertia* inertia,
+                                         Balance& balance) const;
+    /// Of a step that takes the mean of the forces along its way.
+    [[nodiscard]] Evaluation evaluate_mean(const State& state, const Controls& controls, Balance& balance) const;
+    [[nodiscard]] Eigen::VectorXd driving_forces(const State& state, const Controls& controls,
+                                                 const Evaluation& e) const;
+    void fill_residual(const Balance& balance, Evaluation& e) const;
+    void add_tangent_at(const State& state, const Controls& controls, const TangentLayout& layout,
+                        std::span<double> values, bool project) const;
 
     const Model* model_;
     std::vector<FreeRoller> rollers_;
     std::vector<Actuator> actuators_;
     std::vector<Plate> plates_;
     std::vector<SpringPath> springs_;
+    std::vector<JointForce> joints_;
+    std::vector<TorqueForces> torques_;
+    std::optional<FluidForces> fluid_;
     std::vector<int> all_nodes_;     ///< (n) 0, 1, 2, ...
     Eigen::VectorXd rest_;           ///< (3n)
     Eigen::VectorXd gravity_;        ///< (3n) at full share

@@ -25,10 +25,10 @@ History MotionInTime::at_rest(const Eigen::VectorXd& x) const {
 
 History MotionInTime::still(const Eigen::VectorXd& x) {
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(x.size());
-    return {x, none, x, none, 0};
+    return {x, none, x, none, 0, true};
 }
 
-std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, double dt) {
+std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, double dt, Scheme scheme) {
     std::shared_ptr<StiffnessMatrix> stiffness;
     if (damping_.stiffness_s > 0) {
         if (!body_layout_) body_layout_ = make_body_layout();
@@ -39,7 +39,7 @@ std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, dou
         model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true);
     }
     return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history, dt, damping_,
-                                           std::move(stiffness));
+                                           std::move(stiffness), scheme);
 }
 
 History MotionInTime::after(const Inertia& inertia, const Eigen::VectorXd& x) {

@@ -19,7 +19,8 @@ public:
     /// All of it still.
     [[nodiscard]] static History still(const Eigen::VectorXd& x);
     /// For a step of `dt` from where `history` ends. Damping by stiffness takes the stiffness there.
-    [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt);
+    [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt,
+                                                         Scheme scheme = Scheme::even);
     /// After a step that ends at `x`.
     [[nodiscard]] static History after(const Inertia& inertia, const Eigen::VectorXd& x);
     [[nodiscard]] double kinetic_energy_J(const History& history) const;

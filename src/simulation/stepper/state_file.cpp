@@ -40,11 +40,14 @@ Json json_of(const Inputs& inputs) {
 }
 
 Json json_of(const History& history) {
-    return {{"x", packed(history.x)},
-            {"v", packed(history.v)},
-            {"x_before", packed(history.x_before)},
-            {"v_before", packed(history.v_before)},
-            {"dt_before", history.dt_before}};
+    Json json{{"x", packed(history.x)},
+              {"v", packed(history.v)},
+              {"x_before", packed(history.x_before)},
+              {"v_before", packed(history.v_before)},
+              {"dt_before", history.dt_before}};
+    if (history.touching > 0) json["touching"] = history.touching;
+    if (history.next_dt > 0) json["next_dt"] = history.next_dt;
+    return json;
 }
 
 Json json_of(const contact::Friction& friction) {
@@ -72,10 +75,20 @@ Json json_of(const Controls& controls) {
               {"drives", json_of(controls.drives)},
               {"shares", std::move(shares)},
               {"obstacles", packed(controls.obstacles)},
+              {"joint_wanted", packed(std::span<const double>(controls.joint_wanted))},
+              {"joint_start", packed(std::span<const double>(controls.joint_start))},
               {"met", controls.met}};
+    if (!controls.torque_Nm.empty()) {
+        Eigen::VectorXd torques(3 * static_cast<Eigen::Index>(controls.torque_Nm.size()));
+        for (std::size_t k = 0; k < controls.torque_Nm.size(); ++k)
+            torques.segment<3>(3 * static_cast<Eigen::Index>(k)) = controls.torque_Nm[k];
+        json["torque_Nm"] = packed(torques);
+    }
     if (controls.friction) json["friction"] = json_of(*controls.friction);
     if (controls.inertia)
         json["inertia"] = Json{{"start", json_of(controls.inertia->start())}, {"dt", controls.inertia->dt()}};
+    if (controls.inertia && controls.inertia->scheme() != Scheme::even)
+        json["inertia"]["scheme"] = static_cast<int>(controls.inertia->scheme());
     return json;
 }
 
@@ -226,6 +239,9 @@ private:
         History history{in.vector("x", n), in.vector("v", n), in.vector("x_before", n), in.vector("v_before", n),
                         in.number("dt_before")};
         if (!(history.dt_before >= 0)) in.fail("dt_before is negative");
+        if (in.has("touching")) history.touching = in.integer("touching", 0, 1 << 30);
+        if (in.has("next_dt")) history.next_dt = in.number("next_dt");
+        if (!(history.next_dt >= 0)) in.fail("next_dt is negative");
         take(in);
         return history;
     }
@@ -281,15 +297,29 @@ private:
         controls.drives = drives(in.at("drives"), sizes_.actuators);
         controls.shares = shares(in);
         controls.obstacles = in.vector("obstacles", sizes_.obstacle_coordinates);
+        controls.joint_wanted = in.numbers<double>("joint_wanted");
+        controls.joint_start = in.numbers<double>("joint_start");
+        const std::size_t joints = stepper_.system().joints().size();
+        if (controls.joint_wanted.size() != joints ||
+            !(controls.joint_start.empty() || controls.joint_start.size() == joints))
+            in.fail("another number of joints");
         controls.met = in.boolean("met");
+        if (const auto count = stepper_.model().description().torques.size(); count > 0) {
+            const Eigen::VectorXd torques = in.vector("torque_Nm", 3 * static_cast<Eigen::Index>(count));
+            for (std::size_t k = 0; k < count; ++k)
+                controls.torque_Nm.emplace_back(torques.segment<3>(3 * static_cast<Eigen::Index>(k)));
+        }
         if (in.has("friction")) controls.friction = friction(in.at("friction"));
         if (in.has("inertia")) {
             Reader inertia(in.at("inertia"));
-            const History start = history(inertia.at("start"));
+            History start = history(inertia.at("start"));
+            start.is_still = !stepper_.options().dynamics.has_value();
             const double dt = inertia.number("dt");
             if (!(dt > 0) || !stepper_.has_inertia()) inertia.fail("a step in time of no length");
+            int scheme = 0;
+            if (inertia.has("scheme")) scheme = inertia.integer("scheme", 0, static_cast<int>(Scheme::conserving));
             take(inertia);
-            if (status_ && in.status()) controls.inertia = stepper_.inertia(start, dt);
+            if (status_ && in.status()) controls.inertia = stepper_.inertia(start, dt, static_cast<Scheme>(scheme));
         }
         take(in);
         return controls;

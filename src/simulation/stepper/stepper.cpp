@@ -1,5 +1,7 @@
 #include "simulation/stepper/stepper.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -44,7 +46,9 @@ struct Stepper::Target {
     double along;
     Controls controls;
     bool onward;
-    const State* expected;  ///< there; null: not known
+    const State* expected;      ///< there; null: not known
+    double* error_m = nullptr;  ///< where the error in time is wanted: gets it; it is not accepted above the next
+    double largest_error_m = 0;
 };
 
 Stepper::Stepper(const Model& model, const StepperOptions& options)
@@ -135,15 +139,58 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     const double from = robot.now.along;
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
     const Way way{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
-                  smallest_share * length, onward, expected};
+                  (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
     StepReport report = step(robot, way, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
     if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
     return report;
 }
 
+/// Steps grow and shrink by their error. Where the next would nearly reach the end of the way it is shortened, or two
+/// are made equally long, so that none is very short.
+StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progress& progress) {
+    constexpr double first_share = 1.0 / 64, most_growth = 2, most_loss = 0.2, careful = 0.9;
+    const double tolerance = options_.dynamics->time_tolerance_m;
+    StepReport report;
+    std::string off;  // why the last step that was solved was refused
+    double piece = robot.history.next_dt;
+    if (!(piece > 0)) piece = first_share * (way.end - robot.now.along);
+    while (robot.now.along < way.end && !progress.cancelled()) {
+        const double rest = way.end - robot.now.along;
+        const double dt = piece >= (1 - rounding) * rest ? rest : piece > 0.5 * rest ? 0.5 * rest : piece;
+        const double end = dt == rest ? way.end : robot.now.along + dt;
+        const bool shortest = !(dt > way.shortest_piece);
+        double error = 0;
+        const StepOutcome outcome =
+            go(robot, {end, way.at(end), way.onward, end == way.end ? way.expected : nullptr, &error, tolerance},
+               report, progress);
+        const bool of_second_order = outcome.converged || error > 0;
+        const double growth =
+            of_second_order
+                ? std::clamp(careful * std::cbrt(tolerance / std::max(error, 1e-3 * tolerance)), most_loss, most_growth)
+                : 0.5;
+        if (outcome.converged) {
+            robot.history.next_dt = dt < piece && growth >= 1 ? std::max(piece, growth * dt) : growth * dt;
+            piece = robot.history.next_dt;
+            if (way.after_piece) way.after_piece(robot);
+            continue;
+        }
+        ++report.refused;
+        if (error > tolerance) off = outcome.reason;
+        report.reason = off.empty() || error > tolerance
+                            ? outcome.reason
+                            : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason);
+        piece = std::min(growth, careful) * dt;
+        if (shortest) break;
+    }
+    report.arrived = !(robot.now.along < way.end);
+    remember(robot);
+    return report;
+}
+
 StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& progress) {
     recall(robot);
+    if (is_adaptive()) return step_by_error(robot, way, progress);
     StepReport report;
     double piece = way.end - robot.now.along;
     int in_vain = 0;  // iterations of the attempts since the last that arrived
@@ -185,7 +232,8 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
         Controls controls = target.controls;
         controls.met = robot.controls.met;
         State next;
-        outcome = attempt(robot, target, controls, next, progress);
+        outcome = chooses_scheme() ? attempt_in_time(robot, target, controls, next, progress)
+                                   : attempt(robot, target, Scheme::even, controls, next, progress);
         iterations += outcome.iterations;
         note(outcome.history, target.along, report);
         if (outcome.converged && system_.meets_itself(robot.now.state, robot.controls, next, controls)) {
@@ -206,10 +254,94 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
     }
 }
 
-StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
-                             const Progress& progress) {
-    if (options_.dynamics) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along);
+/// Whether a step's formula depends on what happens in it.
+bool Stepper::chooses_scheme() const {
+    return options_.dynamics && (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2);
+}
+
+/// What touches moves by formulas that take energy out of what they do not resolve: an impact. The step in which
+/// something begins to touch, and the next, know nothing of before.
+Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
+    if (robot.history.touching == 1) return Scheme::euler;
+    if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
+    // A prescribed length, volume or angle says where it is to be at the end, not in the mean; a damped joint, what it
+    // loses by then.
+    const bool prescribed =
+        std::ranges::any_of(controls.drives, [](const Drive& drive) { return drive.kind == Drive::Kind::measure; });
+    const bool by_joint = std::ranges::any_of(model_.description().joints, [](const Joint& joint) {
+        return joint.law.damping > 0 || joint.law.drive != JointLaw::Drive::none;
+    });
+    return prescribed || by_joint ? Scheme::bdf2 : Scheme::conserving;
+}
+
+/// Loads, torques, tensions and pressures of a conserving step are the means of those at its ends.
+void Stepper::take_mean_inputs(const RobotState& robot, Controls& controls) const {
+    const Controls begin = system_.controls(robot.controls.time), end = system_.controls(controls.time);
+    controls.external_N += 0.5 * (begin.external_N - end.external_N);
+    for (std::size_t k = 0; k < controls.torque_Nm.size(); ++k)
+        controls.torque_Nm[k] += 0.5 * (begin.torque_Nm[k] - end.torque_Nm[k]);
+    for (std::size_t a = 0; a < controls.drives.size(); ++a) {
+        if (controls.drives[a].kind == robot.drives[a].kind)
+            controls.drives[a].value = 0.5 * (controls.drives[a].value + robot.drives[a].value);
+    }
+}
+
+/// Mean of all masses of how far they are off.
+double Stepper::time_error_m(const Controls& controls, const State& next) const {
+    const Eigen::VectorXd off = controls.inertia->error(next.x);
+    double mass = 0;
+    for (const double m : model_.elements().node_mass_kg()) mass += m;
+    return mass > 0 ? std::sqrt(std::max(0.0, off.dot(controls.inertia->mass_times(off))) / mass) : 0;
+}
+
+/// Where a step ends in contact though it began without, or finds no end because of it, it is taken again as one that
+/// may lose energy.
+StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& target, Controls& controls, State& next,
+                                     const Progress& progress) {
+    const Controls wanted = controls;
+    const Scheme first = scheme(robot, controls);
+    if (first == Scheme::conserving) take_mean_inputs(robot, controls);
+    StepOutcome outcome = attempt(robot, target, first, controls, next, progress);
+    const bool stuck = !outcome.converged && first == Scheme::conserving && !progress.cancelled();
+    if (stuck || (outcome.converged && robot.history.touching == 0 && system_.touches(next, controls))) {
+        Controls again = wanted;
+        State there;
+        StepOutcome lossy = attempt(robot, target, Scheme::euler, again, there, progress);
+        outcome.iterations += lossy.iterations;
+        outcome.history.insert(outcome.history.end(), lossy.history.begin(), lossy.history.end());
+        if (!stuck || (lossy.converged && system_.touches(there, again))) {
+            lossy.iterations = outcome.iterations;
+            lossy.history = std::move(outcome.history);
+            outcome = std::move(lossy);
+            controls = std::move(again);
+            next = std::move(there);
+        }
+    }
+    if (!outcome.converged) return outcome;
+    if (controls.inertia->scheme() == Scheme::conserving) {  // its forces are those on the way, not at the end
+        Controls still = controls;
+        still.inertia = nullptr;
+        const Evaluation end = system_.evaluate(next, still);
+        if (!end.possible()) {
+            outcome.converged = false;
+            outcome.reason = fmt::format("the end of a step {}", name(end.flaw));
+        }
+    }
+    if (target.error_m == nullptr || !outcome.converged) return outcome;
+    *target.error_m = time_error_m(controls, next);
+    if (*target.error_m > target.largest_error_m) {
+        outcome.converged = false;
+        outcome.reason = fmt::format("a step of {:.3g} s is off by {:.3g} mm, more than time_tolerance",
+                                     controls.inertia->dt(), 1e3 * *target.error_m);
+    }
+    return outcome;
+}
+
+StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Scheme scheme, Controls& controls,
+                             State& next, const Progress& progress) {
+    if (options_.dynamics) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along, scheme);
     if (tether_dt_s_ > 0) controls.inertia = motion_->inertia(MotionInTime::still(robot.x()), tether_dt_s_);
+    controls.joint_start = system_.joint_coordinates(robot.x(), robot.controls);
     const std::optional<double> along = target.onward ? std::optional(target.along) : std::nullopt;
     std::optional<Prediction> expected;
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
@@ -232,7 +364,11 @@ StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& n
 }
 
 void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome) {
-    if (options_.dynamics) robot.history = MotionInTime::after(*controls.inertia, next.x);
+    if (options_.dynamics) {
+        const int touching = robot.history.touching;
+        robot.history = MotionInTime::after(*controls.inertia, next.x);
+        if (chooses_scheme() && system_.touches(next, controls)) robot.history.touching = touching + 1;
+    }
     robot.past.push_back({robot.now.along, std::make_shared<const State>(std::move(robot.now.state))});
     if (robot.past.size() > options_.most_past) robot.past.pop_front();
     robot.now = {target.along, std::move(next)};
@@ -279,8 +415,8 @@ double Stepper::kinetic_energy_J(const RobotState& robot) const {
     return options_.dynamics ? motion_->kinetic_energy_J(robot.history) : 0;
 }
 
-std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double dt) const {
-    return motion_->inertia(history, dt);
+std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double dt, Scheme scheme) const {
+    return motion_->inertia(history, dt, scheme);
 }
 
 /// The solvers remember what they did when this state came about.

@@ -25,6 +25,9 @@ struct StepperOptions {
     double time_unit = 1;                             ///< of the model's program: what usually goes in one step
 };
 
+/// Of a step of the program or to inputs: shorter pieces than this share are not tried where their error decides.
+inline constexpr double smallest_adaptive_share = 1.0 / (1 << 20);
+
 /// Where a step leads, and on which way: what is wanted at each place on it.
 struct Way {
     double end = 0;  ///< how far the step goes; Moment::along says where it begins
@@ -43,6 +46,7 @@ struct StepReport {
     std::string reason;  ///< why it did not arrive, or on which terms
     int iterations = 0;
     int pieces = 0;                        ///< that were accepted
+    int refused = 0;                       ///< that were solved, but for their error in time, or were not solved
     Solver solver = Solver::automatic;     ///< that finished the last of them
     std::vector<IterationRecord> history;  ///< `step` is not filled in
 };
@@ -90,7 +94,10 @@ public:
 
     [[nodiscard]] double kinetic_energy_J(const RobotState& robot) const;
     /// What a step in time of `dt` from where `history` ends adds to the equations. Precondition: has_inertia().
-    [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt) const;
+    [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt,
+                                                         Scheme scheme = Scheme::even) const;
+    /// Steps are as long as their error in time allows.
+    [[nodiscard]] bool is_adaptive() const { return options_.dynamics && options_.dynamics->time_tolerance_m > 0; }
     /// In a motion in time and, as a tether, where something is held by nothing: see theory.md.
     [[nodiscard]] bool has_inertia() const { return motion_.has_value(); }
     [[nodiscard]] const Model& model() const { return model_; }
@@ -103,8 +110,15 @@ private:
     struct Target;
     [[nodiscard]] std::size_t steered() const;
     [[nodiscard]] StepOutcome go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress);
-    [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Controls& controls, State& next,
-                                      const Progress& progress);
+    [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Scheme scheme, Controls& controls,
+                                      State& next, const Progress& progress);
+    [[nodiscard]] StepOutcome attempt_in_time(const RobotState& robot, const Target& target, Controls& controls,
+                                              State& next, const Progress& progress);
+    [[nodiscard]] bool chooses_scheme() const;
+    [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
+    void take_mean_inputs(const RobotState& robot, Controls& controls) const;
+    [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
+    [[nodiscard]] StepReport step_by_error(RobotState& robot, const Way& way, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                                      std::optional<Evaluation> known);
     void accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome);

@@ -1,0 +1,199 @@
+#include "simulation/actuators/fluid_forces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+using linalg::Matrix9;
+using linalg::Vector3;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+
+/// Barycentric coordinates of a rule of degree 2 on a triangle; each point has a third of it.
+constexpr std::array<std::array<double, 3>, 3> rule{
+    {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
+
+Matrix3 cross_matrix(const Vector3& v) {
+    Matrix3 m;
+    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+    return m;
+}
+
+/// Which way is down, and how heavy the fluid is.
+struct Weight {
+    Vector3 down = Vector3::Zero();
+    double N_m3 = 0;
+    double level_m = 0;
+    bool has_level = false;
+
+    [[nodiscard]] double depth(const Vector3& x) const {
+        const double depth = level_m + down.dot(x);
+        return has_level ? std::max(depth, 0.0) : depth;
+    }
+};
+
+Weight weight_of(const Fluid& fluid, const Vector3& gravity) {
+    const double g = gravity.norm();
+    Weight weight;
+    if (g > 0) weight = {gravity / g, fluid.density_kg_m3 * g, fluid.level_m.value_or(0), fluid.level_m.has_value()};
+    return weight;
+}
+
+struct Corners {
+    std::array<Vector3, 3> x;
+    [[nodiscard]] Vector3 at(const std::array<double, 3>& b) const { return b[0] * x[0] + b[1] * x[1] + b[2] * x[2]; }
+    /// Twice the area, along the normal.
+    [[nodiscard]] Vector3 twice_area() const { return (x[1] - x[0]).cross(x[2] - x[0]); }
+};
+
+Corners corners(std::span<const double> x, const std::array<int, 3>& t) {
+    return {{linalg::view(x, t[0]), linalg::view(x, t[1]), linalg::view(x, t[2])}};
+}
+
+/// E = weight * s * Q, s the area that is seen from below and Q the mean of depth^2/2.
+struct Sunk {
+    double s = 0, Q = 0;
+    Vector9 ds = Vector9::Zero(), dQ = Vector9::Zero();
+    Matrix9 ddQ = Matrix9::Zero();
+};
+
+Sunk sunk(const Weight& weight, const Corners& c) {
+    Sunk sunk;
+    sunk.s = 0.5 * weight.down.dot(c.twice_area());
+    for (std::size_t i = 0; i < 3; ++i)
+        sunk.ds.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+            0.5 * (c.x[(i + 1) % 3] - c.x[(i + 2) % 3]).cross(weight.down);
+    for (const std::array<double, 3>& b : rule) {
+        const double depth = weight.depth(c.at(b));
+        if (weight.has_level && !(depth > 0)) continue;
+        Vector9 change;
+        for (std::size_t i = 0; i < 3; ++i) change.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i] * weight.down;
+        sunk.Q += depth * depth / 6;
+        sunk.dQ += depth / 3 * change;
+        sunk.ddQ += change * change.transpose() / 3;
+    }
+    return sunk;
+}
+
+Matrix9 second_change(const Weight& weight, const Sunk& sunk) {
+    Matrix9 H = sunk.ds * sunk.dQ.transpose() + sunk.dQ * sunk.ds.transpose() + sunk.s * sunk.ddQ;
+    const Matrix3 turn = 0.5 * sunk.Q * cross_matrix(weight.down);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        H.block<3, 3>(3 * i, 3 * ((i + 1) % 3)) -= turn;
+        H.block<3, 3>(3 * i, 3 * ((i + 2) % 3)) += turn;
+    }
+    return weight.N_m3 * H;
+}
+
+}  // namespace
+
+double FluidForces::buoyancy_energy(std::span<const double> x, const Vector3& gravity) const {
+    const Weight weight = weight_of(fluid_, gravity);
+    double sum = 0;
+    for (const auto& t : skin_) {
+        const Sunk part = sunk(weight, corners(x, t));
+        sum += part.s * part.Q;
+    }
+    return weight.N_m3 * sum;
+}
+
+void FluidForces::add_buoyancy(std::span<const double> x, const Vector3& gravity, std::span<double> forces) const {
+    const Weight weight = weight_of(fluid_, gravity);
+    if (weight.N_m3 == 0) return;
+    for (const auto& t : skin_) {
+        const Sunk part = sunk(weight, corners(x, t));
+        const Vector9 force = weight.N_m3 * (part.Q * part.ds + part.s * part.dQ);
+        for (std::size_t i = 0; i < 3; ++i) {
+            Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(t[i]));
+            on += force.segment<3>(3 * static_cast<Eigen::Index>(i));
+        }
+    }
+}
+
+void FluidForces::visit_buoyancy(std::span<const double> x, const Vector3& gravity, bool project,
+                                 const Blocks& visit) const {
+    const Weight weight = weight_of(fluid_, gravity);
+    if (weight.N_m3 == 0) return;
+    for (const auto& t : skin_) {
+        Matrix9 H = second_change(weight, sunk(weight, corners(x, t)));
+        if (project) H = linalg::project_to_positive(H);
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            for (Eigen::Index j = 0; j < 3; ++j)
+                visit(t[static_cast<std::size_t>(i)], t[static_cast<std::size_t>(j)], H.block<3, 3>(3 * i, 3 * j));
+        }
+    }
+}
+
+/// A triangle in the stream: rho/2 A of what of it is under water, and its velocity along and across the normal.
+struct FluidForces::Piece {
+    double factor = 0;
+    Vector3 normal = Vector3::Zero(), across = Vector3::Zero();
+    double along = 0;
+};
+
+FluidForces::Piece FluidForces::piece(const std::array<int, 3>& triangle, const Motion& motion) const {
+    const Corners begin = corners(motion.start, triangle), v = corners(motion.v, triangle);
+    const Vector3 twice_area = begin.twice_area();
+    const double size = twice_area.norm();
+    Piece piece;
+    if (!(size > 0)) return piece;
+    double wet = 1;
+    if (fluid_.level_m) {
+        const Weight weight = weight_of(fluid_, motion.gravity);
+        wet = 0;
+        for (const std::array<double, 3>& b : rule) wet += weight.depth(begin.at(b)) > 0 ? 1.0 / 3 : 0;
+    }
+    const Vector3 u = v.at({1.0 / 3, 1.0 / 3, 1.0 / 3}) - linalg::vector(fluid_.current_m_s);
+    piece.factor = 0.25 * fluid_.density_kg_m3 * size * wet;
+    piece.normal = twice_area / size;
+    piece.along = piece.normal.dot(u);
+    piece.across = u - piece.along * piece.normal;
+    return piece;
+}
+
+double FluidForces::drag_energy(const Motion& motion) const {
+    double sum = 0;
+    for (const auto& t : skin_) {
+        const Piece p = piece(t, motion);
+        sum += p.factor / 3 *
+               (fluid_.drag_normal * std::pow(std::fabs(p.along), 3) +
+                fluid_.drag_tangential * std::pow(p.across.norm(), 3));
+    }
+    return sum / motion.rate;
+}
+
+void FluidForces::add_drag(const Motion& motion, std::span<double> forces) const {
+    for (const auto& t : skin_) {
+        const Piece p = piece(t, motion);
+        const Vector3 force = p.factor / 3 *
+                              (fluid_.drag_normal * std::fabs(p.along) * p.along * p.normal +
+                               fluid_.drag_tangential * p.across.norm() * p.across);
+        for (const int node : t) {
+            Eigen::Map<Vector3> on(forces.data() + 3 * static_cast<std::size_t>(node));
+            on += force;
+        }
+    }
+}
+
+void FluidForces::visit_drag(const Motion& motion, const Blocks& visit) const {
+    for (const auto& t : skin_) {
+        const Piece p = piece(t, motion);
+        const Matrix3 onto = p.normal * p.normal.transpose();
+        const double speed = p.across.norm();
+        Matrix3 H = 2 * fluid_.drag_normal * std::fabs(p.along) * onto;
+        if (speed > 0)
+            H += fluid_.drag_tangential *
+                 (speed * (Matrix3::Identity() - onto) + p.across * p.across.transpose() / speed);
+        H *= motion.rate * p.factor / 9;
+        for (const int i : t) {
+            for (const int j : t) visit(i, j, H);
+        }
+    }
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,301 @@
+#include "simulation/elements/joint_force.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/linalg/vectors.hpp"
+
+namespace pliant::sim {
+namespace {
+
+using linalg::Matrix3;
+using linalg::Vector3;
+
+/// Rows of the vectors that the kinds need, by the points (centre, and an arm along each axis) of either thing.
+struct RowOf {
+    std::array<double, 4> first, second;
+};
+
+std::vector<RowOf> rows_of(Joint::Kind kind, double arm) {
+    const double a = 1 / arm;
+    const RowOf centre{{-1, 0, 0, 0}, {1, 0, 0, 0}}, along{{0, -1, 0, 0}, {0, 1, 0, 0}};
+    switch (kind) {
+        case Joint::Kind::ball:
+            return {centre};
+        case Joint::Kind::glue:
+            return {centre, along, {{0, 0, -1, 0}, {0, 0, 1, 0}}};
+        case Joint::Kind::slider:
+            return {centre, along, {{0, 0, -1, 0}, {0, 0, 1, 0}}, {{-a, a, 0, 0}, {0, 0, 0, 0}}};
+        case Joint::Kind::hinge:
+            break;
+    }
+    return {along,
+            {{-2, 1, 0, 0}, {2, -1, 0, 0}},
+            {{-a, 0, a, 0}, {0, 0, 0, 0}},
+            {{-a, 0, 0, a}, {0, 0, 0, 0}},
+            {{0, 0, 0, 0}, {-a, 0, a, 0}}};
+}
+
+Eigen::Index place_in(std::vector<int>& nodes, int node) {
+    const auto found = std::ranges::find(nodes, node);
+    if (found != nodes.end()) return found - nodes.begin();
+    nodes.push_back(node);
+    return static_cast<Eigen::Index>(nodes.size()) - 1;
+}
+
+}  // namespace
+
+JointForce::JointForce(const Joint& joint)
+    : kind_(joint.kind), stiffness_(joint.stiffness_N_m), arm_(joint.arm_m), law_(joint.law) {
+    for (const auto* end : {&joint.first, &joint.second}) {
+        for (const Attachment& point : *end)
+            for (const int node : point.nodes) (void)place_in(nodes_, node);
+    }
+    const std::vector<RowOf> rows = rows_of(kind_, arm_);
+    const auto m = static_cast<Eigen::Index>(rows.size()), n = static_cast<Eigen::Index>(nodes_.size());
+    weights_ = second_ = Eigen::MatrixXd::Zero(m, n);
+    fixed_ = second_fixed_ = Vectors::Zero(3, m);
+    const auto add = [&](const Attachment& point, double factor, Eigen::Index row, Eigen::MatrixXd& weights,
+                         Vectors& fixed) {
+        if (factor == 0) return;
+        if (point.nodes.empty()) fixed.col(row) += factor * linalg::vector(point.fixed);
+        for (std::size_t k = 0; k < point.nodes.size(); ++k)
+            weights(row, place_in(nodes_, point.nodes[k])) += factor * point.weights[k];
+    };
+    for (Eigen::Index row = 0; row < m; ++row) {
+        for (std::size_t p = 0; p < 4; ++p) {
+            add(joint.second[p], rows[static_cast<std::size_t>(row)].second[p], row, second_, second_fixed_);
+            add(joint.first[p], rows[static_cast<std::size_t>(row)].first[p], row, weights_, fixed_);
+        }
+    }
+    weights_ += second_;
+    fixed_ += second_fixed_;
+    second_is_fixed_ = joint.second[0].nodes.empty();
+    Eigen::MatrixXd place = Eigen::MatrixXd::Zero(1, n);
+    Vectors at = Vectors::Zero(3, 1);
+    add(joint.second[0], 1, 0, place, at);
+    place_weights_ = place.row(0).transpose();
+    place_fixed_ = at.col(0);
+}
+
+/// How many of the rows are offsets of points.
+Eigen::Index JointForce::points() const {
+    switch (kind_) {
+        case Joint::Kind::ball:
+            return 1;
+        case Joint::Kind::hinge:
+            return 2;
+        case Joint::Kind::glue:
+        case Joint::Kind::slider:
+            break;
+    }
+    return 3;
+}
+
+JointForce::Vectors JointForce::vectors(std::span<const double> x) const {
+    Vectors at(3, static_cast<Eigen::Index>(nodes_.size()));
+    for (Eigen::Index k = 0; k < at.cols(); ++k) at.col(k) = linalg::view(x, nodes_[static_cast<std::size_t>(k)]);
+    return at * weights_.transpose() + fixed_;
+}
+
+JointForce::Coordinate JointForce::angle_of(const Vectors& y, bool with_hessian) const {
+    const Vector3 u = y.col(2), v = y.col(3), w = y.col(4);
+    const double a = u.dot(w), b = v.dot(w), r2 = a * a + b * b;
+    const double by_a = -b / r2, by_b = a / r2;
+    Coordinate q{std::atan2(b, a), Vectors::Zero(3, y.cols()), {}};
+    q.gradient.col(2) = by_a * w;
+    q.gradient.col(3) = by_b * w;
+    q.gradient.col(4) = by_a * u + by_b * v;
+    if (!with_hessian) return q;
+    Eigen::VectorXd da = Eigen::VectorXd::Zero(3 * y.cols()), db = da;
+    da.segment<3>(6) = w;
+    da.segment<3>(12) = u;
+    db.segment<3>(9) = w;
+    db.segment<3>(12) = v;
+    const double aa = 2 * a * b / (r2 * r2), ab = (b * b - a * a) / (r2 * r2);
+    q.hessian = aa * (da * da.transpose() - db * db.transpose()) + ab * (da * db.transpose() + db * da.transpose());
+    const Matrix3 one = Matrix3::Identity();
+    q.hessian.block<3, 3>(6, 12) += by_a * one;
+    q.hessian.block<3, 3>(12, 6) += by_a * one;
+    q.hessian.block<3, 3>(9, 12) += by_b * one;
+    q.hessian.block<3, 3>(12, 9) += by_b * one;
+    return q;
+}
+
+JointForce::Coordinate JointForce::place_of(const Vectors& y, bool with_hessian) const {
+    const double length = y.col(3).norm();
+    const Vector3 t = y.col(3) / length, d = y.leftCols<3>().rowwise().mean();
+    const double s = t.dot(d);
+    const Vector3 off = d - s * t;
+    Coordinate q{s, Vectors::Zero(3, 4), {}};
+    for (Eigen::Index k = 0; k < 3; ++k) q.gradient.col(k) = t / 3;
+    q.gradient.col(3) = off / length;
+    if (!with_hessian) return q;
+    const Matrix3 across = Matrix3::Identity() - t * t.transpose();
+    q.hessian = Eigen::MatrixXd::Zero(12, 12);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+        q.hessian.block<3, 3>(3 * k, 9) = across / (3 * length);
+        q.hessian.block<3, 3>(9, 3 * k) = across / (3 * length);
+    }
+    q.hessian.block<3, 3>(9, 9) = -(off * t.transpose() + t * off.transpose() + s * across) / (length * length);
+    return q;
+}
+
+JointForce::Coordinate JointForce::coordinate_of(const Vectors& y, bool with_hessian) const {
+    return kind_ == Joint::Kind::hinge ? angle_of(y, with_hessian) : place_of(y, with_hessian);
+}
+
+double JointForce::unwrapped(double q, double start) const {
+    if (kind_ != Joint::Kind::hinge) return q;
+    return start + std::remainder(q - start, 2 * std::numbers::pi);
+}
+
+double JointForce::coordinate(std::span<const double> x, double start) const {
+    return has_coordinate() ? unwrapped(coordinate_of(vectors(x), false).value, start) : 0;
+}
+
+JointForce::Law JointForce::law(double q, const JointDrive& drive) const {
+    Law all;
+    const auto spring = [&](double stiffness, double off) {
+        all.energy += 0.5 * stiffness * off * off;
+        all.slope += stiffness * off;
+        all.curvature += stiffness;
+    };
+    spring(law_.stiffness, q - law_.rest);
+    if (drive.dt > 0) spring(law_.damping / drive.dt, q - drive.start);
+    if (q < law_.low) spring(hold(), q - law_.low);
+    if (q > law_.high) spring(hold(), q - law_.high);
+    if (law_.drive == JointLaw::Drive::place) spring(hold(), q - drive.wanted);
+    if (law_.drive == JointLaw::Drive::force) {
+        all.energy -= drive.wanted * q;
+        all.slope -= drive.wanted;
+    }
+    return all;
+}
+
+double JointForce::slope_by_wanted() const {
+    switch (law_.drive) {
+        case JointLaw::Drive::place:
+            return -hold();
+        case JointLaw::Drive::force:
+            return -1;
+        case JointLaw::Drive::none:
+            break;
+    }
+    return 0;
+}
+
+double JointForce::effort(std::span<const double> x, const JointDrive& drive) const {
+    return has_coordinate() ? 0 - law(coordinate(x, drive.start), drive).slope : 0;
+}
+
+double JointForce::energy(std::span<const double> x, const JointDrive& drive) const {
+    const Vectors y = vectors(x);
+    double sum = 0.5 * stiffness_ * y.leftCols(points()).squaredNorm();
+    if (!has_coordinate()) return sum;
+    const double q = coordinate_of(y, false).value;
+    if (kind_ == Joint::Kind::slider) sum -= 0.5 * stiffness_ * static_cast<double>(points()) * q * q;
+    return sum + law(unwrapped(q, drive.start), drive).energy;
+}
+
+JointForce::Vectors JointForce::slopes(const Vectors& y, const JointDrive& drive) const {
+    Vectors by = Vectors::Zero(3, y.cols());
+    by.leftCols(points()) = stiffness_ * y.leftCols(points());
+    if (!has_coordinate()) return by;
+    const Coordinate q = coordinate_of(y, false);
+    double slope = law(unwrapped(q.value, drive.start), drive).slope;
+    if (kind_ == Joint::Kind::slider) slope -= stiffness_ * static_cast<double>(points()) * q.value;
+    return by + slope * q.gradient;
+}
+
+void JointForce::add_gradient(std::span<const double> x, const JointDrive& drive, std::span<double> forces) const {
+    const Vectors on_nodes = slopes(vectors(x), drive) * weights_;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[k]));
+        force += on_nodes.col(static_cast<Eigen::Index>(k));
+    }
+}
+
+void JointForce::add_coordinate_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
+    if (!has_coordinate() || factor == 0) return;
+    const Vectors on_nodes = factor * coordinate_of(vectors(x), false).gradient * weights_;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[k]));
+        force += on_nodes.col(static_cast<Eigen::Index>(k));
+    }
+}
+
+void JointForce::add_hessian(std::span<const double> x, const JointDrive& drive, const std::vector<int>& index,
+                             const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+    const Vectors y = vectors(x);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3 * y.cols(), 3 * y.cols());
+    H.topLeftCorner(3 * points(), 3 * points()).diagonal().setConstant(stiffness_);
+    if (has_coordinate()) {
+        const Coordinate q = coordinate_of(y, true);
+        Law U = law(unwrapped(q.value, drive.start), drive);
+        if (kind_ == Joint::Kind::slider) {
+            U.slope -= stiffness_ * static_cast<double>(points()) * q.value;
+            U.curvature -= stiffness_ * static_cast<double>(points());
+        }
+        const Eigen::Map<const Eigen::VectorXd> g(q.gradient.data(), q.gradient.size());
+        H += U.curvature * g * g.transpose() + U.slope * q.hessian;
+    }
+    if (project) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+        H = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+    }
+    for (std::size_t b = 0; b < nodes_.size(); ++b) {
+        const int j = index[static_cast<std::size_t>(nodes_[b])];
+        if (j < 0) continue;
+        // H times the weights of node b, (3 rows, 3).
+        Eigen::MatrixXd column = Eigen::MatrixXd::Zero(H.rows(), 3);
+        for (Eigen::Index l = 0; l < y.cols(); ++l)
+            column += weights_(l, static_cast<Eigen::Index>(b)) * H.middleCols(3 * l, 3);
+        for (std::size_t a = 0; a < nodes_.size(); ++a) {
+            const int i = index[static_cast<std::size_t>(nodes_[a])];
+            if (i < j) continue;
+            Matrix3 block = Matrix3::Zero();
+            for (Eigen::Index k = 0; k < y.cols(); ++k)
+                block += weights_(k, static_cast<Eigen::Index>(a)) * column.middleRows(3 * k, 3);
+            pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+        }
+    }
+}
+
+void JointForce::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {
+    std::vector<int> clique;
+    for (const int node : nodes_) clique.push_back(index[static_cast<std::size_t>(node)]);
+    cliques.push_back(clique);
+}
+
+/// Forces on the nodes and on what is fixed of the second thing, about the joint's point there.
+JointForce::Load JointForce::load(std::span<const double> x, const JointDrive& drive) const {
+    const Vectors by = slopes(vectors(x), drive);
+    Vector3 place = place_fixed_;
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+        place += place_weights_[static_cast<Eigen::Index>(k)] * linalg::view(x, nodes_[k]);
+    Load load;
+    load.force = -by.leftCols(points()).rowwise().sum();
+    const Vectors on_nodes = by * second_;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        const Vector3 arm = linalg::view(x, nodes_[k]) - place;
+        load.torque -= arm.cross(on_nodes.col(static_cast<Eigen::Index>(k)));
+    }
+    // Rows hold fixed points times their factors, which add up to 1 in an offset and to 0 in a direction.
+    for (Eigen::Index row = 0; second_is_fixed_ && row < by.cols(); ++row) {
+        const Vector3 arm = row < points() ? Vector3(second_fixed_.col(row) - place) : Vector3(second_fixed_.col(row));
+        load.torque -= arm.cross(Vector3(by.col(row)));
+    }
+    return load;
+}
+
+Vector3 JointForce::gap(std::span<const double> x) const {
+    const Vectors y = vectors(x);
+    return kind_ == Joint::Kind::hinge ? Vector3(0.5 * (y.col(0) + y.col(1))) : Vector3(y.col(0));
+}
+
+}  // namespace pliant::sim

@@ -1,0 +1,62 @@
+// What the sensors of a robot read in a state.
+//
+//     strain     strain, length                            of a path
+//     backbone   bend, twist, curvature; curvature_k, twist_rate_k of each piece
+//     contact    force_x, _y, _z, normal_force, area, pressure of a patch
+//     tension, volume, pressure, distance
+//     motion     acceleration_x, _y, _z, angular_velocity_x, _y, _z    in the sensor's own axes
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "simulation/solver/equilibrium.hpp"
+
+namespace pliant::sim {
+
+/// What a reading is of. Values are in SI units; text() says which.
+enum class SensedQuantity {
+    ratio,
+    length,
+    angle,
+    curvature,
+    twist_rate,
+    force,
+    area,
+    volume,
+    pressure,
+    acceleration,
+    angular_velocity,
+};
+
+/// How a quantity is shown: "" and 1 for a ratio, "_mm" and 1000 for a length.
+struct Shown {
+    std::string_view suffix;
+    double factor;
+    std::string_view unit;     ///< as shown: "mm"
+    std::string_view si_unit;  ///< of the value: "m"
+};
+[[nodiscard]] Shown shown(SensedQuantity quantity);
+
+struct Reading {
+    std::string name;
+    SensedQuantity quantity = SensedQuantity::ratio;
+    double value = 0;
+};
+
+/// What read_sensor() will give, without values.
+[[nodiscard]] std::vector<std::pair<std::string, SensedQuantity>> readings_of(const Sensor& sensor);
+
+/// `in_time`: the controls have the inertia of a step in time. Where they have none a motion sensor stands still, as
+/// before the first step: it reads what holds it against gravity.
+[[nodiscard]] std::vector<Reading> read_sensor(const Sensor& sensor, const Equilibrium& system, const State& state,
+                                               const Controls& controls, bool in_time);
+
+/// Of a cable or chamber (first the cables): the tension or minus the pressure that acts on the body. What elements of
+/// gaps and meshed air resist with never reaches it; of air that is what they press with beyond their volume's own.
+[[nodiscard]] double acting_multiplier(const Equilibrium& system, const State& state, std::size_t actuator);
+
+}  // namespace pliant::sim

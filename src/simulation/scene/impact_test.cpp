@@ -1,0 +1,157 @@
+// What falls, bounces and comes to rest, in every formula of steps in time. PLIANT_BOUNCING_STEPS makes the run over
+// which energy is watched longer (600 unless told).
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/core/near.hpp"
+#include "simulation/scene/test_run.hpp"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double g = 9.81;
+
+/// A small clamped cube, which takes no part, a ground z = 0, and an object.
+std::string world(const std::string& object, const std::string& program, double friction = 0) {
+    return fmt::format(R"(
+name = "impact"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.45
+[[body]]
+name = "post"
+material = "rubber"
+geometry = {{ box = [[-300, 0, 10], [-290, 10, 20]] }}
+[mesh]
+size = "10 mm"
+order = 1
+[[fixed]]
+name = "clamp"
+plane = {{ point = [0, 0, 10], normal = [0, 0, 1] }}
+[contact]
+distance = "0.4 mm"
+[[obstacle]]
+name = "ground"
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+friction = {}
+[[object]]
+{}
+[program]
+gravity = [0, 0, -9.81]
+{})",
+                       friction, object, program);
+}
+
+sim::Trajectory run(const std::string& text) {
+    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "impact.toml")));
+}
+
+double height(const sim::Step& step) {
+    return step.objects[0].position_m.z;
+}
+
+double energy(const sim::Step& step) {
+    return step.energy_J + step.kinetic_energy_J;
+}
+
+const std::string ball =
+    "name = \"ball\"\ngeometry = { sphere = { center = [0, 0, 30], radius = 10 } }\ndensity = \"1000 kg/m^3\"\n";
+
+/// How high what falls from `fall` and is thrown back as fast as it lands gets, with a drag of `c` times its momentum.
+double rebound(double fall, double c) {
+    const double dt = 1e-6;
+    double z = fall, v = 0;
+    while (z > 0) {
+        v -= (g + c * v) * dt;
+        z += v * dt;
+    }
+    for (v = -v; v > 0; z += v * dt) v -= (g + c * v) * dt;
+    return z;
+}
+
+}  // namespace
+
+TEST_CASE("a dropped ball bounces as high as its damping lets it, where steps go by their error") {
+    for (const double damping : {0.0, 3.0}) {
+        const sim::Trajectory result =
+            run(world(ball, fmt::format("duration = \"0.2 s\"\ntime_step = \"2 ms\"\ntime_tolerance = \"0.2 um\"\n"
+                                        "integrator = \"energy-conserving\"\nmass_damping = {}\n",
+                                        damping)));
+        const auto lowest = std::min_element(result.steps.begin(), result.steps.begin() + 45,  // it lands once by then
+                                             [](const auto& a, const auto& b) { return height(a) < height(b); });
+        const auto highest = std::max_element(lowest, result.steps.end(),
+                                              [](const auto& a, const auto& b) { return height(a) < height(b); });
+        const double found = height(*highest) - 10e-3, wanted = rebound(20e-3, damping);
+        MESSAGE("damping ", damping, " /s: got up to ", 1e3 * found, " mm, wanted ", 1e3 * wanted);
+        CHECK(found == near(wanted, {.relative = 0.03}));
+    }
+}
+
+TEST_CASE("a ball that bounces comes to rest, and stays there") {
+    const sim::Trajectory result =
+        run(world(ball,
+                  "duration = \"0.8 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\n"
+                  "mass_damping = 5\n"));
+    const std::size_t n = result.steps.size();
+    const double fallen = 4.19e-3 * g * 20e-3;
+    for (std::size_t k = n - 100; k < n; ++k) {
+        CHECK(std::fabs(height(result.steps[k]) - height(result.steps[n - 1])) < 1e-6);
+        CHECK(result.steps[k].kinetic_energy_J < 1e-5 * fallen);
+        CHECK(result.steps[k].objects[0].force_N.z == near(4.19e-3 * g, {.relative = 0.02}));
+    }
+}
+
+TEST_CASE("energy never grows where a block bounces, tumbles and slides with conserving steps") {
+    const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
+    const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 600;
+    const sim::Trajectory result = run(world(
+        "name = \"block\"\ngeometry = { box = [[0, 0, 30], [20, 14, 40]] }\ndensity = \"1000 kg/m^3\"\n"
+        "velocity = [0.5, 0.1, 0]\nangular_velocity = [3, -8, 2]\n",
+        fmt::format("duration = \"{} s\"\ntime_step = \"1 ms\"\nintegrator = \"energy-conserving\"\ntolerance = 1e-6\n",
+                    1e-3 * static_cast<double>(steps)),
+        0.3));
+    const double scale = 2.8e-3 * g * 30e-3;
+    double lowest = energy(result.steps[0]);
+    for (std::size_t k = 1; k < result.steps.size(); ++k) {
+        double before = energy(result.steps[k - 1]);
+        for (std::size_t j = k > 20 ? k - 20 : 0; j < k; ++j) before = std::max(before, energy(result.steps[j]));
+        CHECK(energy(result.steps[k]) < before + 1e-3 * scale);
+        lowest = std::min(lowest, energy(result.steps[k]));
+    }
+    CHECK(energy(result.steps.back()) < energy(result.steps[0]) - 0.5 * scale);
+    CHECK(energy(result.steps.back()) < lowest + 2e-3 * scale);
+}
+
+TEST_CASE("an object that spins free of all keeps its energy, its momentum and how fast it turns") {
+    const sim::Trajectory result = run(
+        world("name = \"top\"\ngeometry = { box = [[0, 0, 600], [20, 14, 610]] }\ndensity = \"1000 kg/m^3\"\n"
+              "velocity = [0, 0, 1]\nangular_velocity = [20, 30, 5]\n",
+              "duration = \"0.3 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\ntolerance = 1e-7\n"));
+    const double scale = result.steps[0].kinetic_energy_J;
+    for (const sim::Step& step : result.steps)
+        CHECK(energy(step) == near(energy(result.steps[0]), {.absolute = 1e-4 * scale}));
+    const double T = 0.3;
+    CHECK(height(result.steps.back()) == near(605e-3 + T - 0.5 * g * T * T, {.absolute = 1e-6}));
+}
+
+TEST_CASE("mistakes in steps in time are told in one line") {
+    using robot::testing::check_problem;
+    const auto text = [](const std::string& program) { return world(ball, program); };
+    check_problem(text("steps = 2\nintegrator = \"energy-conserving\"\n"),
+                  "integrator: has no meaning without time_step");
+    check_problem(text("steps = 2\ntime_tolerance = \"1 um\"\n"), "time_tolerance: has no meaning without time_step");
+    check_problem(text("time_step = \"1 ms\"\ntime_tolerance = \"0 um\"\n"), "time_tolerance: must be above zero");
+    check_problem(text("time_step = \"1 ms\"\ntime_tolerance = 1e-6\n"), "time_tolerance: 1e-06 has no unit");
+    check_problem(text("time_step = \"1 ms\"\nintegrator = \"energy-conservin\"\n"),
+                  "did you mean \"energy-conserving\"");
+    check_problem(world(ball + "[[cable]]\nname = \"c\"\npoints = [[-295, 5, 12], [-295, 5, 18]]\n"
+                               "target = { length_ratio = 0.9 }\n",
+                        "time_step = \"1 ms\"\nintegrator = \"energy-conserving\"\n"),
+                  "cable \"c\" is driven by its length");
+}

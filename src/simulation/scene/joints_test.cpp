@@ -1,0 +1,334 @@
+// Joints from the robot file to where they get, against closed forms.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "base/core/near.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/scene/test_run.hpp"
+#include "simulation/stepper/state_file.hpp"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double g = 9.81;
+constexpr double pi = std::numbers::pi;
+
+/// A small clamped cube, which takes no part, and what the test adds.
+std::string world(const std::string& more, const std::string& program) {
+    return R"(
+name = "jointed"
+length_unit = "mm"
+[material.rubber]
+youngs_modulus = "1 MPa"
+poisson_ratio = 0.45
+[[body]]
+name = "post"
+material = "rubber"
+geometry = { box = [[-300, 0, 10], [-290, 10, 20]] }
+[mesh]
+size = "10 mm"
+order = 1
+[[fixed]]
+name = "clamp"
+plane = { point = [0, 0, 10], normal = [0, 0, 1] }
+[contact]
+distance = "0.2 mm"
+)" + more + "\n[program]\ntolerance = 1e-6\n" +
+           program;
+}
+
+std::string in_time(double duration_s, double step_s, bool heavy = true) {
+    return fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\ngravity = [0, 0, {}]\n", duration_s, step_s,
+                       heavy ? -g : 0);
+}
+std::string at_rest() {
+    return fmt::format("steps = 2\ngravity = [0, 0, {}]\n", -g);
+}
+
+struct Run {
+    robot::testing::Built built;
+    sim::Trajectory result;
+    [[nodiscard]] const sim::Step& last() const { return result.steps.back(); }
+    [[nodiscard]] const sim::JointState& joint(std::size_t k = 0) const { return last().joints.at(k); }
+};
+
+Run run(const std::string& text) {
+    auto built = robot::testing::build(robot::parse_robot(text, "jointed.toml"));
+    sim::Trajectory result = robot::testing::run_to_the_end(built);
+    return {std::move(built), std::move(result)};
+}
+
+/// A bar of 100 x 10 x 10 mm and 10 g that hangs from the origin, or lies along x from there.
+std::string bar(const std::string& name, bool hangs, double from_mm = 0, const std::string& more = "") {
+    const std::string box = hangs ? fmt::format("[[-5, -5, {}], [5, 5, {}]]", -from_mm - 100, -from_mm)
+                                  : fmt::format("[[{}, -5, -5], [{}, 5, 5]]", from_mm, from_mm + 100);
+    return fmt::format("[[object]]\nname = \"{}\"\ngeometry = {{ box = {} }}\ndensity = \"1000 kg/m^3\"\n{}\n", name,
+                       box, more);
+}
+constexpr double bar_kg = 0.01, bar_m = 0.1;
+constexpr double bar_inertia = bar_kg * (0.1 * 0.1 + 0.01 * 0.01) / 12;
+
+std::string joint(const std::string& kind, const std::string& first, const std::string& second, double x_mm,
+                  double z_mm, const std::string& more = "") {
+    return fmt::format(
+        "[[joint]]\nname = \"{0}\"\nkind = \"{0}\"\nbetween = [\"{1}\", \"{2}\"]\npoint = [{3}, 0, {4}]\n{5}\n", kind,
+        first, second, x_mm, z_mm, more);
+}
+const std::string about_y = "axis = [0, 1, 0]";
+
+}  // namespace
+
+TEST_CASE("a bar that hangs from a hinge swings with the period of a physical pendulum") {
+    const double inertia = bar_inertia + bar_kg * bar_m * bar_m / 4;
+    const double period = 2 * pi * std::sqrt(inertia / (bar_kg * g * bar_m / 2));
+    const double spin = 0.5;  // 0.04 rad at most
+    const Run r =
+        run(world(bar("bar", true, 0,
+                      fmt::format("angular_velocity = [0, {}, 0]\nvelocity = [{}, 0, 0]", spin, -spin * bar_m / 2)) +
+                      joint("hinge", "world", "bar", 0, 0, about_y),
+                  in_time(2.1 * period, period / 200)));
+    std::vector<double> crossings;
+    const auto angle = [&](std::size_t k) { return r.result.steps[k].joints[0].coordinate; };
+    for (std::size_t k = 2; k < r.result.steps.size(); ++k) {
+        if ((angle(k) > 0) == (angle(k - 1) > 0)) continue;
+        const double share = angle(k - 1) / (angle(k - 1) - angle(k));
+        crossings.push_back(r.result.steps[k - 1].time + share * period / 200);
+    }
+    REQUIRE(crossings.size() >= 4);
+    MESSAGE("period ", crossings[3] / 2, " s, wanted ", period);
+    CHECK(crossings[3] / 2 == near(period, {.relative = 0.01}));
+    CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 0.02}));
+}
+
+TEST_CASE("a double pendulum keeps its energy") {
+    const Run r =
+        run(world(bar("upper", false) + bar("lower", false, 100) + joint("hinge", "world", "upper", 0, 0, about_y) +
+                      "[[joint]]\nname = \"elbow\"\nkind = \"hinge\"\nbetween = [\"upper\", \"lower\"]\n"
+                      "point = [100, 0, 0]\naxis = [0, 1, 0]\n",
+                  in_time(0.3, 0.0005)));
+    const auto energy = [&](std::size_t k) { return r.result.steps[k].energy_J + r.result.steps[k].kinetic_energy_J; };
+    const double scale = 2 * bar_kg * g * bar_m;
+    double most = 0, off = 0;
+    for (std::size_t k = 1; k < r.result.steps.size(); ++k) {
+        most = std::max(most, r.result.steps[k].kinetic_energy_J);
+        off = std::max(off, std::fabs(energy(k) - energy(0)));
+    }
+    MESSAGE("energy off by ", off / scale, " of the weight's, of which ", most / scale, " was in motion");
+    CHECK(most > 0.5 * scale);
+    CHECK(off < 0.01 * scale);
+}
+
+TEST_CASE("a motor that holds a bar level carries its weight and its torque") {
+    const Run r = run(
+        world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, about_y + "\nangle = \"0 deg\""), at_rest()));
+    CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
+    // About y by the right hand a torque below zero lifts what lies along x.
+    CHECK(r.joint().torque_Nm.y == near(-bar_kg * g * bar_m / 2, {.relative = 2e-3}));
+    CHECK(r.joint().effort == near(r.joint().torque_Nm.y, {.relative = 1e-3}));
+    CHECK(std::fabs(r.joint().coordinate) < 1e-3);
+}
+
+TEST_CASE("a hinge with a spring sinks until its torque balances the weight, and a limit stops it") {
+    const double stiffness = 0.02;
+    const std::string springy = about_y + fmt::format("\nstiffness = \"{} N*m/rad\"", stiffness);
+    const Run r = run(world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, springy), at_rest()));
+    const double angle = r.joint().coordinate;
+    CHECK(stiffness * angle == near(bar_kg * g * bar_m / 2 * std::cos(angle), {.relative = 2e-3}));
+    CHECK(angle > 0.2);
+    const Run stopped = run(
+        world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, about_y + "\nlimits = [-10, 5]"), at_rest()));
+    CHECK(stopped.joint().coordinate == near(5 * pi / 180, {.absolute = 1e-3}));
+}
+
+TEST_CASE("a slider sinks on its spring, carries torque across, and is pushed by a force") {
+    const double stiffness = 100;
+    const Run r = run(
+        world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [0, 0, 1]\nstiffness = \"0.1 N/mm\""),
+              at_rest()));
+    CHECK(r.joint().coordinate == near(-bar_kg * g / stiffness, {.relative = 2e-3}));
+    CHECK(r.joint().effort == near(bar_kg * g, {.relative = 2e-3}));
+    CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 2e-3}));
+    CHECK(r.joint().torque_Nm.y == near(-bar_kg * g * bar_m / 2, {.relative = 2e-3}));
+    const double T = 0.1, force = 0.02;  // grows evenly
+    const Run pushed =
+        run(world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [1, 0, 0]\nforce = \"20 mN\""),
+                  in_time(T, 0.001)));
+    CHECK(pushed.joint().coordinate == near(force / bar_kg * T * T / 6, {.relative = 0.01}));
+    CHECK(pushed.joint().effort == near(force, {.relative = 1e-6}));
+}
+
+TEST_CASE("two boxes that are glued fly as one") {
+    const auto box = [](const std::string& name, double low, double high, double vy) {
+        return fmt::format(
+            "[[object]]\nname = \"{}\"\ngeometry = {{ box = [[{}, -5, -3], [{}, 5, 3]] }}\ndensity = \"1000 "
+            "kg/m^3\"\nvelocity = [0.2, {}, 0.5]\nangular_velocity = [5, 0, 20]\n",
+            name, low, high, vy);
+    };
+    const std::string program = in_time(0.1, 0.0005);
+    const Run whole = run(world(box("one", -20, 20, 0), program));
+    const Run glued = run(
+        world(box("left", -20, 0, -20 * 0.01) + box("right", 0, 20, 20 * 0.01) + joint("glue", "left", "right", 0, 0),
+              program));
+    const auto& one = whole.last().objects[0];
+    const auto &left = glued.last().objects[0], &right = glued.last().objects[1];
+    const Vec3 middle = 0.5 * (left.position_m + right.position_m);
+    CHECK(norm(middle - one.position_m) < 1e-4 * 0.1);
+    CHECK(norm(left.position_m - right.position_m) == near(0.02, {.relative = 1e-4}));
+    for (std::size_t k = 0; k < 4; ++k) CHECK(left.rotation[k] == near(one.rotation[k], {.absolute = 5e-3}));
+}
+
+TEST_CASE("a motor follows its angle over whole turns") {
+    const Run r =
+        run(world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, "axis = [0, 0, 1]\nangle = \"720 deg\""),
+                  in_time(1, 0.01, false)));
+    for (std::size_t k = 1; k < r.result.steps.size(); k += 9) {
+        const sim::Step& step = r.result.steps[k];
+        CHECK(step.joints[0].coordinate == near(4 * pi * step.time, {.absolute = 0.01}));
+        CHECK(step.objects[0].position_m.x == near(0.05 * std::cos(4 * pi * step.time), {.absolute = 1e-3}));
+    }
+}
+
+TEST_CASE("a ball joint holds a point and nothing else") {
+    const Run r = run(world(bar("bar", true) + joint("ball", "world", "bar", 0, 0), at_rest()));
+    CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
+    CHECK(norm(r.joint().torque_Nm) < 1e-9);
+}
+
+TEST_CASE("a cable that pulls on a hinged link turns it until its torque is balanced") {
+    const double stiffness = 0.05;
+    const Run r = run(world(
+        bar("bar", false) +
+            joint("hinge", "world", "bar", 0, 0, about_y + fmt::format("\nstiffness = \"{} N*m/rad\"", stiffness)) +
+            "[[cable]]\nname = \"pull\"\npoints = [[0, 0, 80], [80, 0, 0]]\nanchor = \"first\"\n"
+            "target = { tension = \"0.5 N\" }\n",
+        "steps = 3\n"));
+    // The link's end at angle a about y is at (80 cos a, 0, -80 sin a) mm.
+    const double a = r.joint().coordinate, x = 0.08 * std::cos(a), z = -0.08 * std::sin(a);
+    const double length = std::hypot(x, 0.08 - z);
+    const double torque = 0.5 * (z * (0 - x) - x * (0.08 - z)) / length;  // (r x F) . y
+    CHECK(a < -0.1);
+    CHECK(stiffness * a == near(torque, {.relative = 5e-3}));
+    CHECK(r.last().cables[0].length_m == near(length, {.relative = 1e-3}));
+}
+
+namespace {
+
+/// A light beam of 60 mm, clamped, with a block of 10 mm glued to its end face, which a plate keeps rigid.
+std::string beam(double block_kg, const std::string& program) {
+    return fmt::format(R"(
+name = "beam"
+length_unit = "mm"
+material.rubber = {{ youngs_modulus = "1 MPa", poisson_ratio = 0.3, density = "1 kg/m^3" }}
+body = [{{ name = "beam", material = "rubber", geometry = {{ box = [[0, 0, 0], [60, 10, 10]] }} }}]
+mesh = {{ size = "10 mm" }}
+fixed = [{{ name = "clamp", plane = {{ point = [0, 0, 0], normal = [1, 0, 0] }} }}]
+plate = [{{ name = "end", plane = {{ point = [60, 0, 0], normal = [1, 0, 0] }} }}]
+marker = [{{ name = "tip", point = [60, 5, 5] }}]
+object = [{{ name = "block", geometry = {{ box = [[60, 0, 0], [70, 10, 10]] }}, mass = "{} kg" }}]
+joint = [{{ name = "weld", kind = "glue", between = ["end", "block"], point = [60, 5, 5] }}]
+[program]
+tolerance = 1e-6
+gravity = [0, 0, -9.81]
+)",
+                       block_kg) +
+           program;
+}
+
+/// Flexibility of the end of a beam: deflection by force and by moment, slope by moment; with shear (Timoshenko).
+struct Flexibility {
+    double EI = 1e6 * 1e-8 / 12, L = 0.06, G = 1e6 / 2.6, A = 1e-4, kappa = 5.0 / 6;
+    double by_force = L * L * L / (3 * EI) + L / (kappa * G * A), across = L * L / (2 * EI), by_moment = L / EI;
+};
+
+}  // namespace
+
+TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as Euler, Bernoulli and Timoshenko say") {
+    const Flexibility f;
+    const double m = 1e-3, c = 5e-3;
+    {
+        const Run r = run(beam(m, "steps = 2\n"));
+        const double sunk = 5e-3 - r.last().markers[0].position_m.z;
+        const double wanted = m * g * (f.by_force + c * f.across);
+        MESSAGE("sunk by ", sunk, " m, wanted ", wanted);
+        CHECK(sunk == near(wanted, {.relative = 0.03}));
+        CHECK(r.joint().force_N.z == near(m * g, {.relative = 2e-3}));
+        CHECK(r.joint().torque_Nm.y == near(-m * g * c, {.relative = 0.02}));
+    }
+    // Deflection and slope of the end carry the block: the larger eigenvalue of flexibility times mass is 1 / w^2.
+    const double M = 5e-3, J = M * 2e-4 / 12;
+    const double a = f.by_force * M + f.across * M * c, b = f.by_force * M * c + f.across * (J + M * c * c);
+    const double d = f.across * M + f.by_moment * M * c, e = f.across * M * c + f.by_moment * (J + M * c * c);
+    const double largest = 0.5 * (a + e) + std::sqrt(0.25 * (a - e) * (a - e) + b * d);
+    const double period = 2 * pi * std::sqrt(largest);
+    const Run r = run(beam(M, fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\n", 2.2 * period, period / 120)));
+    std::vector<double> turns;  // where it comes to rest
+    const auto height = [&](std::size_t k) { return r.result.steps[k].markers[0].position_m.z; };
+    for (std::size_t k = 1; k + 1 < r.result.steps.size(); ++k) {
+        const double before = height(k) - height(k - 1), after = height(k + 1) - height(k);
+        if ((before > 0) != (after > 0))
+            turns.push_back(r.result.steps[k].time + period / 120 * (before / (before - after) - 0.5));
+    }
+    REQUIRE(turns.size() >= 3);
+    MESSAGE("period ", turns[2] - turns[0], " s, wanted ", period);
+    CHECK(turns[2] - turns[0] == near(period, {.relative = 0.03}));
+}
+
+TEST_CASE("joints give the same bits on any number of threads, and from bytes") {
+    const auto built = robot::testing::build(robot::parse_robot(
+        world(bar("upper", false) + bar("lower", false, 100, "angular_velocity = [0, 30, 0]") +
+                  joint("motor", "world", "upper", 0, 0, about_y + "\ntorque = \"0.02 N*m\"\ndamping = 1e-4") +
+                  joint("hinge", "upper", "lower", 100, 0, about_y),
+              in_time(0.1, 0.005)),
+        "jointed.toml"));
+    Progress silent;
+    const auto steps = [&](sim::Stepper& stepper, sim::RobotState& robot, int from, int to) {
+        for (int k = from; k <= to; ++k)
+            REQUIRE(stepper.step(robot, sim::program_way(stepper, built.robot.program, robot, k), silent).arrived);
+    };
+    sim::Stepper stepper(built.model, sim::stepper_options(built.robot.program));
+    sim::RobotState robot = stepper.rest();
+    steps(stepper, robot, 1, 10);
+    const std::string bytes = sim::state_bytes(built.model, robot);
+    steps(stepper, robot, 11, 20);
+    for (const std::size_t threads : {1, 2, 4}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        sim::Stepper other(built.model, sim::stepper_options(built.robot.program));
+        auto read = sim::state_from_bytes(other, bytes);
+        REQUIRE_MESSAGE(read, (read ? "" : read.error().message));
+        steps(other, *read, 11, 20);
+        CHECK(read->x() == robot.x());
+        CHECK(read->controls.joint_start == robot.controls.joint_start);
+    }
+}
+
+TEST_CASE("slips in joints are told in one line") {
+    using robot::testing::check_problem;
+    const auto check = [&](const std::string& keys, const std::string& wanted) {
+        check_problem(world(bar("bar", false) + "[[joint]]\nname = \"it\"\n" + keys, at_rest()), wanted);
+    };
+    const std::string held = "between = [\"world\", \"bar\"]\npoint = [0, 0, 0]\n";
+    check("kind = \"weld\"\n" + held, "glue");
+    check("kind = \"hinge\"\n" + held, "\"axis\" is missing");
+    check("kind = \"hinge\"\naxis = [0, 0, 0]\n" + held, "must not be zero");
+    check("kind = \"glue\"\naxis = [0, 0, 1]\n" + held, "is that of a hinge, motor or slider");
+    check("kind = \"ball\"\nbetween = [\"world\", \"beam\"]\npoint = [0, 0, 0]\n",
+          "there is no body, plate or object \"beam\"");
+    check("kind = \"ball\"\nbetween = [\"bar\", \"bar\"]\npoint = [0, 0, 0]\n", "joins \"bar\" to itself");
+    check("kind = \"ball\"\nbetween = [\"bar\"]\npoint = [0, 0, 0]\n", "names two things");
+    check("kind = \"ball\"\nbetween = [\"post\", \"bar\"]\npoint = [0, 0, 0]\n", "lies outside body \"post\", by");
+    check("kind = \"motor\"\naxis = [0, 0, 1]\n" + held, "a motor takes angle or torque");
+    check("kind = \"motor\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\ntorque = \"1 N*m\"\n" + held,
+          "takes one of angle and torque");
+    check("kind = \"motor\"\naxis = [0, 0, 1]\ntorque = \"1 N\"\n" + held, "is not a torque such as");
+    check("kind = \"hinge\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "kind = \"motor\"");
+    check("kind = \"hinge\"\naxis = [0, 0, 1]\nlimits = [10, 20]\n" + held, "must lie between them");
+    check("kind = \"slider\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "a slider takes position or force");
+    check("kind = \"ball\"\nstiffness = \"1 N/m\"\n" + held, "a [[spring]] is elastic");
+}
