@@ -250,3 +250,22 @@ def test_threads_share_a_model_and_have_the_same_bits(model):
     for thread in threads:
         thread.join()
     assert len(found) == 4 and all(state == alone for state in found)
+
+
+def test_joints_and_sensors_are_observed_by_their_names():
+    robot = pliant.Robot.load("examples/crank_and_rod/robot.toml")
+    seen = []
+    result = pliant.Model(robot).run(on_step=lambda step: seen.append(step.observed))
+    assert result.converged
+    motor, pin = seen[-1].joints["motor"], seen[-1].joints["crank pin"]
+    assert list(seen[0].joints) == ["tip pin", "crank pin", "motor"]
+    assert seen[0].joints["motor"].coordinate == pytest.approx(0, abs=1e-12)
+    assert motor.coordinate == pytest.approx(np.radians(150), rel=1e-4)
+    assert motor.effort > 0 and pin.effort == 0
+    # The crank has no other forces on it than those of its two pins, the motor's and that of the rod.
+    assert motor.force_N == pytest.approx(-pin.force_N, abs=1e-3 * np.linalg.norm(pin.force_N))
+
+    sensed = {**BAR, "sensor": [{"name": "pull", "kind": "tension", "cable": "flexor"}]}
+    model = pliant.Model(pliant.Robot(sensed))
+    observed = pulled(model).observe()
+    assert observed.sensors == {"pull": {"tension": observed.cables["flexor"].tension_N}}
