@@ -27,7 +27,7 @@ from .notebook import Viewer, show
 from .objectives import ProgramGradient, gradient
 from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
 from .program import ProgramResult, ProgramStep
-from .results import Cable, Chamber, Fields, Object, Observation, Spring
+from .results import Cable, Chamber, Fields, Joint, Object, Observation, Spring
 from .robot import Mesh, Robot
 from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
 from .studies import KeySensitivity, SobolIndex, StudyResult, study
@@ -37,9 +37,9 @@ __version__ = _pliant.version()
 __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
     "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
-    "InverseResult", "KeySensitivity", "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation", "Parameter",
-    "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "Robot", "SobolIndex", "Spring", "State", "SteeredInput",
-    "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
+    "InverseResult", "Joint", "KeySensitivity", "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation",
+    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "Robot", "SobolIndex", "Spring", "State",
+    "SteeredInput", "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
     "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
     "show", "slice", "study", "workspace",
 ]  # fmt: skip
