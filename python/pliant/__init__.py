@@ -38,8 +38,8 @@ __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
     "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
     "InverseResult", "Joint", "KeySensitivity", "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation",
-    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "Robot", "SobolIndex", "Spring", "State",
-    "SteeredInput", "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
+    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "Robot", "SobolIndex", "Spring",
+    "State", "SteeredInput", "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
     "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
     "show", "slice", "study", "workspace",
 ]  # fmt: skip
