@@ -81,7 +81,7 @@ Observation Stepper::observe(const State& state) const {
     const sim::RobotState& robot = work_->robot_of(state);
     sim::Step step;
     sim::describe(work_->model->scene.model, work_->stepper.system(), robot.now.state, robot.controls, robot.evaluation,
-                  work_->stepper.options().dynamics.has_value(), step);
+                  step);
     if (work_->stepper.options().dynamics) step.kinetic_energy_J = work_->stepper.kinetic_energy_J(robot);
     return library::observation_of(step);
 }

@@ -41,7 +41,7 @@ Result<std::string> picture(const robot::Robot& robot, const WorkspaceReport& re
     const sim::RobotState rest = stepper.rest();
     sim::Trajectory trajectory;
     sim::Step step;
-    sim::describe(report.model, stepper.system(), rest.now.state, rest.controls, rest.evaluation, false, step);
+    sim::describe(report.model, stepper.system(), rest.now.state, rest.controls, rest.evaluation, step);
     trajectory.steps = {step};
     Simulation simulation = simulation_of(robot, report.model, trajectory);
     simulation.measured = lines_of(report, 0);

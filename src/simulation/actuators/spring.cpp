@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "simulation/elements/node_blocks.hpp"
+
 namespace pliant::sim {
 
 SpringPath::SpringPath(const Spring& spring, std::span<const double> rest)
@@ -45,9 +47,7 @@ void SpringPath::add_hessian(std::span<const double> x, const std::vector<int>& 
 }
 
 void SpringPath::append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const {
-    std::vector<int> clique;
-    for (const int node : path_.nodes()) clique.push_back(free_index[static_cast<std::size_t>(node)]);
-    cliques.push_back(clique);
+    append_node_clique(path_.nodes(), free_index, cliques);
 }
 
 }  // namespace pliant::sim

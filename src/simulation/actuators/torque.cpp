@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
 
@@ -58,21 +59,13 @@ void TorqueForces::add_tangent(std::span<const double> x, const Vector3& torque_
         return -(cross_matrix(a.r[i]) * a.inverse * change + ((i == j ? 1 : 0) - share) * turn);
     };
     const double sign = part == Part::symmetric ? 1 : -1;
-    for (std::size_t j = 0; j < nodes_.size(); ++j) {
-        const int column = index[static_cast<std::size_t>(nodes_[j])];
-        for (std::size_t i = 0; column >= 0 && i < nodes_.size(); ++i) {
-            const int row = index[static_cast<std::size_t>(nodes_[i])];
-            if (row < column) continue;
-            const Matrix3 half = 0.5 * (block(i, j) + sign * block(j, i).transpose());
-            pattern.add_block(values, row, column, [&](int r, int c) { return half(r, c); });
-        }
-    }
+    add_node_blocks(nodes_, index, pattern, values, [&](std::size_t i, std::size_t j) -> Matrix3 {
+        return 0.5 * (block(i, j) + sign * block(j, i).transpose());
+    });
 }
 
 void TorqueForces::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {
-    std::vector<int> clique;
-    for (const int node : nodes_) clique.push_back(index[static_cast<std::size_t>(node)]);
-    cliques.push_back(clique);
+    append_node_clique(nodes_, index, cliques);
 }
 
 }  // namespace pliant::sim

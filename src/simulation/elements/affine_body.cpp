@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
 
@@ -96,24 +97,17 @@ void AffineBody::add_hessian(std::span<const double> x, const std::vector<int>& 
         H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
     }
     if (project) H = linalg::project_to_positive(H);
-    for (std::size_t b = 0; b < 4; ++b) {
-        const int j = index[static_cast<std::size_t>(nodes_[b])];
-        for (std::size_t a = 0; j >= 0 && a < 4; ++a) {
-            const int i = index[static_cast<std::size_t>(nodes_[a])];
-            if (i < j) continue;
-            Matrix3 block = Matrix3::Zero();
-            for (int k = 0; k < 3; ++k) {
-                for (int l = 0; l < 3; ++l) block += gradients_[a][k] * gradients_[b][l] * H.block<3, 3>(3 * k, 3 * l);
-            }
-            pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
+    add_node_blocks(nodes_, index, pattern, values, [&](std::size_t a, std::size_t b) {
+        Matrix3 block = Matrix3::Zero();
+        for (int k = 0; k < 3; ++k) {
+            for (int l = 0; l < 3; ++l) block += gradients_[a][k] * gradients_[b][l] * H.block<3, 3>(3 * k, 3 * l);
         }
-    }
+        return block;
+    });
 }
 
 void AffineBody::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {
-    std::vector<int> clique;
-    for (const int node : nodes_) clique.push_back(index[static_cast<std::size_t>(node)]);
-    cliques.push_back(clique);
+    append_node_clique(nodes_, index, cliques);
 }
 
 }  // namespace pliant::sim

@@ -5,6 +5,18 @@
 #include "simulation/elements/elements.hpp"
 
 namespace pliant::sim {
+namespace {
+
+/// Of the last state and of the one before it in a step of BDF2 that is r times as long as the last one.
+struct Bdf2Weights {
+    double now, before;
+};
+
+Bdf2Weights bdf2_weights(double r) {
+    return {(1 + r) * (1 + r) / (1 + 2 * r), -r * r / (1 + 2 * r)};
+}
+
+}  // namespace
 
 Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, History begin, double dt,
                  const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness, Scheme scheme)
@@ -41,7 +53,8 @@ void Inertia::set_even() {
 }
 
 void Inertia::set_uneven() {
-    const double r = dt_ / start_.dt_before, now = (1 + r) * (1 + r) / (1 + 2 * r), before = -r * r / (1 + 2 * r);
+    const double r = dt_ / start_.dt_before;
+    const auto [now, before] = bdf2_weights(r);
     rate_ = (1 + 2 * r) / ((1 + r) * dt_);
     from_ = now * start_.x + before * start_.x_before;
     coast_ = from_ + (now * start_.v + before * start_.v_before) / rate_;
@@ -131,7 +144,7 @@ History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(mass.size());
     if (start_.is_still) return {by_from, none, none, none, 0};
     if (scheme_ == Scheme::bdf2) {
-        const double r = dt_ / start_.dt_before, now = (1 + r) * (1 + r) / (1 + 2 * r), before = -r * r / (1 + 2 * r);
+        const auto [now, before] = bdf2_weights(dt_ / start_.dt_before);
         return {now * by_from, now * mass, before * by_from, before * mass, 0};
     }
     if (!even_) return {by_from, mass, none, none, 0};

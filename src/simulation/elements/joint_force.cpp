@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -45,6 +46,13 @@ Eigen::Index place_in(std::vector<int>& nodes, int node) {
     if (found != nodes.end()) return found - nodes.begin();
     nodes.push_back(node);
     return static_cast<Eigen::Index>(nodes.size()) - 1;
+}
+
+void add_to_nodes(const std::vector<int>& nodes, const Eigen::Matrix3Xd& on_nodes, std::span<double> forces) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes[k]));
+        force += on_nodes.col(static_cast<Eigen::Index>(k));
+    }
 }
 
 }  // namespace
@@ -213,20 +221,12 @@ JointForce::Vectors JointForce::slopes(const Vectors& y, const JointDrive& drive
 }
 
 void JointForce::add_gradient(std::span<const double> x, const JointDrive& drive, std::span<double> forces) const {
-    const Vectors on_nodes = slopes(vectors(x), drive) * weights_;
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[k]));
-        force += on_nodes.col(static_cast<Eigen::Index>(k));
-    }
+    add_to_nodes(nodes_, slopes(vectors(x), drive) * weights_, forces);
 }
 
 void JointForce::add_coordinate_gradient(std::span<const double> x, double factor, std::span<double> forces) const {
     if (!has_coordinate() || factor == 0) return;
-    const Vectors on_nodes = factor * coordinate_of(vectors(x), false).gradient * weights_;
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-        Eigen::Map<Vector3> force(forces.data() + 3 * static_cast<std::size_t>(nodes_[k]));
-        force += on_nodes.col(static_cast<Eigen::Index>(k));
-    }
+    add_to_nodes(nodes_, factor * coordinate_of(vectors(x), false).gradient * weights_, forces);
 }
 
 void JointForce::add_hessian(std::span<const double> x, const JointDrive& drive, const std::vector<int>& index,
@@ -248,28 +248,22 @@ void JointForce::add_hessian(std::span<const double> x, const JointDrive& drive,
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
         H = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
     }
+    // H times the weights of each node, (3 rows, 3).
+    std::vector<Eigen::MatrixXd> columns(nodes_.size(), Eigen::MatrixXd::Zero(H.rows(), 3));
     for (std::size_t b = 0; b < nodes_.size(); ++b) {
-        const int j = index[static_cast<std::size_t>(nodes_[b])];
-        if (j < 0) continue;
-        // H times the weights of node b, (3 rows, 3).
-        Eigen::MatrixXd column = Eigen::MatrixXd::Zero(H.rows(), 3);
         for (Eigen::Index l = 0; l < y.cols(); ++l)
-            column += weights_(l, static_cast<Eigen::Index>(b)) * H.middleCols(3 * l, 3);
-        for (std::size_t a = 0; a < nodes_.size(); ++a) {
-            const int i = index[static_cast<std::size_t>(nodes_[a])];
-            if (i < j) continue;
-            Matrix3 block = Matrix3::Zero();
-            for (Eigen::Index k = 0; k < y.cols(); ++k)
-                block += weights_(k, static_cast<Eigen::Index>(a)) * column.middleRows(3 * k, 3);
-            pattern.add_block(values, i, j, [&](int r, int c) { return block(r, c); });
-        }
+            columns[b] += weights_(l, static_cast<Eigen::Index>(b)) * H.middleCols(3 * l, 3);
     }
+    add_node_blocks(nodes_, index, pattern, values, [&](std::size_t a, std::size_t b) {
+        Matrix3 block = Matrix3::Zero();
+        for (Eigen::Index k = 0; k < y.cols(); ++k)
+            block += weights_(k, static_cast<Eigen::Index>(a)) * columns[b].middleRows(3 * k, 3);
+        return block;
+    });
 }
 
 void JointForce::append_clique(const std::vector<int>& index, linalg::Lists& cliques) const {
-    std::vector<int> clique;
-    for (const int node : nodes_) clique.push_back(index[static_cast<std::size_t>(node)]);
-    cliques.push_back(clique);
+    append_node_clique(nodes_, index, cliques);
 }
 
 /// Forces on the nodes and on what is fixed of the second thing, about the joint's point there.

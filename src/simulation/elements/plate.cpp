@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
 namespace {}  // namespace
@@ -103,9 +104,7 @@ void Plate::add_rest_weights(std::span<const double> x, std::span<const double> 
 }
 
 void Plate::append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const {
-    std::vector<int> clique;
-    for (const int node : nodes_) clique.push_back(free_index[static_cast<std::size_t>(node)]);
-    cliques.push_back(clique);
+    append_node_clique(nodes_, free_index, cliques);
 }
 
 }  // namespace pliant::sim

@@ -113,7 +113,7 @@ private:
         waypoint.state.index = static_cast<int>(k) + 1;
         waypoint.state.time = task_.times[k];
         waypoint.state.wall_s = wall_s;
-        describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation, false,
+        describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation,
                  waypoint.state);
         result_.waypoints.push_back(std::move(waypoint));
     }

@@ -67,7 +67,7 @@ ObjectState object_state(const Model& model, std::size_t k, std::span<const doub
 }
 
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
-              const Evaluation& evaluation, bool in_time, Step& step) {
+              const Evaluation& evaluation, Step& step) {
     const auto& d = model.description();
     const std::span<const double> x(state.x.data(), static_cast<std::size_t>(state.x.size()));
     step.residual = evaluation.residual;
@@ -85,7 +85,7 @@ void describe(const Model& model, const Equilibrium& system, const State& state,
     for (std::size_t s = 0; s < reactions.size(); ++s) step.supports.push_back({d.supports[s].name, reactions[s]});
     for (const Marker& marker : d.markers) step.markers.push_back({marker.name, position(marker.point, x)});
     for (const Sensor& sensor : d.sensors)
-        step.sensors.push_back({sensor.name, read_sensor(sensor, system, state, controls, in_time)});
+        step.sensors.push_back({sensor.name, read_sensor(sensor, system, state, controls)});
     step.positions = linalg::points_of(state.x);
 }
 

@@ -11,9 +11,9 @@ namespace pliant::sim {
 
 /// Fills in residual, min_J, energy, actuators, supports, contact, markers, sensors and positions; `evaluation` must be
 /// that of `state` under `controls`. What belongs to the way there (index, time, iterations, wall time) is left as it
-/// is. `in_time`: the robot has mass, and moves.
+/// is.
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
-              const Evaluation& evaluation, bool in_time, Step& step);
+              const Evaluation& evaluation, Step& step);
 
 [[nodiscard]] JointState joint_state(const Equilibrium& system, std::size_t joint, const State& state,
                                      const Controls& controls);

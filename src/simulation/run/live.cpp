@@ -66,8 +66,7 @@ public:
         step.converged = !last_.loose;
         if (last_.loose) step.reason = last_.reason;
         const State& state = robot_.now.state;
-        sim::describe(stepper_.model(), system(), state, robot_.controls, robot_.evaluation,
-                      stepper_.options().dynamics.has_value(), step);
+        sim::describe(stepper_.model(), system(), state, robot_.controls, robot_.evaluation, step);
         step.crossing_m = system().crossing(state, robot_.controls);
         return step;
     }

@@ -50,7 +50,6 @@ struct Scene {
     const Equilibrium& system;
     const State& state;
     const Controls& controls;
-    bool in_time;
     std::span<const double> x;
 };
 
@@ -123,7 +122,7 @@ std::vector<double> read(const MotionSensor& sensor, const Scene& scene) {
     const Matrix3d axes = linalg::nearest_rotation(deformation) * columns(sensor.axes);
     Vector3d acceleration = -d.gravity_share.at(scene.controls.time) * linalg::vector(d.gravity_m_s2);
     Vector3d turning = Vector3d::Zero();
-    if (scene.in_time && scene.controls.inertia) {
+    if (scene.controls.inertia && !scene.controls.inertia->is_tether()) {
         const Eigen::VectorXd a = scene.controls.inertia->true_acceleration(scene.state.x);
         const Eigen::VectorXd v = scene.controls.inertia->velocity(scene.state.x);
         acceleration += place(sensor.frame, linalg::view(a));
@@ -252,8 +251,8 @@ std::vector<std::pair<std::string, SensedQuantity>> readings_of(const Sensor& se
 }
 
 std::vector<Reading> read_sensor(const Sensor& sensor, const Equilibrium& system, const State& state,
-                                 const Controls& controls, bool in_time) {
-    const Scene scene{system, state, controls, in_time, linalg::view(state.x)};
+                                 const Controls& controls) {
+    const Scene scene{system, state, controls, linalg::view(state.x)};
     const std::vector<double> values = std::visit([&](const auto& what) { return read(what, scene); }, sensor.what);
     std::vector<Reading> readings;
     Names names = readings_of(sensor);

@@ -17,7 +17,7 @@
 
 namespace pliant::sim {
 
-/// What a reading is of. Values are in SI units; text() says which.
+/// What a reading is of. Values are in SI units; shown() says which.
 enum class SensedQuantity {
     ratio,
     length,
@@ -50,10 +50,10 @@ struct Reading {
 /// What read_sensor() will give, without values.
 [[nodiscard]] std::vector<std::pair<std::string, SensedQuantity>> readings_of(const Sensor& sensor);
 
-/// `in_time`: the controls have the inertia of a step in time. Where they have none a motion sensor stands still, as
-/// before the first step: it reads what holds it against gravity.
+/// Without the inertia of a step in time a motion sensor stands still, as before the first step: it reads what holds it
+/// against gravity.
 [[nodiscard]] std::vector<Reading> read_sensor(const Sensor& sensor, const Equilibrium& system, const State& state,
-                                               const Controls& controls, bool in_time);
+                                               const Controls& controls);
 
 /// Of a cable or chamber (first the cables): the tension or minus the pressure that acts on the body. What elements of
 /// gaps and meshed air resist with never reaches it; of air that is what they press with beyond their volume's own.

@@ -107,8 +107,7 @@ private:
 
     void describe(Step& step) const {
         const RobotState& robot = now_.robot;
-        sim::describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation,
-                      program_.dynamics.has_value(), step);
+        sim::describe(stepper_.model(), stepper_.system(), robot.now.state, robot.controls, robot.evaluation, step);
         if (program_.dynamics) step.kinetic_energy_J = stepper_.kinetic_energy_J(robot);
     }
 

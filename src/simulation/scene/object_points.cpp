@@ -1,35 +1,20 @@
 #include "simulation/scene/object_points.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "base/linalg/vectors.hpp"
+#include "geometry/repair/surface_shells.hpp"
 #include "simulation/elements/affine_body.hpp"
 
 namespace pliant::robot {
 namespace {
-
-/// How often a closed surface goes round a point: 1 inside, 0 outside. The solid angle of a triangle is that of Van
-/// Oosterom and Strackee 1983.
-double winding_number(const mesh::TriMesh& surface, const Vec3& p) {
-    double sum = 0;
-    for (const auto& t : surface.triangles) {
-        const Vec3 a = surface.points[static_cast<std::size_t>(t[0])] - p;
-        const Vec3 b = surface.points[static_cast<std::size_t>(t[1])] - p;
-        const Vec3 c = surface.points[static_cast<std::size_t>(t[2])] - p;
-        const double la = norm(a), lb = norm(b), lc = norm(c);
-        sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-    }
-    return sum / (2 * std::numbers::pi);
-}
 
 /// What lies on the surface is inside once it is moved a little towards the middle.
 bool holds(const sim::FreeObject& object, const Vec3& middle, const Vec3& point, double tolerance) {
     const Vec3 way = middle - point;
     const double length = norm(way);
     const Vec3 nearer = length > tolerance ? point + tolerance / length * way : middle;
-    return winding_number(object.surface, nearer) > 0.5 || winding_number(object.surface, point) > 0.5;
+    return mesh::winding_number(object.surface, nearer) > 0.5 || mesh::winding_number(object.surface, point) > 0.5;
 }
 
 std::vector<double> numbers_of(const std::vector<Vec3>& points) {
