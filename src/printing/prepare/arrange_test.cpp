@@ -28,10 +28,10 @@ struct Arranged {
     }
 };
 
-Arranged arranged(const std::function<void(Order&)>& change) {
+Arranged arranged(const std::function<void(Order&)>& change, Drawing drawing = two_blocks()) {
     Order order;
     change(order);
-    Arranged a{two_blocks(), {}, {}, {}};
+    Arranged a{std::move(drawing), {}, {}, {}};
     auto settings = job_settings(order, printer(), {}, a.drawing);
     REQUIRE_MESSAGE(settings.has_value(), (settings ? "" : settings.error().message));
     a.settings = std::move(*settings);
@@ -172,18 +172,14 @@ namespace {
 
 /// A table of 6 x 4 mm on a column of 2 mm, 3 mm high.
 Arranged table_with(const std::function<void(Order&)>& change) {
-    Order order;
-    order.support = "firm";
-    change(order);
-    Arranged a{two_blocks(), {}, {}, {}};
-    a.drawing.bodies = {{"soft", box_um({2000, 1000, 0}, {4000, 3000, 3000}), "column"},
-                        {"soft", box_um({0, 0, 3000}, {6000, 4000, 4000}), "top"}};
-    auto settings = job_settings(order, printer(), {}, a.drawing);
-    REQUIRE_MESSAGE(settings.has_value(), (settings ? "" : settings.error().message));
-    a.settings = std::move(*settings);
-    Progress silent;
-    a.status = arrange(order, a.settings, a.drawing, a.notes, silent);
-    return a;
+    Drawing drawing = two_blocks();
+    drawing.bodies = {{"soft", box_um({2000, 1000, 0}, {4000, 3000, 3000}), "column"},
+                      {"soft", box_um({0, 0, 3000}, {6000, 4000, 4000}), "top"}};
+    const auto on_supports = [&](Order& order) {
+        order.support = "firm";
+        change(order);
+    };
+    return arranged(on_supports, std::move(drawing));
 }
 
 /// Middles of all supports.

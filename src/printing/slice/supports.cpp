@@ -209,7 +209,9 @@ private:
     }
 
     void add_where_painted(const Tip& tip) {
-        if (wish(tip) == SupportWish::enforce && !tips_.near(tip)) add_unless_blocked(tip);
+        if (wish(tip) != SupportWish::enforce || tips_.near(tip)) return;
+        ++painted_;
+        tips_.add(tip);
     }
 
     /// Undersides on which somebody has painted that they are to be held, however steep: first where the brush was put
